@@ -48,9 +48,15 @@ def digest_of(paths: Iterable[Path], package: Path = PACKAGE) -> str:
     for path in paths:
         found = os.stat(path)
         content = _digest_of_content(path, found.st_mtime_ns, found.st_size)
-        place = path.relative_to(package) if path.is_relative_to(package) else Path(path.name)
-        digest.update(f"{place.as_posix()} {content}\n".encode())
+        digest.update(f"{_place(path, package)} {content}\n".encode())
     return digest.hexdigest()
+
+
+@functools.cache
+def _place(path: Path, package: Path) -> str:
+    """Where a file lies in the package; the name of one outside it."""
+    inside = path.is_relative_to(package)
+    return path.relative_to(package).as_posix() if inside else path.name
 
 
 @functools.cache
@@ -59,6 +65,7 @@ def _digest_of_content(path: Path, modified: int, size: int) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+@functools.cache
 def _room_of(path: Path, package: Path) -> str:
     """The folder or file of the package that a path lies in; empty for a file outside it, as a test has."""
     return path.relative_to(package).parts[0] if path.is_relative_to(package) else ""
@@ -111,10 +118,18 @@ def _files_of(parts: tuple[str, ...], package: Path, place: str, as_name: str | 
         raise UnknownImport(
             f"{place}: {package.name} as a whole; import what is used of it, by its module"
         )
-    files = [_module_file(parts[:n], package) for n in range(1, len(parts) + 1)]
-    if None in files:
+    files = _files_down_to(parts, package)
+    if not files:
         raise UnknownImport(f"{place}: there is no module {'.'.join(parts)}")
-    return [file for file in files if file is not None]
+    return [*files]
+
+
+@functools.cache
+def _files_down_to(parts: tuple[str, ...], package: Path) -> tuple[Path, ...]:
+    """A module's file after the `__init__` of each folder above it; empty where one is not there."""
+    files = [_module_file(parts[:n], package) for n in range(1, len(parts) + 1)]
+    found = tuple(file for file in files if file is not None)
+    return found if len(found) == len(files) else ()
 
 
 @functools.cache

@@ -13,7 +13,7 @@ import functools
 import hashlib
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
@@ -58,18 +58,18 @@ def statements_of(path: Path) -> tuple[Statement, ...]:
     name = hashlib.sha256(source).hexdigest()
     kept = _kept()
     if name not in kept.known:
-        kept.known[name] = kept.new[name] = _statements(source.decode("utf-8"), path)
+        kept.known[name] = kept.new[name] = json.dumps(_statements(source.decode("utf-8"), path))
     return tuple(
         Statement(line, module, level, tuple(names), alias)
-        for line, module, level, names, alias in kept.known[name]
+        for line, module, level, names, alias in json.loads(kept.known[name])
     )
 
 
 class _Kept(NamedTuple):
-    """Statements by sha256 of their source: all that are known, and those that are not kept yet."""
+    """Statements by sha256 of their source, as JSON: all that are known, and those that are not kept yet."""
 
-    known: dict[str, Sequence[Sequence]]
-    new: dict[str, Sequence[Sequence]]
+    known: dict[str, str]
+    new: dict[str, str]
 
 
 @functools.cache
@@ -80,16 +80,19 @@ def _kept() -> _Kept:
     return kept
 
 
-def _read() -> dict[str, Sequence[Sequence]]:
+def _read() -> dict[str, str]:
+    """What is kept: a line a source, its sha256 and its statements, of which a run reads a few."""
     content = read_kept(_FOLDER, _file_name())
-    return {} if content is None else json.loads(content)
+    lines = [] if content is None else content.decode().splitlines()
+    return dict(line.split(" ", 1) for line in lines)
 
 
-def _write(new: dict[str, Sequence[Sequence]]) -> None:
+def _write(new: dict[str, str]) -> None:
     if not new:
         return
     known = {**_read(), **new}
-    told = json.dumps(known if len(known) <= _MOST else new)
+    kept = known if len(known) <= _MOST else new
+    told = "".join(f"{name} {statements}\n" for name, statements in kept.items())
     with suppress(OSError):  # no room: the next run parses them again
         write_kept(_FOLDER, _file_name(), told.encode())
 
@@ -98,7 +101,7 @@ def _write(new: dict[str, Sequence[Sequence]]) -> None:
 def _file_name() -> str:
     """Another one for other rules, and for an interpreter that may read a source otherwise."""
     rules = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:16]
-    return f"{sys.implementation.cache_tag}-{rules}.json"
+    return f"{sys.implementation.cache_tag}-{rules}.txt"
 
 
 def _statements(source: str, path: Path) -> tuple[Statement, ...]:

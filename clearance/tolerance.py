@@ -10,6 +10,10 @@ TESSELLATION = 1e-4
 """[m] How far a facet of a round shape may stand outside the true surface, by default: below the
 repeatability of industrial arms (about 0.1 mm, ISO 9283 data sheets), so it never decides a verdict."""
 
+FINEST_TESSELLATION, COARSEST_TESSELLATION = 5e-5, 0.1
+"""[m] Tolerances of CAD files that can be asked for: faces of real models are up to 0.02 mm apart at their edges,
+whatever accuracy their file states, so that no finer facets would be nearer to anything."""
+
 ROTATION = 1e-6
 """[-] How far a given quaternion's norm or a matrix's R^T R may be from unity: YAML files carry six or more
 digits; anything worse is a typing error, not a rounding."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from clearance import import_statements as room
@@ -51,7 +49,7 @@ def test_what_is_damaged_is_parsed_again(tmp_path, as_if_new):
     path = tmp_path / "a.py"
     path.write_text("import a")
     as_if_new(path)
-    (kept,) = (tmp_path / "kept").rglob("*.json")
+    (kept,) = (tmp_path / "kept").rglob("*.txt")
     kept.write_bytes(kept.read_bytes().replace(b'"a"', b'"b"'))
     assert as_if_new(path) == (["a"], 1)
 
@@ -60,8 +58,8 @@ def test_it_does_not_grow_for_ever(tmp_path, as_if_new, monkeypatch):
     path = tmp_path / "a.py"
     path.write_text("import a")
     as_if_new(path)
-    old = json.loads(read_kept(room._FOLDER, room._file_name()))
-    many = {f"{n}": next(iter(old.values())) for n in range(room._MOST)}
-    write_kept(room._FOLDER, room._file_name(), json.dumps(many).encode())
+    (old,) = read_kept(room._FOLDER, room._file_name()).splitlines()
+    many = [b"%d %b\n" % (n, old.split(b" ", 1)[1]) for n in range(room._MOST)]
+    write_kept(room._FOLDER, room._file_name(), b"".join(many))
     as_if_new(path)
-    assert len(json.loads(read_kept(room._FOLDER, room._file_name()))) == 1
+    assert len(read_kept(room._FOLDER, room._file_name()).splitlines()) == 1

@@ -17,6 +17,7 @@ from clearance.batch.rows import ERROR, VERDICT, error_row
 from clearance.batch.run import Outcome
 from clearance.batch.shared_waivers import stale_waivers
 from clearance.batch.store import Store
+from clearance.findings.finding import NOT_PROVEN
 
 FAULT = 70
 """The exit code where this program is at fault, as of `clearance check`."""
@@ -25,7 +26,7 @@ VIOLATED, BAD_INPUT = 1, 2
 
 STALE = "stale waiver"
 
-STATUSES = ("clear", "near", STALE, "violated", "contact", "suspect", ERROR)
+STATUSES = ("clear", "near", STALE, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
 

@@ -18,6 +18,7 @@ from pathlib import PurePath
 from clearance.batch.item import Item
 from clearance.extras import is_installed
 from clearance.import_closure import PACKAGE, digest_of
+from clearance.load.preset_files import FOLDER as PRESETS
 from clearance.world.case import LOOKUP
 
 FORMAT = 1
@@ -51,8 +52,9 @@ def value_digest(name: str) -> str:
 
 @functools.cache
 def program() -> str:
-    """sha256 of all sources of this package, and of the versions below them."""
-    digest = hashlib.sha256(digest_of(sorted(PACKAGE.rglob("*.py"))).encode())
+    """sha256 of all sources of this package, presets among them, and of the versions below them."""
+    sources = [*PACKAGE.rglob("*.py"), *PRESETS.glob("*.yaml")]
+    digest = hashlib.sha256(digest_of(sorted(sources)).encode())
     versions = [(name, metadata.version(name)) for name in (*LIBRARIES, "pyarrow")]
     versions += [(name, metadata.version(name)) for name in READERS if is_installed(name)]
     told = (FORMAT, versions, platform.python_version(), platform.machine())

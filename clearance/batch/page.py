@@ -21,9 +21,12 @@ from clearance import __version__
 from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
+from clearance.findings.finding import NOT_PROVEN
 from clearance.report.wording import count
 
 _HERE = Path(__file__).parent
+
+_NOT_PROVEN = ".tag.not { background: var(--violated); }\n"
 
 TOPS = 4.0
 """[-] Of the warn limit, the clearance at the top of a curve."""
@@ -41,7 +44,7 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
     return Template(_own("page.html")).substitute(
         title=escape(f"{place.name}: {_counted(answer)}"),
-        style=style + _own("page.css"),
+        style=style + _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
         name=escape(place.name),
         verdict=escape(_counted(answer)),
         worst=answer.status.split()[0],
@@ -75,7 +78,7 @@ def _basis(answer: BatchAnswer) -> str:
 
 def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     table = answer.cases
-    names = table["case"].to_pylist()
+    names, statuses = table["case"].to_pylist(), _statuses(answer)
     bodies, rules = _Texts(), _Texts()
     keys = table["key"].to_pylist()
     written = {path.parent.name for path in place.glob(f"{FOLDER}/*/report.html")}
@@ -83,9 +86,9 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     folders = [folder_of(name, key) if key else "" for name, key in pages]
     return {
         "store": place.name,
-        "statuses": STATUSES,
+        "statuses": statuses,
         "names": names,
-        "status": [STATUSES.index(status) for status in table["status"].to_pylist()],
+        "status": [statuses.index(status) for status in table["status"].to_pylist()],
         "clearance": _millimetres(table["clearance"].to_pylist()),
         "bound": _millimetres(table["lower_bound"].to_pylist()),
         "time": _rounded(table["time"].to_pylist(), 3),
@@ -102,6 +105,11 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "n_curve": CURVE,
         "pages": [folder if folder.rpartition("/")[2] in written else "" for folder in folders],
     }
+
+
+def _statuses(answer: BatchAnswer) -> list[str]:
+    """All statuses, the better before the worse; "not proven" only where tolerances made a case so."""
+    return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
 
 
 def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:

@@ -15,9 +15,9 @@ from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.store import Store
+from clearance.load.bag_files import files_of
 from clearance.load.input_files import InputFiles
 from clearance.load.lookups import leads_to
-from clearance.load.rosbag_file import files_of
 from clearance.world.case import LOOKUP
 
 Files = tuple[tuple[str, str], ...]

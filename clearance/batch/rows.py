@@ -15,6 +15,7 @@ import pyarrow as pa
 from clearance.findings.finding import Finding
 from clearance.findings.judgement import judgement_of
 from clearance.findings.of_record import why_incomplete
+from clearance.report.tolerances import least_expected
 from clearance.run import Run
 from clearance.simulate.record import Record
 from clearance.world.case import Source
@@ -69,6 +70,8 @@ VERDICT = pa.schema(
         ("need", pa.string()),
         ("clearance", pa.float64()),
         ("lower_bound", pa.float64()),
+        ("proven", pa.float64()),
+        ("expected", pa.float64()),
         ("time", pa.float64()),
         ("step", pa.int64()),
         ("body_a", pa.string()),
@@ -111,6 +114,7 @@ def row_of(run: Run) -> dict[str, Any]:
         "need": record.need,
         "clearance": worst.clearance,
         "lower_bound": None if certificate is None else float(certificate.lower_bound.min()),
+        **_with_tolerances(record),
         "time": worst.time,
         "step": worst.step,
         "body_a": worst.link,
@@ -130,6 +134,16 @@ def row_of(run: Run) -> dict[str, Any]:
         "n_findings": len(findings),
         "incomplete": _incomplete(record, len(findings)),
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
+    }
+
+
+def _with_tolerances(record: Record) -> dict[str, float | None]:
+    """The least that tolerances leave, proven and expected [m], of all rules; None without any."""
+    found = record.budget or ()
+    expected = [one for one in map(least_expected, found) if one is not None]
+    return {
+        "proven": min((one.least for one in found), default=None),
+        "expected": min(expected, default=None),
     }
 
 

@@ -14,7 +14,9 @@ from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
-from clearance.cli.options import Millimetres, OutputPath, motion_option
+from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.recorded import recorded_options, require_recorded, with_recording
+from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -58,6 +60,7 @@ if TYPE_CHECKING:
     type=click.Choice(KINDS),
     help=f"Let no suspect input of this kind decide the verdict ({', '.join(KINDS)}).",
 )
+@tolerance_options
 @click.option(
     "--contact",
     type=click.Choice(["none", "events", "every"]),
@@ -67,6 +70,11 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
+)
+@click.option(
+    "--body-gaps",
+    is_flag=True,
+    help="Tell which gaps people may be caught in, by the widths of ISO 13854; no verdict depends on it.",
 )
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
 @click.option(
@@ -82,7 +90,7 @@ if TYPE_CHECKING:
     type=Millimetres(),
     help="With --method paper: its rule 1 leaves out polygons this far apart or farther.  [default: none]",
 )
-@motion_option
+@recorded_options
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
 @more_files_options
@@ -98,12 +106,18 @@ def check(
     certify_mm: float | None,
     need: str,
     accept: tuple[str, ...],
+    tolerance: Path | None,
+    unproven_ok: bool,
     contact: str,
     jobs: int | None,
+    body_gaps: bool,
     cross_check: bool,
     method: str,
     paper_tolerance: float | None,
     motion: str,
+    recorded: Path | None,
+    recorded_offset: float | None,
+    recorded_robot: str | None,
     as_json: bool,
     junit: Path | None,
     png: Path | None,
@@ -120,14 +134,15 @@ def check(
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
     written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
-    (or near), 1 a limit is violated or a waiver is stale, 2 bad or suspect input, 3 the
-    cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
-    compare` has an exit code of its own.
+    (or near), 1 a limit is violated or, with tolerances, not proven, or a waiver is stale, 2 bad
+    or suspect input, 3 the cross-check disagrees; the greatest that holds. A baseline does not
+    change it: `clearance compare` has an exit code of its own.
     """
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
+    require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
@@ -137,6 +152,10 @@ def check(
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
+    case = with_tolerances(case, tolerance)
+    if recorded is not None:
+        case = with_recording(case, recorded, recorded_offset, recorded_robot)
+    case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
     question = Question(
@@ -150,6 +169,7 @@ def check(
         contact=contact,
         paper_tolerance=paper_tolerance,
         today=today,
+        body_gaps=body_gaps,
     )
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
     return ExitCode(run.verdict.exit_code)
@@ -261,7 +281,8 @@ def _compile_ahead(quiet: bool) -> None:
 
 def _print(run: Run, out: Path | None, terminal: Terminal) -> None:
     if terminal.as_json:
-        from clearance.report import json_text, summary_of
+        from clearance.report.output import json_text
+        from clearance.report.summary import summary_of
 
         click.echo(json_text(summary_of(run.record)), nl=False)
     elif not terminal.quiet:

@@ -110,7 +110,7 @@ class Outputs:
         if self.out is not None:
             run.save(self.out, comparison)
         if self.junit is not None:
-            from clearance.report import write_junit
+            from clearance.report.junit import write_junit
 
             write_junit(run.record, self.junit)
 

@@ -80,12 +80,12 @@ class MoreFiles:
         Raises:
             BadInput, BadTime: the motion cannot be written so.
         """
+        if self.trajectory is None:
+            return None
         from clearance.report.motion_file import motion_content, require_motion_file
         from clearance.world.motion import kinematic_motion
         from clearance.world.timeline import timeline_of
 
-        if self.trajectory is None:
-            return None
         require_motion_file(case.robots, self.trajectory.name)
         if motion != "kinematic":
             return None

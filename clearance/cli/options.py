@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -49,13 +51,15 @@ class OutputPath(click.Path):
         return path
 
 
-motion_option = click.option(
-    "--motion",
-    type=click.Choice(["kinematic", "simulated"]),
-    default="kinematic",
-    show_default=True,
-    help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
-)
+def motion_option(*more: str, told: str = "") -> Callable[..., Any]:
+    """The option that says which motion is meant; `more` kinds of it, and what they are."""
+    return click.option(
+        "--motion",
+        type=click.Choice(["kinematic", "simulated", *more]),
+        default="kinematic",
+        show_default=True,
+        help=f"kinematic: the trajectory itself. simulated: what a controlled robot makes of it.{told}",
+    )
 
 
 class XacroArguments(click.ParamType):

@@ -22,7 +22,7 @@ from clearance.cli.options import Millimetres, OutputPath, motion_option
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
 @click.option("--tolerance", type=Millimetres(), help="[mm] How far it may exceed.  [default: 0.5]")
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
-@motion_option
+@motion_option()
 @click.option(
     "--out",
     required=True,

@@ -75,7 +75,7 @@ def audit(
     """
     from clearance.cli.progress import shown_progress
     from clearance.load.srdf import load_srdf
-    from clearance.report import json_text
+    from clearance.report.output import json_text
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
     from clearance.simulate.srdf_audit import audit as audited
 

@@ -17,10 +17,13 @@ from rich.text import Text
 
 from clearance.cli.progress import shown_progress
 from clearance.errors import shown
-from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.actors import carried_of, paddings_of
-from clearance.report.contact import HEADS
+from clearance.report.body_gaps import gap_lines
+from clearance.report.contact import HEADS, contact_of
 from clearance.report.intervals import Interval, extent, intervals
+from clearance.report.recordings import recording_lines
+from clearance.report.summary import certified_of, notes_of, tessellation_bound
+from clearance.report.tolerances import source_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
@@ -68,6 +71,13 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
     lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
     lines += _paddings(record)
+    lines += [_row("recorded", line) for line in recording_lines(record)]
+    if record.budget is not None:
+        lines.append(partial(_tolerances, record))
+    if record.body_gaps:
+        lines += [
+            _row("body gaps" if i == 0 else "", told) for i, told in enumerate(gap_lines(record))
+        ]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
@@ -105,6 +115,7 @@ def _beside(verdict: Verdict) -> list[Text]:
     lines += [_row("waived", text) for text in verdict.waived]
     lines += [_row("waivers", text) for text in verdict.stale]
     lines += [_row("violated", text) for text in verdict.broken]
+    lines += [_row("tolerances", text) for text in verdict.with_tolerances]
     lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
     lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]
     return lines + [_row("warning", text) for text in verdict.warnings]
@@ -161,6 +172,13 @@ def _carried(record: Record) -> list[Text]:
         _row("carried", f"{row['part']} by {row['by']}, {span_text(row['from'], row['until'])}")
         for row in carried_of(record)[:_MOST_CARRIES]
     ]
+
+
+def _tolerances(record: Record) -> list[Text]:
+    """Where the tolerances leave least, what takes most of it, and where their numbers come from."""
+    assert record.case.tolerance is not None
+    told = [*source_lines(record), *record.case.tolerance.sources]
+    return [_row("tolerances" if i == 0 else "", line) for i, line in enumerate(told)]
 
 
 def _certified(record: Record) -> list[Text]:

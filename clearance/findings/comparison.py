@@ -18,10 +18,10 @@ from clearance.findings.doubts_compared import (
     known_less,
     slack_text,
 )
-from clearance.findings.finding import UNPROVEN, Finding
+from clearance.findings.finding import ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measured_as import MeasuredAs
-from clearance.simulate.status import STATUSES, Status
+from clearance.simulate.status import Status
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
@@ -163,7 +163,7 @@ class _Comparing:
             kept[0] != kept[1]
         ):  # what is clear is listed only where it is the nearest pair of its rule
             return Change.NEW if kept[0] else Change.GONE
-        ranks = [STATUSES.index(Status(finding.status)) for finding in (before, now)]
+        ranks = [ORDER.index(finding.status) for finding in (before, now)]
         if ranks[0] != ranks[1]:
             return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER
         old, new = _level(before), _level(now)
@@ -184,6 +184,9 @@ class _Comparing:
         )
         if old.get(finding.rule) != new.get(finding.rule):
             return f"rule {finding.rule!r} is another"
+        tolerances = {self.before.measured.tolerances, self.now.measured.tolerances}
+        if finding.kind == TOLERANCES and len(tolerances) > 1:
+            return "its tolerances are others"
         return ""
 
     def _robot_of(self, body: str) -> str:
@@ -206,7 +209,7 @@ class _Comparing:
             return f"{other.not_listed} findings are not listed"
         if self.before.measured.rules != self.now.measured.rules:
             return "other rules may have judged it"
-        has_pair = finding.body_b and finding.kind != UNPROVEN
+        has_pair = finding.body_b and finding.kind not in (UNPROVEN, TOLERANCES)
         if has_pair and not other.measured.has_pair(finding.body_a, finding.body_b):
             return (
                 "the pair was not measured" if other is self.before else "the pair is not measured"
@@ -216,7 +219,7 @@ class _Comparing:
 
 def _level(finding: Finding) -> float | None:
     """[m] What says how it stands: the clearance, or what is proven where nothing nearer is seen."""
-    return finding.proven if finding.kind == UNPROVEN else finding.clearance
+    return finding.proven if finding.kind in (UNPROVEN, TOLERANCES) else finding.clearance
 
 
 def _no_number(before: Finding, now: Finding) -> str:
@@ -235,6 +238,6 @@ def _by_key(found: FindingList) -> dict[_Key, Finding]:
 def _key(finding: Finding) -> _Key:
     """What a finding's name is of, without the case."""
     bodies = tuple(sorted((finding.body_a, finding.body_b)))
-    if finding.kind == "profile":
+    if finding.kind in (PROFILE, TOLERANCES):
         bodies = ()
     return finding.kind, finding.rule, bodies, finding.occurrence

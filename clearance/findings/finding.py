@@ -9,7 +9,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 
-from clearance.simulate.status import STATUSES, Status
+from clearance.simulate.status import Status
 
 CLEARANCE = "clearance"
 """Two bodies and the limits of a rule."""
@@ -17,13 +17,22 @@ CLEARANCE = "clearance"
 UNPROVEN = "unproven"
 """A limit of a rule that nothing seen is below, and that is not proven of the motion between the steps."""
 
+TOLERANCES = "tolerances"
+"""A limit of a rule that is kept as measured, and that is not proven with the tolerances of the case."""
+
 PROFILE = "profile"
 """An outline that what the robot sweeps must keep to."""
 
 JOINT_LIMITS = "joint limits"
 """The joints of a robot and their limits, where the case fails by them."""
 
-KINDS = (CLEARANCE, UNPROVEN, PROFILE, JOINT_LIMITS)
+KINDS = (CLEARANCE, UNPROVEN, TOLERANCES, PROFILE, JOINT_LIMITS)
+
+NOT_PROVEN = "not proven"
+"""The status of a limit that is kept as measured, and that is not proven with the tolerances."""
+
+ORDER = ("clear", "near", NOT_PROVEN, "violated", "contact")
+"""All that a finding's status can be, the worst last."""
 
 Point = tuple[float, float, float]
 
@@ -55,10 +64,10 @@ class Finding:
         body_a, body_b: names; of what no two bodies do they are empty, or the second is.
         occurrence: 0 for the first stretch along the motion in which the pair breaks the rule, then 1 and so on;
             a pair that keeps it has one finding, 0.
-        status: "clear", "near", "violated" or "contact".
+        status: one of `ORDER`; "not proven" of kind `TOLERANCES` alone.
         clearance: [m] the least, less padding; of a profile its gap; None where nothing was measured.
         proven: [m] a lower bound for the motion over the stretch, that of all pairs of the rule; None at the
-            samples only.
+            samples only. Of kind `TOLERANCES` the least that is proven with all errors.
         fail, warn: [m] the limits.
         time: [s] of the least. time_b: [s] when the second body is there, where its clock is another.
         step: of that moment, or before it if it is `between` two.
@@ -66,7 +75,7 @@ class Finding:
             first_step, last_step: inside it.
         point_a, point_b: [m] witness points in the world. joints: [rad] or [m] by name, at that moment.
         text: what else is to say, one line.
-        waived: by what, if it is.
+        waived: by what, if it is. accepted: not proven with the tolerances, which the case lets pass.
     """
 
     id: str
@@ -93,22 +102,24 @@ class Finding:
     joints: dict[str, float] | None = None
     text: str = ""
     waived: WaivedBy | None = None
+    accepted: bool = False
 
     @property
     def broken(self) -> bool:
-        """True if the rule is broken, waived or not."""
-        return self.status in (Status.VIOLATED, Status.CONTACT)
+        """True if the rule is broken, or not proven with the tolerances; waived, accepted or not."""
+        return self.status in (NOT_PROVEN, Status.VIOLATED, Status.CONTACT)
 
     @property
     def fails(self) -> bool:
-        """True if the rule is broken and nothing waives that."""
-        return self.broken and self.waived is None
+        """True if the rule is broken and nothing waives or accepts that."""
+        return self.broken and self.waived is None and not self.accepted
 
     @property
     def standing(self) -> tuple[int, float, str]:
         """What findings are ordered by, the worst first: status, how far it is above the fail limit [m], id."""
-        margin = 0.0 if self.clearance is None else self.clearance - self.fail
-        return -STATUSES.index(Status(self.status)), margin, self.id
+        level = self.proven if self.kind == TOLERANCES else self.clearance
+        margin = 0.0 if level is None else level - self.fail
+        return -ORDER.index(self.status), margin, self.id
 
 
 @dataclass(frozen=True)

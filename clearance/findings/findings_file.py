@@ -6,9 +6,9 @@ Not for: what a finding is (`finding`), nor comparing (`comparison`). The keys a
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from clearance.errors import BadInput, BadSyntax
 from clearance.findings.doubts import Doubt, doubts_of
@@ -68,8 +68,15 @@ def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None)
 
 
 def findings_text(found: FindingList) -> str:
-    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN."""
-    return json.dumps(asdict(found), indent=1, sort_keys=True, allow_nan=False) + "\n"
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances nothing where
+    there are none."""
+    told = asdict(found)
+    if not found.measured.tolerances:
+        del told["measured"]["tolerances"]
+    for finding in told["findings"]:
+        if not finding["accepted"]:
+            del finding["accepted"]
+    return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def read_findings(path: str | Path) -> FindingList:
@@ -85,30 +92,36 @@ def read_findings(path: str | Path) -> FindingList:
     data = read_bytes(path, str(path))
     if len(data) > MOST_BYTES:
         raise BadInput(f"{len(data)} bytes", where=str(path), valid=f"at most {MOST_BYTES}")
-    return _checked(_parsed(data, str(path)), str(path))
+    _require_format(data, str(path))
+    return _checked(data, str(path))
 
 
-def _parsed(data: bytes, shown: str) -> dict[str, Any]:
+def _require_format(data: bytes, shown: str) -> None:
     try:
-        raw = json.loads(data, parse_constant=_refused)
+        raw = json.loads(data, parse_constant=_refused, parse_float=_finite)
     except (ValueError, RecursionError) as error:
         raise BadSyntax(f"not JSON: {error}", where=shown, valid="findings.json of a run") from None
     number = raw.get("format") if isinstance(raw, dict) else None
     if number != FORMAT:
         valid = f"findings.json of format {FORMAT}, which the same check writes anew"
         raise BadInput(f"format {number!r:.40}", where=shown, valid=valid)
-    return raw
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(float(text)):
+        raise ValueError(f"{text:.40} is beyond doubles")
+    return float(text)
 
 
 def _refused(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-def _checked(raw: dict[str, Any], shown: str) -> FindingList:
+def _checked(data: bytes, shown: str) -> FindingList:
     from pydantic import TypeAdapter, ValidationError
 
     try:
-        found = TypeAdapter(FindingList).validate_python(raw)
+        found = TypeAdapter(FindingList).validate_json(data, strict=True)  # text is no number
     except ValidationError as error:
         first = error.errors()[0]
         raise BadInput(

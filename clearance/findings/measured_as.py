@@ -16,6 +16,7 @@ from weakref import WeakKeyDictionary
 
 from clearance.simulate.fingerprint import robot_digest
 from clearance.simulate.record import Record
+from clearance.world.budget import Budget, RobotTolerance
 from clearance.world.case import Limits, PlacedRobot
 from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT
@@ -62,6 +63,7 @@ class MeasuredAs:
         clock_slack: [s] how far the actors' clocks may be apart; "not tied" where nothing bounds that.
         pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
             all that a link could meet.
+        tolerances: sha256 of the errors that were counted with; empty without any.
     """
 
     need: str
@@ -74,6 +76,7 @@ class MeasuredAs:
     rules: tuple[MeasuredRule, ...]
     pairs: tuple[MeasuredPairs, ...]
     unmeasured: tuple[MeasuredPairs, ...]
+    tolerances: str = ""
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -103,7 +106,26 @@ def measured_as(record: Record) -> MeasuredAs:
         rules=tuple(_rules(record.case.limits)),
         pairs=tuple(_blocks(_pair_names(record))),
         unmeasured=tuple(_blocks(left_out)),
+        tolerances=_tolerances(record.case.tolerance),
     )
+
+
+def _tolerances(budget: Budget | None) -> str:
+    """Of what decides what is proven and expected: not where the numbers come from, nor what is let pass."""
+    if budget is None:
+        return ""
+    told = (
+        sorted((name, _sorted(one)) for name, one in budget.robots.items()),
+        sorted((name, repr(one)) for name, one in budget.obstacles.items()),
+        budget.coverage,
+        budget.is_normal,
+    )
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+def _sorted(robot: RobotTolerance) -> str:
+    errors = sorted(robot.joints.items()), sorted(robot.surfaces.items())
+    return repr((*errors, robot.base, robot.timing))
 
 
 def _robot(record: Record, placed: PlacedRobot) -> MeasuredRobot:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
 from clearance.findings.judgement import judgement_of
 from clearance.findings.occurrences import release_level
+from clearance.findings.of_budget import of_budget
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.rule_pairs import MOST_NEAR_STEPS
 from clearance.simulate.status import Status
@@ -19,7 +20,8 @@ def findings_of(record: Record) -> tuple[Finding, ...]:
 
     What its waivers cover is `waived`, and is there all the same.
     """
-    found = [*judgement_of(record).findings]
+    judgement = judgement_of(record)
+    found = [*judgement.findings, *of_budget(record, judgement.judging)]
     found += [_of_profile(record, answer) for answer in record.profiles]
     found += _of_joints(record)
     return tuple(sorted(found, key=lambda finding: finding.standing))

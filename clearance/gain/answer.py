@@ -26,11 +26,14 @@ KINDS = ("waypoints", "obstacle", "base", "timing")
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
 
-NO_WORSE = 1.02
+NO_WORSE = 1.05
 """[-] A change that is within this of what no change can beat is not sought elsewhere."""
 
+INSIDE = 0.8
+"""[-] Smaller shifts than the first are sought from so far on the other sides."""
+
 FARTHER = 0.05
-"""[m] How far the other sides are looked at from, at least."""
+"""[m] From how far, where the first search found none."""
 
 MOST_DELAY = 60.0
 """[s] That is looked at, if nothing is given."""
@@ -142,7 +145,7 @@ def _least_of_several(search: Search, shift: Shift, first: State, at_least: floa
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
-    far = max(shift.size(best.state.x), FARTHER)
+    far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
     for side in (*np.eye(3), *-np.eye(3)):
         start = search.state_at(far * side)
         if start.record.nearest.touches:

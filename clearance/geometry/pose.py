@@ -27,7 +27,7 @@ def pose_from_quaternion(xyz: Sequence[float], quat_xyzw: Sequence[float]) -> np
         a few roundings, R^T R = I to about 1e-15.
     """
     x, y, z, w = _numbers(quat_xyzw, 4, "quat_xyzw")
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore"):  # an infinite length is refused
         length = float(np.linalg.norm((x, y, z, w)))
     if not abs(length - 1.0) <= ROTATION:
         raise BadPose(

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from clearance.errors import ClearanceError
-from clearance.load.collada_file import UpAxis
 from clearance.load.mesh import triangles_from_bytes
+from clearance.load.placing import UpAxis
 from clearance.load.urdf_elements import pose_of
 from clearance.load.urdf_shapes import ShapeReader
 from clearance.world.body import Body

@@ -29,7 +29,7 @@ from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_request import SceneContent
 from clearance.load.scene_rows import with_scene_rows
-from clearance.load.waiver_file import waivers_of
+from clearance.load.tolerance_block import budget_of
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -157,6 +157,10 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
         for i, carry in enumerate(case.carries):
             with at(f"carry[{i}].touch"):
                 require_patterns(carry.touch, names)
+        if given.tolerance is not None:
+            with at("tolerance"):
+                budget = budget_of(given.tolerance, case, path.parent, files)
+            case = replace(case, tolerance=budget)
     of_scene = (*scene_at.content.notes, *row_notes, *scene_notes)
     case = replace(case, profiles=profiles)
     return CellFile(
@@ -250,6 +254,10 @@ def _placed_joints(placed: PlacedRobot) -> list[str]:
 
 
 def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:
+    if not given.waivers:
+        return
+    from clearance.load.waiver_file import waivers_of
+
     for i, name in enumerate(given.waivers):
         with at(f"waivers[{i}]"):
             yield from waivers_of(files, path.parent / name)

@@ -9,7 +9,7 @@ that the two take differently is noted. Source: Khronos, COLLADA 1.4.1 specifica
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from clearance.errors import BadDimension, BadSyntax
 from clearance.load.collada_geometry import local_name, words_of
 from clearance.load.collada_scene import placed_pieces
 from clearance.load.number_text import floats
-from clearance.load.placing import Z_FROM_Y_UP, joined
+from clearance.load.placing import Z_FROM_Y_UP, UpAxis, joined
 from clearance.load.triangles import Triangles
 
 if TYPE_CHECKING:
@@ -29,9 +29,6 @@ _IRRELEVANT = (
     "library_physics_models", "library_physics_materials", "instance_physics_scene",
     "bind_material", "instance_camera", "instance_light", "extra",
 )  # fmt: skip
-
-UpAxis = Literal["file", "ros"]
-"""What becomes of `<up_axis>`: "file" turns as it says, "ros" ignores it as RViz and MoveIt do."""
 
 _Z_FROM = {
     "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),

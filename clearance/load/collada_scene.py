@@ -123,7 +123,7 @@ def _scaling(values: np.ndarray) -> np.ndarray:
 def _rotation(values: np.ndarray) -> np.ndarray:
     """(4, 4) rotation; multiples of 90 degrees are exact. Source: Rodrigues' formula."""
     axis, degrees = values[:3], values[3]
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore"):  # an infinite length is refused
         length = np.linalg.norm(axis)
     if not (length and np.isfinite(length)):
         raise BadDimension(f"the axis is {axis.tolist()}", valid="a direction")

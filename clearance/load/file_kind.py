@@ -10,10 +10,10 @@ from enum import StrEnum
 from pathlib import Path
 
 from clearance.errors import BadInput, BadShape
+from clearance.load.bag_files import is_bag
 from clearance.load.foreign_files import known_kind, refuse_foreign
 from clearance.load.input_files import InputFiles
 from clearance.load.pose_table_file import COLUMNS
-from clearance.load.rosbag_file import is_bag
 
 HEAD = 65536
 """[bytes] Looked at."""

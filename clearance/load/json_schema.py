@@ -11,7 +11,9 @@ from typing import Any
 from clearance.load import schema
 from clearance.load.joints_schema import STATE
 from clearance.load.obstacle_schema import SHAPES
+from clearance.load.preset_files import preset_names
 from clearance.load.strict_model import StrictModel
+from clearance.load.tolerance_schema import CONTROLLERS, ERRORS
 from clearance.world.notice import KINDS
 
 _NAMES_OF_STATES = {
@@ -46,9 +48,12 @@ def case_schema() -> dict[str, Any]:
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
     )
+    parts["Tracking"] = {"anyOf": [{"const": CONTROLLERS}, parts["Tracking"]]}
     parts["Allowed"] = {"anyOf": [parts["Allowed"]["properties"]["between"], parts["Allowed"]]}
     parts["Clock"] = {"anyOf": [{"enum": list(schema.CLOCKS)}, parts["Clock"]]}
     keys["clock"]["default"] = "common"
+    parts["Tolerance"]["anyOf"] = [{"required": [key]} for key in ERRORS]
+    parts["Tolerance"]["properties"]["presets"]["items"]["enum"] = list(preset_names())
     _without_titles(made)
     return {"$schema": _DIALECT, "title": "clearance case file", **made}
 
@@ -74,7 +79,7 @@ def _edit_obstacle(part: dict[str, Any]) -> None:
 def _without_nothing(made: dict[str, Any], parts: dict[str, Any]) -> None:
     """Takes out that a key may have nothing behind it where that is refused."""
     named = {**parts, schema.Case.__name__: made}
-    for model in [model for model in _models(StrictModel) if model.__name__ in named]:
+    for model in dict.fromkeys(one for one in _models(StrictModel) if one.__name__ in named):
         for key in model.FILLED:
             given = named[model.__name__]["properties"][key]
             kinds = [kind for kind in given.pop("anyOf") if kind != {"type": "null"}]

@@ -9,11 +9,10 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
 from clearance.load import schema
-from clearance.load.controllers_file import Controller, parse_controllers
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joint_limits_file import NONE, FileLimits, parse_joint_limits
 from clearance.world.joint_positions import turns
@@ -21,6 +20,9 @@ from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from clearance.load.controllers_file import Controller
 
 _Value = TypeVar("_Value")
 
@@ -55,11 +57,13 @@ def limited(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFi
         motion = {name: one.motion for name, one in known.items() if one.motion != NONE}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
+        from clearance.load.controllers_file import parse_controllers
+
         path = resolved(given.controllers, folder)
         shown = files.shown(path)
         with at(f"{entry.field}.controllers"), at(shown):
             controllers = parse_controllers(files.read(path))
-            tolerances = _of_robot(_widest(controllers), names)
+            tolerances = _of_robot(widest(controllers), names)
         notes += [
             f"{shown}: {note}" for note in _notes_on_tolerances(controllers, tolerances, robot)
         ]
@@ -146,7 +150,7 @@ def note_on_accelerations(
         yield "accelerations are not held against their limits: the trajectory gives no velocities"
 
 
-def _widest(controllers: list[Controller]) -> dict[str, PathTolerance]:
+def widest(controllers: list[Controller]) -> dict[str, PathTolerance]:
     """By joint; of several controllers of one, which of them runs is not known."""
     found: dict[str, PathTolerance] = {}
     for controller in controllers:

@@ -6,7 +6,7 @@ each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -15,34 +15,11 @@ import numpy as np
 
 from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.load.collada_file import UpAxis, read_collada
-from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
-from clearance.load.obj_file import read_obj
-from clearance.load.octree_file import read_octree
-from clearance.load.off_file import read_off
-from clearance.load.placing import Z_FROM_Y_UP
-from clearance.load.ply_file import read_ply
-from clearance.load.step_file import read_step
-from clearance.load.stl_file import read_stl
+from clearance.load.mesh_formats import READERS
+from clearance.load.placing import Z_FROM_Y_UP, UpAxis
 from clearance.load.triangles import Triangles, checked, n_without_area, scaled, without_copies
 from clearance.tolerance import TESSELLATION
-
-_READERS: dict[str, Callable[[bytes, UpAxis, float], Triangles]] = {
-    ".stl": lambda data, *_: read_stl(data),
-    ".obj": lambda data, *_: read_obj(data),
-    ".dae": lambda data, up_axis, _: read_collada(data, up_axis),
-    ".ply": lambda data, *_: read_ply(data),
-    ".off": lambda data, *_: read_off(data),
-    ".glb": lambda data, *_: read_glb(data),
-    ".step": lambda data, _, tolerance: read_step(data, tolerance),
-    ".stp": lambda data, _, tolerance: read_step(data, tolerance),
-    ".bt": lambda data, *_: read_octree(data),
-    ".ot": lambda data, *_: read_octree(data),
-}
-
-CAD = (".step", ".stp")
-"""Formats of surfaces that become facets within a tolerance."""
 
 _SCANS = (".pcd", ".xyz", ".asc", ".csv", ".txt")
 """Suffixes of files that are scans, if anything (`cloud`)."""
@@ -107,10 +84,10 @@ def triangles_from_bytes(
 ) -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
-    if suffix not in _READERS:
+    if suffix not in READERS:
         hint = "; a scan is read as points: {file: …, radius: …}" if suffix in _SCANS else ""
-        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS) + hint)
-    return checked(_READERS[suffix](data, up_axis, tolerance))
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(READERS) + hint)
+    return checked(READERS[suffix](data, up_axis, tolerance))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:

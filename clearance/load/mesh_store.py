@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from clearance.geometry.kept_shapes import kept, name_of
 from clearance.load import mesh
-from clearance.load.cloud import LoadedCloud, cloud_from_bytes
-from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import InputFiles
-from clearance.load.mesh import CAD, LoadedMesh, mesh_from_bytes
+from clearance.load.mesh import LoadedMesh, mesh_from_bytes
+from clearance.load.mesh_formats import CAD
+from clearance.load.placing import UpAxis
 from clearance.tolerance import TESSELLATION
+
+if TYPE_CHECKING:
+    from clearance.load.cloud import LoadedCloud
 
 Scale = tuple[float, float, float]
 
@@ -66,6 +70,8 @@ class MeshStore:
         """
         key = (os.path.abspath(path), radius, scale, in_millimetres)
         if key not in self._clouds:
+            from clearance.load.cloud import cloud_from_bytes
+
             data = self.files.read(path)
             self._clouds[key] = cloud_from_bytes(
                 data, self.files.shown(path), radius, scale, in_millimetres=in_millimetres

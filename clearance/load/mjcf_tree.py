@@ -66,7 +66,8 @@ def _chain(joint: MjcfJoint, parent: str, child: str, before: np.ndarray) -> Ite
         here = np.eye(4) if joint.kind == "free" else before @ _moved(joint.place)
         yield from chained(_COMPOUND[joint.kind], joint.name, parent, child, here)
         return
-    axis = joint.axis / np.linalg.norm(joint.axis)
+    with np.errstate(all="ignore"):  # what overflows is refused
+        axis = joint.axis / np.linalg.norm(joint.axis)
     if not np.isfinite(axis).all():
         raise BadInput(f"its axis is {joint.axis.tolist()}", valid="a direction")
     lower, upper = joint.limits or (-np.inf, np.inf)

@@ -12,12 +12,11 @@ from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
-from clearance.load.mesh import CAD
+from clearance.load.mesh_formats import CAD
 from clearance.load.pose_schema import Pose, PoseFile
 from clearance.load.shape_schema import Triple, with_shapes
-from clearance.load.step_file import COARSEST, FINEST
 from clearance.load.strict_model import Level, Name, StrictModel
-from clearance.tolerance import TESSELLATION
+from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION, TESSELLATION
 
 
 def _is_double(number: int | float) -> bool:
@@ -60,7 +59,9 @@ class Mesh(ScaledFile):
     FILLED = frozenset({"tolerance"})
 
     collada_up_axis: Literal["ros", "file"] = "file"
-    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
+    tolerance: Annotated[float | None, Field(ge=FINEST_TESSELLATION, le=COARSEST_TESSELLATION)] = (
+        None
+    )
 
     @model_validator(mode="after")
     def _tolerance_of_cad(self) -> Mesh:

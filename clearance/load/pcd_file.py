@@ -186,13 +186,14 @@ def _of_rows(
         return np.empty((0, 3))
     rows = np.frombuffer(body, np.uint8, n_points * n_bytes).reshape(n_points, n_bytes)
     columns = [rows[:, field.offset : field.offset + field.n_bytes] for field in chosen]
-    return np.stack(
-        [
-            np.ascontiguousarray(column).view(field.kind)[:, 0].astype(np.float64)
-            for column, field in zip(columns, chosen, strict=True)
-        ],
-        axis=1,
-    )
+    with np.errstate(invalid="ignore"):  # of a signalling NaN, which becomes one that is quiet
+        return np.stack(
+            [
+                np.ascontiguousarray(column).view(field.kind)[:, 0].astype(np.float64)
+                for column, field in zip(columns, chosen, strict=True)
+            ],
+            axis=1,
+        )
 
 
 def _of_columns(

@@ -204,12 +204,7 @@ def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses)
     if not items(tree, "data"):
         return
     with at("octomap"):
-        origin = (
-            poses.read(given["origin"], "position", "orientation")
-            if given.get("origin")
-            else np.eye(4)
-        )
-        placed = frames.of(given) @ origin
+        placed = frames.of(given) @ poses.read(message(given, "origin"))
         mapped = meshes.octomap(tree)
         if mapped is not None:
             yield {"name": OCTOMAP, **mapped, "pose": pose_row(placed)}

@@ -9,15 +9,32 @@ from collections.abc import Callable
 from pathlib import PurePath
 
 from clearance.errors import at
-from clearance.load.pose_messages import read_json_poses, read_yaml_poses
-from clearance.load.pose_table_file import read_csv_poses
 from clearance.load.pose_table_request import PoseRequest, ReadPoses, ReadSamples
 
+
+def _csv(request: PoseRequest) -> ReadSamples:
+    from clearance.load.pose_table_file import read_csv_poses
+
+    return read_csv_poses(request)
+
+
+def _json(request: PoseRequest) -> ReadSamples:
+    from clearance.load.pose_messages import read_json_poses
+
+    return read_json_poses(request)
+
+
+def _yaml(request: PoseRequest) -> ReadSamples:
+    from clearance.load.pose_messages import read_yaml_poses
+
+    return read_yaml_poses(request)
+
+
 READERS: dict[str, Callable[[PoseRequest], ReadSamples]] = {
-    ".csv": read_csv_poses,
-    ".json": read_json_poses,
-    ".yaml": read_yaml_poses,
-    ".yml": read_yaml_poses,
+    ".csv": _csv,
+    ".json": _json,
+    ".yaml": _yaml,
+    ".yml": _yaml,
 }
 """By suffix in small letters; a file of another suffix is read as CSV."""
 
@@ -32,7 +49,7 @@ def read_samples(request: PoseRequest, shown: str) -> ReadSamples:
         BadInput: as the reader says, with the place in the file.
     """
     with at(shown):
-        return READERS.get(PurePath(shown).suffix.lower(), read_csv_poses)(request)
+        return READERS.get(PurePath(shown).suffix.lower(), _csv)(request)
 
 
 def read_poses(request: PoseRequest, shown: str) -> ReadPoses:

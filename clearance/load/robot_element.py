@@ -10,6 +10,9 @@ if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
 
+XACRO = ".xacro"
+"""Suffix of files that are xacro's."""
+
 ALLOW_XACRO = "xacro evaluates Python in it: `xacro: true` beside urdf, or --xacro, allows that"
 
 

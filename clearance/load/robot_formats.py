@@ -9,11 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 
-from clearance.load.collada_file import UpAxis
 from clearance.load.foreign_files import is_mjcf
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.mjcf_robot import read_mjcf
+from clearance.load.placing import UpAxis
 from clearance.load.robot_request import Geometry, RobotRequest, request_in_memory
 from clearance.load.urdf import read_urdf
 from clearance.world.robot import Robot
@@ -22,12 +21,19 @@ from clearance.world.robot import Robot
 def read_robot_xml(request: RobotRequest, meshes: MeshStore) -> Robot:
     """The robot in a file that is called XML: MJCF by its root element, else URDF."""
     data = meshes.files.read(request.path)
-    return (read_mjcf if is_mjcf(data) else read_urdf)(request, meshes)
+    return (read_robot_mjcf if is_mjcf(data) else read_urdf)(request, meshes)
+
+
+def read_robot_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in an MJCF file."""
+    from clearance.load.mjcf_robot import read_mjcf
+
+    return read_mjcf(request, meshes)
 
 
 READERS: dict[str, Callable[[RobotRequest, MeshStore], Robot]] = {
     ".urdf": read_urdf,
-    ".mjcf": read_mjcf,
+    ".mjcf": read_robot_mjcf,
     ".xml": read_robot_xml,
 }
 """By suffix in small letters; a file of another suffix is read as URDF."""

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Literal
 
 from clearance.errors import BadInput
-from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import resolved
+from clearance.load.placing import UpAxis
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]
 

@@ -16,11 +16,11 @@ from clearance.load.joints_schema import states_of
 from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
 from clearance.load.resting import resting_positions
+from clearance.load.robot_element import XACRO
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest, checked_args
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
-from clearance.load.xacro_file import SUFFIX, hold_expanded
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.robot import Robot
@@ -103,10 +103,12 @@ class RobotReader:
 
     def _expand_srdf(self, given: schema.Robot, field: str, request: RobotRequest) -> None:
         """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
-        if given.srdf is None or not given.xacro or not given.srdf.endswith(SUFFIX):
+        if given.srdf is None or not given.xacro or not given.srdf.endswith(XACRO):
             return
         path = resolved(given.srdf, self._folder)
         if not self._files.is_held(path):
+            from clearance.load.xacro_file import hold_expanded
+
             with at(f"{field}.srdf"):
                 self.notes += hold_expanded(path, request.package_dirs, self._files)
 

@@ -30,7 +30,6 @@ from clearance.world.notice import listed
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
 
-SUFFIXES = (".bag", ".mcap", ".db3")
 _PLANNED = (
     "trajectory_msgs/msg/JointTrajectory",
     "moveit_msgs/msg/RobotTrajectory",
@@ -48,18 +47,6 @@ the service `_action/send_goal`, where its introspection is on."""
 _STATES = "sensor_msgs/msg/JointState"
 MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
-
-
-def is_bag(path: Path) -> bool:
-    """Whether a path is that of a bag: a folder, or a file by its suffix."""
-    return path.suffix.lower() in SUFFIXES or path.is_dir()
-
-
-def files_of(path: Path) -> list[Path]:
-    """The files of a bag."""
-    if not path.is_dir():
-        return [path]
-    return sorted(one for one in path.iterdir() if one.is_file() and not one.name.startswith("."))
 
 
 def read_bag(path: Path, choice: Choice, turns: Mapping[str, bool]) -> ReadTrajectory:

@@ -1,4 +1,4 @@
-"""A scene file to a scene, by the reader of its suffix: a further format is a file and a row here.
+"""A scene file to a scene, by the reader of its suffix: a further format is a file, a function and a row here.
 
 Not for: making solids of it (`scene_file`).
 """
@@ -8,22 +8,38 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from clearance.load.mjcf_scene import read_mjcf_scene
-from clearance.load.moveit_scene_file import read_moveit_scene
 from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.scene_yaml import read_scene_yaml
 from clearance.load.schema_errors import validated
-from clearance.load.sdf_file import read_sdf
 from clearance.world.notice import Notice, Severity
+
+
+def _sdf(asked: SceneRequest) -> SceneContent:
+    from clearance.load.sdf_file import read_sdf
+
+    return read_sdf(asked)
+
+
+def _mjcf(asked: SceneRequest) -> SceneContent:
+    from clearance.load.mjcf_scene import read_mjcf_scene
+
+    return read_mjcf_scene(asked)
+
+
+def _moveit(asked: SceneRequest) -> SceneContent:
+    from clearance.load.moveit_scene_file import read_moveit_scene
+
+    return read_moveit_scene(asked)
+
 
 READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
     ".yaml": read_scene_yaml,
-    ".sdf": read_sdf,
-    ".world": read_sdf,
-    ".mjcf": read_mjcf_scene,
-    ".xml": read_mjcf_scene,
-    ".scene": read_moveit_scene,
+    ".sdf": _sdf,
+    ".world": _sdf,
+    ".mjcf": _mjcf,
+    ".xml": _mjcf,
+    ".scene": _moveit,
 }
 """By suffix in small letters; a file of another suffix is read as YAML."""
 

@@ -19,6 +19,7 @@ from clearance.load.limits_schema import Allowed, Limits
 from clearance.load.obstacle_schema import Scene
 from clearance.load.pose_schema import Base, TrajectoryFile, window_of
 from clearance.load.strict_model import Level, Name, StrictModel
+from clearance.load.tolerance_schema import Tolerance
 from clearance.world.notice import KINDS
 from clearance.world.timing import Window
 
@@ -149,7 +150,7 @@ class RobotEntry(NamedTuple):
 class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
-    FILLED = frozenset({"trajectory"})
+    FILLED = frozenset({"trajectory", "tolerance"})
     MOVES: ClassVar[bool] = True
     """Something must move."""
 
@@ -166,6 +167,7 @@ class Case(StrictModel):
     profiles: list[Profile] = []
     accept: list[Kind] = []
     waivers: list[Name] = []
+    tolerance: Tolerance | None = None
     report: Report | None = None
 
     @model_validator(mode="before")

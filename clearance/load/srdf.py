@@ -47,11 +47,12 @@ def load_srdf(path: str | Path, robot: Robot) -> CollisionMatrix:
 def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
     """The allowed collision matrix in an SRDF file, which is read through `files`.
 
-    Rows of a link that the robot does not have are left out with a note, as MoveIt does.
+    Rows of a link that the robot does not have are left out with a note, as MoveIt does; so are those that pair a
+    link with itself.
 
     Raises:
-        BadSyntax: no SRDF. MissingKey: a row without a link. BadInput: a link with itself, or the file of
-            another robot: none of its rows speaks of two links of this one.
+        BadSyntax: no SRDF. MissingKey: a row without a link. BadInput: the file of another robot: none of its rows
+            speaks of links of this one.
     """
     shown = files.shown(path)
     with at(shown):
@@ -65,11 +66,12 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
                 f"it is the SRDF of {root.get('name') or 'another robot'!r}",
                 valid=nearest_name(sorted(unknown)[0], robot.link_names),
             )
+    said = [row for row in known if not row.is_of_one]
     return CollisionMatrix(
-        tuple(row.links[0] for row in known if row.tag == "disable_default_collisions"),
-        tuple(_pair(row) for row in known if row.tag == "enable_collisions"),
-        tuple((*_pair(row), row.reason) for row in known if row.tag == "disable_collisions"),
-        tuple(_notes(shown, len(rows) - len(known), unknown)),
+        tuple(row.links[0] for row in said if row.tag == "disable_default_collisions"),
+        tuple(_pair(row) for row in said if row.tag == "enable_collisions"),
+        tuple((*_pair(row), row.reason) for row in said if row.tag == "disable_collisions"),
+        tuple(_notes(shown, len(rows) - len(known), unknown, len(known) - len(said))),
     )
 
 
@@ -94,6 +96,11 @@ class _Row:
         given = element.get("reason") or ""
         self.reason = given if given in REASONS else "User"
 
+    @property
+    def is_of_one(self) -> bool:
+        """True if it pairs a link with itself, which no two links are excused by."""
+        return len(self.links) == 2 and self.links[0] == self.links[1]
+
 
 def _rows(root: Element) -> Iterator[_Row]:
     counted: dict[str, int] = {}
@@ -103,10 +110,7 @@ def _rows(root: Element) -> Iterator[_Row]:
             continue
         i = counted[tag] = counted.get(tag, -1) + 1
         with at(f"{tag}[{i}]"):
-            row = _Row(element)
-            if len(row.links) == 2 and row.links[0] == row.links[1]:
-                raise BadInput(f"link {row.links[0]!r} with itself", valid="two links")
-        yield row
+            yield _Row(element)
 
 
 def _link(element: Element, attribute: str) -> str:
@@ -124,7 +128,14 @@ def _unknown_links(rows: list[_Row], robot: Robot) -> frozenset[str]:
     return frozenset(link for row in rows for link in row.links) - frozenset(robot.link_names)
 
 
-def _notes(shown: str, n_left_out: int, unknown: frozenset[str]) -> Iterator[str]:
+def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) -> Iterator[str]:
+    if n_of_one:
+        rows = (
+            "1 row pairs a link with itself"
+            if n_of_one == 1
+            else f"{n_of_one} rows pair links with themselves"
+        )
+        yield f"{shown}: {rows} and {'is' if n_of_one == 1 else 'are'} left out"
     if n_left_out:
         names = sorted(unknown)
         listed = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")

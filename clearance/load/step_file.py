@@ -21,16 +21,12 @@ from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.step_facets import Facets, facets_of
 from clearance.load.step_text import step_facts
 from clearance.load.triangles import Triangles
-from clearance.tolerance import TESSELLATION
+from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION, TESSELLATION
 
 _PROCESS = Path(__file__).with_name("step_process.py")
 
 MOST_WORK, LONGEST = 300, 1800
 """[s] of processor time, and of time, for a file."""
-
-FINEST, COARSEST = 5e-5, 0.1
-"""[m] Tolerances that can be asked for: faces of real models are up to 0.02 mm apart at their edges, whatever
-accuracy their file states, so that no finer facets would be nearer to anything."""
 
 TURN = 0.5
 """[rad] Neighbouring facets of a round face turn no farther, however small it is."""
@@ -53,10 +49,9 @@ def read_step(data: bytes, tolerance: float = TESSELLATION) -> Triangles:
         is asked for half the tolerance; planes, cylinders, cones, spheres and tori are held against it in 15
         points of each facet. Of free-form faces, and of the edges of all, it is the tessellator's word.
     """
-    if not FINEST <= tolerance <= COARSEST:
-        raise BadDimension(
-            f"tolerance {tolerance:g} m is given", valid=f"{FINEST:g} to {COARSEST:g} m"
-        )
+    if not FINEST_TESSELLATION <= tolerance <= COARSEST_TESSELLATION:
+        valid = f"{FINEST_TESSELLATION:g} to {COARSEST_TESSELLATION:g} m"
+        raise BadDimension(f"tolerance {tolerance:g} m is given", valid=valid)
     require("cad", "reading STEP")
     facts = step_facts(data)
     glb = _tessellated(data, tolerance)

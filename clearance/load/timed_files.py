@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TypeVar
 
 from clearance.errors import BadInput, at
+from clearance.load.bag_files import files_of, is_bag
 from clearance.load.csv_table import Opener
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.pose_formats import read_poses, read_samples
 from clearance.load.pose_schema import PoseFile, TrajectoryFile
 from clearance.load.pose_table_request import PoseRequest, ReadPoses, ReadSamples
-from clearance.load.rosbag_file import files_of, is_bag, read_bag
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.world.joint_positions import turns
@@ -102,6 +102,8 @@ def _of_bag(
     path: Path, files: InputFiles, choice: Choice, kinds: Mapping[str, bool]
 ) -> ReadTrajectory:
     """What is in a bag, whose files are not kept."""
+    from clearance.load.rosbag_file import read_bag
+
     shown = files.shown(path)
     for one in files_of(path):
         files.unread(one)

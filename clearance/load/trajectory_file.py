@@ -10,16 +10,28 @@ from collections.abc import Callable
 from pathlib import PurePath
 
 from clearance.errors import at
-from clearance.load.joint_trajectory_file import read_json_trajectory, read_yaml_trajectory
 from clearance.load.trajectory_csv import read_csv
 from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.world.trajectory import Trajectory
 
+
+def _json(request: TrajectoryRequest) -> ReadTrajectory:
+    from clearance.load.joint_trajectory_file import read_json_trajectory
+
+    return read_json_trajectory(request)
+
+
+def _yaml(request: TrajectoryRequest) -> ReadTrajectory:
+    from clearance.load.joint_trajectory_file import read_yaml_trajectory
+
+    return read_yaml_trajectory(request)
+
+
 READERS: dict[str, Callable[[TrajectoryRequest], ReadTrajectory]] = {
     ".csv": read_csv,
-    ".json": read_json_trajectory,
-    ".yaml": read_yaml_trajectory,
-    ".yml": read_yaml_trajectory,
+    ".json": _json,
+    ".yaml": _yaml,
+    ".yml": _yaml,
 }
 """By suffix in small letters; a file of another suffix is read as CSV."""
 

@@ -11,22 +11,22 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from clearance.errors import at
+from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
-from clearance.load.collada_file import UpAxis
 from clearance.load.compound_joints import frames_between
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
 from clearance.load.mesh_store import MeshStore
+from clearance.load.placing import UpAxis
 from clearance.load.plausibility import angle_notices
+from clearance.load.robot_element import ALLOW_XACRO, XACRO
 from clearance.load.robot_request import Geometry, RobotRequest, request_in_memory
 from clearance.load.robot_tree import links_from_root
 from clearance.load.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
-from clearance.load.xacro_file import expanded, refuse_unasked
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
 from clearance.world.robot import Robot
@@ -97,10 +97,13 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
 def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
     """The URDF in a file, or what xacro makes of it; and notes on that."""
     if request.xacro:
+        from clearance.load.xacro_file import expanded
+
         return expanded(request, files)
     data, shown = files.read(request.path), files.shown(request.path)
     refuse_foreign(data, shown, "a URDF file")
-    refuse_unasked(request, shown)
+    if request.path.suffix.lower() == XACRO:
+        raise BadSyntax("this is a xacro file, not a URDF file", where=shown, valid=ALLOW_XACRO)
     return data, ()
 
 

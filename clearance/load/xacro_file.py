@@ -26,11 +26,8 @@ from clearance.extras import install, is_installed
 from clearance.load.found_files import notes_on_variables
 from clearance.load.input_files import InputFiles
 from clearance.load.lookups import PACKAGE, note_lookup
-from clearance.load.robot_element import ALLOW_XACRO
 from clearance.load.robot_request import RobotRequest
 from clearance.world.notice import listed
-
-SUFFIX = ".xacro"
 
 MOST_WORK = 30
 """[s] of processor time; the largest file seen takes 0.5 s."""
@@ -85,16 +82,6 @@ def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
         *_warnings(done["said"], shown, request.path.parent),
     ]
     return Expanded(done["urdf"].encode(), tuple(notes))
-
-
-def refuse_unasked(request: RobotRequest, shown: str) -> None:
-    """Nothing, if the file is none of xacro's by its name.
-
-    Raises:
-        BadSyntax: it is, and nobody allowed that Python is evaluated.
-    """
-    if request.path.suffix.lower() == SUFFIX:
-        raise BadSyntax("this is a xacro file, not a URDF file", where=shown, valid=ALLOW_XACRO)
 
 
 def _run(request: RobotRequest, shown: str) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from clearance.errors import (
     at,
     nearest_name,
 )
+from clearance.plain_yaml import plain_data
 from clearance.planar.curve import Curve
 
 _FORMS: dict[str, tuple[Callable[..., Curve], tuple[str, ...], tuple[str, ...]]] = {
@@ -53,19 +54,11 @@ def read_curve(path: str) -> Curve:
         return _from_document(_load(path))
 
 
-def _load(path: str):
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
+def _load(path: str) -> object:
     file = Path(path)
     if not file.is_file():
         raise MissingFile("no such file", valid="a DXF or YAML file of curves")
-    try:
-        return YAML(typ="safe").load(file.read_text(encoding="utf-8"))
-    except (YAMLError, ValueError, TypeError, RecursionError) as error:
-        raise BadSyntax(
-            f"not YAML ({' '.join(str(error).split())})", valid="a mapping `curves: [...]`"
-        ) from None
+    return plain_data(file.read_bytes())
 
 
 def _from_document(document) -> Curve:

@@ -14,6 +14,7 @@ import numpy as np
 
 from clearance.errors import BadShape, BadSyntax, MissingFile, at
 from clearance.kernels.curve.arc import RADIUS
+from clearance.plain_yaml import plain_data
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve
 from clearance.profiles.profile import Profile
@@ -22,6 +23,8 @@ from clearance.profiles.profile_read import is_profile, profile_of
 if TYPE_CHECKING:
     from clearance.profiles.region import Region
     from clearance.sketch import Sketch
+
+_WANTED = "a profile, sketch, curve file or DXF"
 
 FINE = 1e-4
 """[-] Ten times how far chords stray in areas and pictures, relative to the outline's size."""
@@ -158,22 +161,15 @@ def require_solved(sketch: Sketch) -> None:
         )
 
 
-def yaml_of(path: Path):
+def yaml_of(path: Path) -> object:
     """What a YAML file holds.
 
-    Raises: MissingFile, BadSyntax.
+    Raises: MissingFile, BadSyntax, DuplicateName.
     """
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     with at(str(path)):
         if path.exists() and not path.is_file():  # a pipe or a device may never end
-            raise MissingFile("not a regular file", valid="a profile, sketch, curve file or DXF")
+            raise MissingFile("not a regular file", valid=_WANTED)
         try:
-            return YAML(typ="safe").load(path.read_text(encoding="utf-8"))
+            return plain_data(path.read_bytes())
         except OSError:
-            raise MissingFile(
-                "no such file", valid="a profile, sketch, curve file or DXF"
-            ) from None
-        except (YAMLError, ValueError, TypeError, RecursionError) as error:
-            raise BadSyntax(f"not YAML ({' '.join(str(error).split())[:120]})") from None
+            raise MissingFile("no such file", valid=_WANTED) from None

@@ -5,6 +5,8 @@ Not for: writing (`profile_file`), or curves that are not profiles, which `clear
 
 from __future__ import annotations
 
+from typing import TypeGuard
+
 import numpy as np
 
 from clearance.errors import BadSyntax, MissingKey, at
@@ -14,7 +16,7 @@ from clearance.profiles.profile import Origin, Profile
 FORMAT = "clearance-profile-1"
 
 
-def is_profile(document) -> bool:
+def is_profile(document: object) -> TypeGuard[dict]:
     """Whether a YAML document claims to be a profile of ours."""
     return isinstance(document, dict) and "contours" in document and "format" in document
 
@@ -49,8 +51,15 @@ def profile_of(document: dict) -> Profile:
         n_steps=int(_length(document, "steps")),
         origin=_origin(document.get("origin"), sum(contour.n_pieces for contour in made)),
         parts=_parts(document),
-        notes=tuple(map(str, document.get("notes") or ())),
+        notes=_notes(document),
     )
+
+
+def _notes(document: dict) -> tuple[str, ...]:
+    notes = document.get("notes") or []
+    if not isinstance(notes, list):
+        raise BadSyntax(f"{notes!r:.40}", where="notes", valid="a list of text")
+    return tuple(map(str, notes))
 
 
 def _parts(document: dict) -> dict[str, Profile]:

@@ -13,7 +13,6 @@ from clearance.geometry.pose import validated_pose
 from clearance.kernels.mesh.convex import seem_convex
 from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
 from clearance.query.one_pair import kept_pair
-from clearance.query.paper import NO_TOLERANCE, distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
 
 METHODS = ("exact", "paper")
@@ -46,6 +45,8 @@ def distance(
     Ties: the least face indices.
     """
     if _checked(method, tolerance) == "paper":
+        from clearance.query.paper import NO_TOLERANCE, distance_paper
+
         require_surface(a, "a"), require_surface(b, "b")
         poses = [np.eye(4) if pose is None else validated_pose(pose) for pose in (pose_a, pose_b)]
         return distance_paper(
@@ -65,6 +66,8 @@ def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> 
     """
     p, q = _convex(_polygons(p, 2), "p"), _convex(_polygons(q, 2), "q")
     if _checked(method) == "paper":
+        from clearance.query.paper import polygon_distance_paper
+
         return polygon_distance_paper(p, q)
     found = _measured(p[None], q[None])
     return Nearest(
@@ -90,6 +93,8 @@ def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") 
         raise BadShape(f"{len(ps)} polygons against {len(qs)}", valid="as many of each")
     ps, qs = _convex(ps, "ps"), _convex(qs, "qs")
     if _checked(method) == "paper":
+        from clearance.query.paper import polygon_distance_paper
+
         pairs = zip(ps, qs, strict=True)
         return np.array([polygon_distance_paper(p, q).distance for p, q in pairs])
     return _measured(ps, qs).distance

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from clearance.findings.finding import JOINT_LIMITS, PROFILE, UNPROVEN, Finding
-from clearance.findings.judgement import Judgement
+from typing import TYPE_CHECKING
+
+from clearance.findings.finding import JOINT_LIMITS, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.report.wording import (
     gap_text,
     limit_mm,
@@ -14,6 +15,9 @@ from clearance.report.wording import (
     span_text,
 )
 from clearance.world.rules import DEFAULT
+
+if TYPE_CHECKING:
+    from clearance.findings.judgement import Judgement
 
 
 def finding_line(finding: Finding) -> str:
@@ -26,6 +30,8 @@ def finding_line(finding: Finding) -> str:
         return f"profile {finding.rule!r} {kept}{gap}, limit {limit_mm(finding.fail)} mm ({finding.text})"
     if finding.kind == UNPROVEN:
         return _unproven(finding)
+    if finding.kind == TOLERANCES:
+        return _with_tolerances(finding)
     if finding.clearance is None:
         return (
             f"nothing is below the warn limit of {limit_mm(finding.warn)} mm{of_rule(finding.rule)}"
@@ -58,6 +64,19 @@ def _unproven(finding: Finding) -> str:
     return f"{told}{proven}{who}, {stretch_text(finding)}; {finding.text}"
 
 
+def _with_tolerances(finding: Finding) -> str:
+    limit = f"the fail limit of {limit_mm(finding.fail)} mm{of_rule(finding.rule)}"
+    told = f"not proven to keep {limit} with the tolerances"
+    if finding.proven is None:
+        return f"{told}: {finding.text}"
+    left = (
+        f"at least {mm(finding.proven)} mm" if finding.proven > 0.0 else "contact is not ruled out"
+    )
+    who = f": {bodies_text(finding)} at {when_text(finding)}" if finding.body_a else ""
+    nominal = "" if finding.clearance is None else f", {mm(finding.clearance)} mm nominal"
+    return f"{told}: {left}{nominal}{who}" + (f"; {finding.text}" if finding.text else "")
+
+
 def bodies_text(finding: Finding) -> str:
     """The two bodies, and which of several stretches it is."""
     names = " - ".join(name for name in (finding.body_a, finding.body_b) if name)
@@ -82,10 +101,12 @@ def stretch_text(finding: Finding) -> str:
 
 
 def waived_text(finding: Finding) -> str:
-    """How far it is waived, by whom, why and until when; empty where it is not."""
+    """How far it is waived, by whom, why and until when, or that it is accepted; empty where neither is."""
     waived = finding.waived
     if waived is None:
-        return ""
+        return (
+            "accepted: what is not proven with the tolerances may pass" if finding.accepted else ""
+        )
     until = f" until {waived.until}" if waived.until else ""
     return (
         f"waived to at least {limit_mm(waived.at_least)} mm{until} by {waived.by}: {waived.reason}"

@@ -8,12 +8,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding
+from clearance.findings.finding import CLEARANCE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.judgement import Judgement, judgement_of
+from clearance.findings.of_budget import of_budget
 from clearance.findings.standing import code_of
 from clearance.report.finding_text import bodies_text, finding_line, waived_text
 from clearance.report.pair_judge import PairJudge
+from clearance.report.rules import name_shown
 from clearance.report.summary import certified_of
+from clearance.report.tolerances import budget_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
@@ -60,6 +63,7 @@ def results_of(record: Record, verdict: Verdict) -> Iterator[TestResult]:
     yield from _of_waivers(judgement)
     yield from _of_rules(record, judgement)
     yield from _of_pairs(record, judgement)
+    yield from _of_budget(record, judgement)
     for pair in record.unmeasured:
         yield TestResult(pair.link, f"{pair.link} - {pair.obstacle}", pair.reason, skipped=True)
     yield _of_certificate(record, judgement)
@@ -125,11 +129,31 @@ def _of_finding(finding: Finding) -> TestResult:
     group, text = finding.body_a, f"{finding_line(finding)} (finding {finding.id})"
     if finding.kind == UNPROVEN:
         group, name = "unproven", f"{name or 'the motion between the samples'}"
+    if finding.kind == TOLERANCES:
+        return _of_tolerances(finding, text)
     if finding.waived is not None:
         return TestResult(group, name, f"{waived_text(finding)}; {text}", skipped=True)
     near = "near miss: " if finding.status == Status.NEAR else ""
     least = "clearance " if finding.kind == CLEARANCE and not near else ""
     return TestResult(group, name, f"{near}{least}{text}", LIMIT if finding.broken else "")
+
+
+def _of_budget(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+    """One case for each rule that is kept without tolerances: whether it is proven to be with them."""
+    found = of_budget(record, judgement.judging)
+    yield from map(_of_finding, found)
+    broken = {answer.name for answer in judgement.judging if _is_violated(answer)}
+    told = broken | {finding.rule for finding in found}
+    for one, line in zip(record.budget or (), budget_lines(record), strict=True):
+        if one.rule not in told:
+            yield TestResult("tolerances", name_shown(one.rule), line)
+
+
+def _of_tolerances(finding: Finding, text: str) -> TestResult:
+    group, name = "tolerances", name_shown(finding.rule)
+    if finding.accepted:
+        return TestResult(group, name, f"{waived_text(finding)}; {text}", skipped=True)
+    return TestResult(group, name, text, "NotProven")
 
 
 def _of_minimum(judge: PairJudge, minimum: PairMinimum) -> TestResult:

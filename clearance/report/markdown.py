@@ -65,7 +65,11 @@ def markdown(
 
 def _told(verdict: Verdict) -> list[str]:
     """What stands beside the verdict: reasons, warnings, what is not checked."""
-    told = [*verdict.reasons, *(f"warning: {text}" for text in verdict.warnings)]
+    told = [
+        *verdict.reasons,
+        *verdict.with_tolerances,
+        *(f"warning: {text}" for text in verdict.warnings),
+    ]
     return told + [f"{name} not checked" for name in verdict.not_checked]
 
 

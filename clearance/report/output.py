@@ -8,10 +8,13 @@ from typing import Any
 
 from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
+from clearance.report.budget_table import FILE_NAME as BUDGET
+from clearance.report.budget_table import budget_table
 from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.moments_file import FILE_NAME as MOMENTS
 from clearance.report.moments_file import moments_text
+from clearance.report.more_curves import more_curves
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.summary import summary_of
@@ -31,6 +34,7 @@ OWN = (
     "steps.csv",
     "pairs.parquet",
     "contacts.csv",
+    BUDGET,
     MOMENTS,
     FILE_NAME,
     findings_file.FILE_NAME,
@@ -46,8 +50,8 @@ def write(
     kept: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
 ) -> None:
-    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `worst_moments.yaml`, `replay.npz`, `findings.json`,
-    `report.html` and, last, `summary.json`.
+    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, where there are tolerances `budget.csv`,
+    `worst_moments.yaml`, `replay.npz`, `findings.json`, `report.html` and, last, `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
@@ -66,7 +70,7 @@ def write(
     moments = moments_text(record)
     found = findings_file.finding_list_of(record)
     told = findings(found.findings, comparison)
-    page = page_of(summary, replay, pictures, pair_curves(record, kept), told)
+    page = page_of(summary, replay, pictures, pair_curves(record, kept), told, more_curves(record))
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")
@@ -74,6 +78,8 @@ def write(
         if record.every_pair is not None:
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
+        if record.budget is not None:
+            write_csv(lambda: [budget_table(record)], place / BUDGET)
         (place / MOMENTS).write_text(moments, encoding="utf-8")
         replay.save(place / FILE_NAME)
         findings_text = findings_file.findings_text(found)

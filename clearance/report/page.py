@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
@@ -22,6 +23,7 @@ from markupsafe import Markup, escape
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
 from clearance.report.markup import element
+from clearance.report.more_curves import Curve
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
 from clearance.report.wording import contact_text, count
@@ -42,6 +44,7 @@ def page_of(
     pictures: dict[str, str] | None = None,
     curves: PairCurves | None = None,
     findings: Markup = NOTHING,
+    more: Sequence[Curve] = (),
 ) -> str:
     """The whole page.
 
@@ -49,6 +52,7 @@ def page_of(
         pictures: SVG of each profile by its name.
         curves: each pair's own, if every pair was measured at every step.
         findings: the section of what each rule comes to.
+        more: curves beside that of the clearance.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -56,16 +60,18 @@ def page_of(
     template = Template(_own("page.html"))
     return template.substitute(
         title=escape(f"{summary['name']}: {badge_text(summary)}"),
-        style=_own("page.css"),
+        style=_style(summary),
         header=header(summary),
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}, findings),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
-        data=_json_inside_script(_data(summary, replay) | _pairs(summary, replay, curves)),
+        data=_json_inside_script(
+            _data(summary, replay) | _pairs(summary, replay, curves) | _more(more)
+        ),
         plotly=_inside_script(_plotly()),
         meshcat=_inside_script(_meshcat()),
         replay_script=_inside_script(_own("replay.js")),
-        page_script=_inside_script(_own("page.js")),
+        page_script=_inside_script(_page_script(more)),
     )
 
 
@@ -143,6 +149,31 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
         return {"pairs": pairs, "curves": None}
     rows = [_floats(row, "<f4") for row in curves.clearances]
     return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+
+
+def _more(curves: Sequence[Curve]) -> dict[str, Any]:
+    """Curves beside that of the clearance; nothing where there are none."""
+    told = [
+        {
+            "name": one.name,
+            "times": _floats(one.times, "<f8"),
+            "values": _floats(one.values, "<f8"),
+            "dash": one.dash,
+            "filled": one.filled,
+        }
+        for one in curves
+    ]
+    return {"more": told} if told else {}
+
+
+def _page_script(curves: Sequence[Curve]) -> str:
+    """The page's own script; after the one that draws further curves, where there are some."""
+    return (_own("more_curves.js") if curves else "") + _own("page.js")
+
+
+def _style(summary: dict[str, Any]) -> str:
+    """The page's look; with that of tolerances, where there are some."""
+    return _own("page.css") + (_own("tolerances.css") if "tolerances" in summary else "")
 
 
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:

@@ -10,7 +10,10 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.findings.finding import NOT_PROVEN
+from clearance.findings.of_budget import NOT_WORKED_OUT
 from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
+from clearance.report.body_gaps import body_gaps
 from clearance.report.cell_time import cell_time
 from clearance.report.contact import contacts
 from clearance.report.markup import (
@@ -22,8 +25,10 @@ from clearance.report.markup import (
 )
 from clearance.report.matrix import matrix
 from clearance.report.profiles import profiles
+from clearance.report.recordings import recordings
 from clearance.report.rules import name_shown, rules
-from clearance.report.verdict import STALE, verdict_text
+from clearance.report.tolerance_section import tolerances
+from clearance.report.verdict import ACCEPTED, STALE, verdict_text
 from clearance.report.wording import count, joint_value, limits_text, mm, other_time, seconds
 
 MAX_EVENT_ROWS = 200
@@ -38,6 +43,7 @@ _TITLES = {
     "contact": "contact",
     "suspect": "suspect input",
     STALE: STALE,
+    NOT_PROVEN: NOT_PROVEN,
 }
 
 
@@ -103,12 +109,13 @@ def badge_text(summary: dict[str, Any]) -> str:
         for name in ("verdict", "measured", "basis", "disputed_by", "clocks", "n_waivers")
     )
     title = _TITLES.__getitem__
-    text = verdict_text(status, measured, basis, disputed_by, clocks, n_waivers, title)
+    given = summary.get("tolerances", {}).get("verdict", "")
+    text = verdict_text(status, measured, basis, disputed_by, clocks, n_waivers, title, given)
     return text[0].upper() + text[1:]
 
 
 def _badge_class(summary: dict[str, Any]) -> str:
-    failing = summary["disputed_by"] or summary["verdict"] == STALE
+    failing = summary["disputed_by"] or summary["verdict"] in (STALE, NOT_PROVEN)
     return "violated" if failing else summary["verdict"]
 
 
@@ -122,11 +129,22 @@ def _beside(summary: dict[str, Any]) -> Markup:
     failing += [text[0].upper() + text[1:] for text in summary["stale"]]
     rows += [element("li", text, class_="text-violated") for text in failing]
     rows += [element("li", f"Waived: {text}", class_="text-near") for text in summary["waived"]]
+    rows += _with_tolerances(summary)
     doubts = [summary["unproven"]] if summary["unproven"] else []
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
     return element("ul", *rows, class_="beside") if rows else Markup("")
+
+
+def _with_tolerances(summary: dict[str, Any]) -> list[Markup]:
+    """What the tolerances leave, a line a rule; marked where a limit is not proven with them."""
+    told = summary.get("tolerances")
+    if told is None:
+        return []
+    marked = told["verdict"] in (NOT_PROVEN, ACCEPTED)
+    lines = told["lines"] or [f"{NOT_WORKED_OUT[0].upper()}{NOT_WORKED_OUT[1:]}."]
+    return [element("li", line, class_="text-violated" if marked else None) for line in lines]
 
 
 def _certified_word(certified: dict[str, Any] | None) -> str:
@@ -179,6 +197,9 @@ def sections(
                 element("div", events(summary), certainty(summary)),
                 class_="columns",
             ),
+            recordings(summary),
+            tolerances(summary),
+            body_gaps(summary),
             findings,
             rules(summary),
             cell_time(summary),

@@ -13,11 +13,14 @@ import numpy as np
 
 from clearance.geometry.point_cloud import PointCloud
 from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
+from clearance.report.body_gaps import body_gaps_of
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
+from clearance.report.recordings import recordings_of
 from clearance.report.rules import rules_of, told_moment
+from clearance.report.tolerances import tolerances_of
 from clearance.report.verdict import Verdict, verdict_of
 from clearance.report.wording import count
 from clearance.simulate.certificate import Certificate
@@ -35,7 +38,7 @@ FORMAT = 3
 
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
-    exist is None."""
+    exist is None. Keys `tolerances`, `recordings` and `body_gaps` are there where a case has them."""
     case, verdict, certificate = record.case, verdict_of(record), record.certificate
     times = record.steps["time"].to_numpy()
     return {
@@ -80,7 +83,17 @@ def summary_of(record: Record) -> dict[str, Any]:
         "notes": notes_of(record),
         "inputs": inputs(case),
         "versions": versions(),
-    }
+    } | _where_given(record, verdict)
+
+
+def _where_given(record: Record, verdict: Verdict) -> dict[str, Any]:
+    """What only cases with tolerances, a recorded run or body gaps have."""
+    tolerances, recordings = tolerances_of(record), recordings_of(record)
+    told = (
+        {} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}}
+    )
+    told |= {} if recordings is None else {"recordings": recordings}
+    return told | ({"body_gaps": body_gaps_of(record)} if record.body_gaps else {})
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from clearance.simulate.budget_columns import with_budget_columns
 from clearance.simulate.contact_columns import with_contact_columns
 from clearance.simulate.contact_sequence import StepContact
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
@@ -83,7 +84,8 @@ def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.
     """The steps of a record, a block at a time; what a block took of memory is let go after it."""
     for block in blocks(record.steps.num_rows):
         rows = record.steps.slice(block.start, block.stop - block.start).combine_chunks()
-        yield with_contact_columns(rows, record.contacts, block.start)
+        rows = with_contact_columns(rows, record.contacts, block.start)
+        yield with_budget_columns(rows, record.budget, block.start)
         kept.let_go()
 
 

@@ -12,7 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
-from clearance.report.finding_text import waived_lines
+from clearance.findings.finding import NOT_PROVEN, Finding
+from clearance.findings.of_budget import of_budget
+from clearance.report.finding_text import finding_line, waived_lines
+from clearance.report.tolerances import budget_lines
 from clearance.report.wording import (
     clock_text,
     count,
@@ -28,6 +31,7 @@ from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
+from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import DEFAULT
 
@@ -40,6 +44,9 @@ MOTION, SAMPLES = "motion", "samples"
 STALE = "stale waiver"
 """The status where all would be well, but for a waiver that has expired or that nothing needs."""
 
+KEPT, ACCEPTED = "kept", "accepted"
+"""What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`."""
+
 _PASSING = (Status.CLEAR, Status.NEAR)
 
 
@@ -49,7 +56,8 @@ class Verdict:
 
     Attributes:
         status: "clear", "near", "violated", "contact", "suspect" where input is in doubt and not accepted, or
-            "stale waiver" where a waiver has expired, or is not needed, and all else is well.
+            "stale waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
+            all limits are kept as measured and one is not proven to be with the case's tolerances.
         measured: the status by what was measured alone, less what is waived.
         basis: "motion" or "samples".
         reasons: why it is not clear, one line each.
@@ -63,6 +71,9 @@ class Verdict:
         clocks: how far the actors' clocks may be apart for it to hold; empty for one clock.
         waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
         stale: what is wrong with waivers, one line each.
+        tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
+            that is so and may pass; empty without any.
+        with_tolerances: what they leave, one line each.
     """
 
     status: str
@@ -80,16 +91,19 @@ class Verdict:
     waived: tuple[str, ...] = ()
     n_waivers: int = 0
     stale: tuple[str, ...] = ()
+    tolerances: str = ""
+    with_tolerances: tuple[str, ...] = ()
 
     @property
     def exit_code(self) -> int:
-        """0 clear or near, 1 violated, contact or a stale waiver, 2 suspect, 3 a peer disagrees; the greatest that
-        holds."""
+        """0 clear or near, 1 violated, contact, not proven with tolerances or a stale waiver, 2 suspect, 3 a peer
+        disagrees; the greatest that holds."""
         if self.disputed_by is not None:
             return 3
         if self.status == SUSPECT:
             return 2
-        return 0 if self.measured in _PASSING and not self.stale else 1
+        failing = self.stale or self.tolerances == NOT_PROVEN
+        return 0 if self.measured in _PASSING and not failing else 1
 
     @property
     def passed(self) -> bool:
@@ -99,7 +113,7 @@ class Verdict:
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
         told = self.status, self.measured, self.basis, self.disputed_by, self.clocks
-        return verdict_text(*told, self.n_waivers, shown)
+        return verdict_text(*told, self.n_waivers, shown, self.tolerances)
 
 
 def verdict_text(
@@ -110,18 +124,31 @@ def verdict_text(
     clocks: str = "",
     n_waivers: int = 0,
     shown: Callable[[str], str] = str,
+    tolerances: str = "",
 ) -> str:
     """A verdict in a few words; the arguments are as in `Verdict`."""
     text = shown(measured)
     if n_waivers:
         text += f" with {count(n_waivers, 'waiver')}"
+    passing = measured in _PASSING
+    if passing and tolerances:
+        text = _with_tolerances(text, tolerances, shown(NOT_PROVEN))
+        passing = tolerances == KEPT
     if basis == SAMPLES:
-        text += " at the samples only" if measured in _PASSING else ", looked at the samples only"
+        text += " at the samples only" if passing else ", looked at the samples only"
     if clocks:
         text += f", {clocks}"
     if status in (SUSPECT, STALE):
         text = f"{shown(status)} (would be {text})"
     return text if disputed_by is None else f"{text}, but {disputed_by} disagrees"
+
+
+def _with_tolerances(text: str, tolerances: str, not_proven: str) -> str:
+    """What is so as measured, and what is with tolerances."""
+    if tolerances == KEPT:
+        return f"{text} with tolerances"
+    accepted = " (accepted)" if tolerances == ACCEPTED else ""
+    return f"{not_proven} with tolerances{accepted}, {text} without"
 
 
 def verdict_of(record: Record) -> Verdict:
@@ -134,7 +161,9 @@ def verdict_of(record: Record) -> Verdict:
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
     unproven = _unproven(record, judging)
+    open_limits = of_budget(record, judging)
     reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
+    reasons += [finding_line(finding) for finding in open_limits]
     stale = () if judgement is None else judgement.faults
     reasons += stale
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
@@ -145,7 +174,7 @@ def verdict_of(record: Record) -> Verdict:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
-        status=SUSPECT if suspects else STALE if stale and measured in _PASSING else measured,
+        status=SUSPECT if suspects else _less_open(measured, open_limits, stale),
         measured=measured,
         basis=SAMPLES if record.certificate is None else MOTION,
         reasons=tuple(reasons),
@@ -160,7 +189,25 @@ def verdict_of(record: Record) -> Verdict:
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
         stale=stale,
+        tolerances=_tolerances(record.case, measured, open_limits),
+        with_tolerances=budget_lines(record),
     )
+
+
+def _less_open(measured: str, open_limits: Sequence[Finding], stale: Sequence[str]) -> str:
+    """The status, where no input is suspect."""
+    if measured not in _PASSING:
+        return measured
+    return NOT_PROVEN if open_limits else STALE if stale else measured
+
+
+def _tolerances(case: Case, measured: str, open_limits: Sequence[Finding]) -> str:
+    """What tolerances make of what passes without them; empty where there are none."""
+    if case.tolerance is None or measured not in _PASSING:
+        return ""
+    if not open_limits:
+        return KEPT
+    return ACCEPTED if case.tolerance.unproven_ok else NOT_PROVEN
 
 
 def _judgement(record: Record) -> Judgement | None:

@@ -15,20 +15,28 @@ import numpy as np
 
 from clearance.run.question import Question
 from clearance.simulate import inside
+from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import CrossCheck, PairTest, ProfileAnswer, Record, Samples
+from clearance.simulate.record import (
+    AskedCourse,
+    CrossCheck,
+    PairTest,
+    ProfileAnswer,
+    Record,
+    Samples,
+)
 from clearance.simulate.replay_bodies import notes_on_drawing
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, worst_first
@@ -63,7 +71,7 @@ class Answers:
     """All that was found.
 
     Attributes:
-        cross_check: None where no peer was asked.
+        cross_check: None where no peer was asked. budget: None where the case has no tolerances.
     """
 
     judged: Judged
@@ -72,6 +80,7 @@ class Answers:
     notices: tuple[Notice, ...]
     profiles: tuple[ProfileAnswer, ...]
     cross_check: CrossCheck | None
+    budget: tuple[RuleBudget, ...] | None
 
 
 def answered(question: Question, resources: Resources) -> Record:
@@ -103,7 +112,7 @@ def _plan(question: Question) -> MeasurementPlan:
 def _motions(question: Question) -> tuple[Motion, ...]:
     """The motion of each robot at the times of its own table."""
     case = question.case
-    if question.motion == "kinematic":
+    if question.motion != "simulated":
         return tuple(kinematic_motion(placed) for placed in case.robots)
     from clearance.simulate.simulated import simulated_motions
 
@@ -118,7 +127,8 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         for section, own in zip(plan.sections.sections, parts, strict=True)
     ]
     all_judged = judged(plan.sections, found, question.case, plan.motions)
-    samples = _samples(plan, all_judged, resources)
+    budget = _budget(plan, found, resources)
+    samples = _samples(plan, all_judged, budget, resources)
     return Answers(
         all_judged,
         samples,
@@ -126,6 +136,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         _notices(plan, all_judged.certificate, found),
         _profiles(plan),
         _peer(question.case, samples, found, resources) if question.cross_check else None,
+        budget,
     )
 
 
@@ -173,10 +184,31 @@ def _certificate(
     return certify_motion(section.in_motion, found, gap, need, resources)
 
 
-def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:
+def _budget(
+    plan: MeasurementPlan, found: Sequence[SectionAnswer], resources: Resources
+) -> tuple[RuleBudget, ...] | None:
+    """What the case's tolerances leave of what was found."""
+    if plan.question.case.tolerance is None:
+        return None
+    from clearance.budget.answer import budget_answers
+
+    return budget_answers(plan.question.case, plan.sections, found, resources)
+
+
+def _samples(
+    plan: MeasurementPlan,
+    judged: Judged,
+    budget: tuple[RuleBudget, ...] | None,
+    resources: Resources,
+) -> Samples:
     case, motions, pairs = plan.question.case, plan.motions, plan.sections.pairs
     simulated = plan.question.motion == "simulated"
-    batches = step_table(case, motions, pairs, judged, with_error=simulated)
+    left = None
+    if budget is not None:
+        from clearance.budget.answer import columns_of
+
+        left = columns_of(budget)
+    batches = step_table(case, motions, pairs, judged, with_error=simulated, left=left)
     unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, judged.found))
     return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
@@ -310,9 +342,28 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         contacts=answers.contacts,
         profiles=answers.profiles,
         cross_check=answers.cross_check,
+        budget=answers.budget,
         of_pairs=partial(_of_pairs, plan),
         today=question.today,
+        body_gaps=question.body_gaps,
+        asked=_asked(question) if question.motion == "recorded" else None,
     )
+
+
+def _asked(question: Question) -> AskedCourse:
+    """What the case comes to at the steps of what was asked, where its robots have done something else."""
+    robots = tuple(_as_asked(placed) for placed in question.case.robots)
+    case = replace(question.case, robots=robots, tolerance=None)
+    asked = Question(case, certify=False, contact="none", today=question.today)
+    record = answered(asked, DEFAULT_RESOURCES)
+    return AskedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
+
+
+def _as_asked(placed: PlacedRobot) -> PlacedRobot:
+    found = placed.recording
+    if found is None:
+        return placed
+    return replace(placed, trajectory=found.asked, timing=found.timing, recording=None)
 
 
 def _of_pairs(

@@ -16,7 +16,7 @@ from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.plausibility import notices_of
 
-MOTIONS = ("kinematic", "simulated")
+MOTIONS = ("kinematic", "simulated", "recorded")
 METHODS = ("exact", "paper")
 CONTACT = ("none", "events", "every")
 
@@ -32,7 +32,7 @@ class Question:
             "minimum" for the least of all steps. The worst step is exact in each.
         method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
         motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
-            controlled robot makes of it.
+            controlled robot makes of it, "recorded" what a robot really did, of a case with a recording.
         certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
             the trajectory has velocities, on cubics; the verdict then rests on it. Without it, and with method
             "paper", which proves nothing, the verdict is of the samples only, and says so.
@@ -42,6 +42,8 @@ class Question:
         contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             The verdict does not depend on it.
+        body_gaps: tell which gaps between what moves and what stands are of a width that parts of a person may be
+            caught in; no verdict depends on it.
         today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None
             where it has none.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
@@ -61,6 +63,7 @@ class Question:
     contact: str = "events"
     paper_tolerance: float | None = None
     today: date | None = None
+    body_gaps: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.case, Case):
@@ -76,6 +79,11 @@ class Question:
                 given = getattr(self, what)
                 raise BadInput(f"unknown {what} {given!r}", valid=f"one of {', '.join(valid)}")
         _require_tolerance(self.paper_tolerance, self.method)
+        if self.body_gaps and self.need not in ("steps", "pairs"):
+            raise BadInput(
+                f"body gaps need the least of every pair, not {self.need!r}",
+                valid="need 'steps' or 'pairs'",
+            )
         object.__setattr__(self, "certify_gap", _checked_gap(self.certify_gap))
         if self.need != "steps" and self.method != "exact":
             raise BadInput(
@@ -86,6 +94,7 @@ class Question:
             raise BadInput(
                 f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
             )
+        _require_recording(self)
         _require_one_clock(self)
         _require_surfaces(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
@@ -103,6 +112,16 @@ class Question:
             self.certify,
             self.certify_gap,
             self.paper_tolerance,
+        )
+
+
+def _require_recording(question: Question) -> None:
+    """Nothing, if there is a recording where one is meant, and none else."""
+    there = any(placed.recording is not None for placed in question.case.robots)
+    if there != (question.motion == "recorded"):
+        given = "has a recording" if there else "has no recording"
+        raise BadInput(
+            f"motion {question.motion!r} of a case that {given}", valid="both, or neither"
         )
 
 

@@ -107,7 +107,7 @@ class Run:
     @property
     def summary(self) -> dict[str, Any]:
         """What `summary.json` holds, as plain data."""
-        from clearance.report import summary_of
+        from clearance.report.summary import summary_of
 
         return summary_of(self.record)
 
@@ -148,7 +148,7 @@ class Run:
         Raises:
             BadInput: no path. Unwritable: nothing is left half-written.
         """
-        from clearance.report import write
+        from clearance.report.output import write
 
         if not isinstance(folder, str | PathLike) or not str(folder):
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.query.contact import contact
+from clearance.query.contact import rough_contact
 from clearance.query.pair_query import Query
 from clearance.simulate.point_motion import motion_by_columns
 from clearance.simulate.rule_answer import RuleAnswer
@@ -117,7 +117,7 @@ def _with_depths(told: Approach, touching: np.ndarray) -> Approach:
     columns.append(told.depths_at_least.copy())
     for row in chosen.tolist():
         poses = [body.poses_in(case, told.poses[row : row + 1])[0] for body in pair]
-        found = contact(*shapes, pose_a=poses[0], pose_b=poses[1])
+        found = rough_contact(*shapes, pose_a=poses[0], pose_b=poses[1])
         if found is None:
             continue
         kept.add(row)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -42,13 +43,13 @@ class BudgetMoment:
 
     Attributes:
         moment: as it is said to be, of the pair that the errors bring nearest. proven, expected: [m].
-        sources: what takes most first.
+        sources: what takes most first; worked out when first looked at.
     """
 
     moment: Moment
     proven: float
     expected: float
-    sources: tuple[ErrorSource, ...]
+    sources: Sequence[ErrorSource]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +61,8 @@ class RuleBudget:
         proven: (n,) [m] lower bound of the clearance of each step, less padding, whatever the errors are.
         expected: (n,) [m] estimate: nominal less `coverage` standard deviations; NaN where it is not worked out.
         between: (n,) [m] as `proven`, of the motion from each step to the next; None where nothing is certified.
-        worst: the moments that the errors bring nearest, the worst first.
+        worst: the moments that the errors bring nearest, the worst first; worked out when first
+            looked at.
     """
 
     rule: str
@@ -68,7 +70,7 @@ class RuleBudget:
     proven: np.ndarray
     expected: np.ndarray
     between: np.ndarray | None
-    worst: tuple[BudgetMoment, ...]
+    worst: Sequence[BudgetMoment]
 
     @cached_property
     def least(self) -> float:

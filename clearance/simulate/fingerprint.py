@@ -39,6 +39,8 @@ def fingerprint(
     digest.update(_program().encode())
     told = (case.limits, case.allow, case.carries, case.clock, tuple(pairs), options)
     digest.update(repr(told).encode())
+    if case.tolerance is not None:
+        digest.update(repr(case.tolerance).encode())
     for motion in motions:
         robot = motion.placed.robot
         for body in robot.bodies:

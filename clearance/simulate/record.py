@@ -127,6 +127,20 @@ class ProfileAnswer:
 
 
 @dataclass(frozen=True, eq=False)
+class AskedCourse:
+    """The clearances of what was asked, beside those of what was done.
+
+    Attributes:
+        times: (n,) [s]. clearances: (n,) [m] of the pair that stands worst at each step; NaN where there is none.
+        worst: the step that stands worst.
+    """
+
+    times: np.ndarray
+    clearances: np.ndarray
+    worst: Moment
+
+
+@dataclass(frozen=True, eq=False)
 class Samples:
     """The steps of a run: what a peer is held against, and what sweeps a profile.
 
@@ -163,7 +177,8 @@ class Record(Samples):
             where a bound does not decide); of one robot among obstacles that stand, link, obstacle, link_x …
             obstacle_z as well, which come first; with several rules nearest_clearance, nearest_a, nearest_b of
             the nearest pair whatever judges it; time_b where clocks are not tied;
-            tracking_error when simulated; when certified, lower_bound and upper_bound of the motion from the step
+            tracking_error when simulated; proven and expected [m] where the case has tolerances (expected null in
+            contact); when certified, lower_bound and upper_bound of the motion from the step
             to the next, and `between`: the motion is worse there than at both of its ends, and the status is that
             of the motion, not of the step; else lower_bound of the step where `need` leaves clearances unknown
             (null); penetration [m] of the deepest pair in contact and volume [m3] of all, both null here and
@@ -181,7 +196,8 @@ class Record(Samples):
         today: the day that waivers are held against; None where the case has none.
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
-        motion_kind: "kinematic" or "simulated".
+        motion_kind: "kinematic", "simulated" or "recorded". asked: of recorded motion, what was asked instead.
+        body_gaps: whether gaps that people may be caught in are to be told.
     """
 
     pair_minima: Sequence[PairMinimum]
@@ -202,6 +218,8 @@ class Record(Samples):
     of_pairs: OfPairs | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
+    asked: AskedCourse | None = None
+    body_gaps: bool = False
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
@@ -226,10 +244,11 @@ class Record(Samples):
     @cached_property
     def steps_with_contacts(self) -> pa.Table:
         """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
-        not exact; null at all others."""
+        not exact, null at all others; and with what tolerances leave, as `with_budget_columns` adds it."""
+        from clearance.simulate.budget_columns import with_budget_columns
         from clearance.simulate.contact_columns import with_contact_columns
 
-        return with_contact_columns(self.steps, self.contacts)
+        return with_budget_columns(with_contact_columns(self.steps, self.contacts), self.budget)
 
     @property
     def worst_step(self) -> int:

@@ -13,6 +13,7 @@ import numpy as np
 
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.quaternions import quaternions_of
 from clearance.query.distance import distance
 from clearance.simulate.record import Record
 from clearance.world.case import Case
@@ -243,11 +244,9 @@ def _put_second(
 
 def packed(poses: np.ndarray) -> np.ndarray:
     """(n, 7) float32 xyz and quat_xyzw, one row where nothing moves."""
-    from scipy.spatial.transform import Rotation
-
     if (poses == poses[0]).all():
         poses = poses[:1]
-    rotations = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
+    rotations = quaternions_of(poses[:, :3, :3])
     return np.column_stack([poses[:, :3, 3], rotations]).astype(np.float32)
 
 

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.contact_phases import ContactsOfPhases
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.handling import gap_between, handling_hints
 from clearance.simulate.record import Record
@@ -43,6 +42,14 @@ def standing_contacts(record: Record) -> list[tuple[str, str]]:
     return touching
 
 
+def standing_bodies(record: Record) -> frozenset[str]:
+    """The names of the measured bodies that never move."""
+    standing = [_standing_links(motion) for motion in record.motions]
+    bodies = {body for pair in section_plan(record.timeline).pairs for body in (pair.a, pair.b)}
+    case = record.case
+    return frozenset(body.name_in(case) for body in bodies if _stands(case, body, standing))
+
+
 def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
     """True for an obstacle that stands and is never carried, and for a link that no joint moves."""
     if body.is_obstacle:
@@ -59,6 +66,10 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     A link that a joint moves against an obstacle that stands is left out: that is what a run looks for.
     """
     rows = record.contacts
+    if not len(rows):
+        return []
+    from clearance.simulate.contact_phases import ContactsOfPhases
+
     if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
         return []
     case, plan = record.case, section_plan(record.timeline)

@@ -39,8 +39,13 @@ def step_table(
     judged: Judged,
     *,
     with_error: bool = False,
+    left: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Iterator[pa.Table]:
-    """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps."""
+    """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps.
+
+    Args:
+        left: (n,) each [m] what a budget leaves, proven and expected; None without one.
+    """
     names, found, certificate = BodyNames.of(case, pairs), judged.found, judged.certificate
     n_steps = len(found.clearance)
     bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
@@ -54,6 +59,8 @@ def step_table(
         columns["status"] = names_of(codes, [str(status) for status in STATUSES])
         if certificate is None and bounded:
             columns["lower_bound"] = pa.array(found.lower_bound[block])
+        if left is not None:
+            columns |= _left_columns(*left, block)
         if with_error:
             errors = [motion.tracking_error[block] for motion in motions]
             columns["tracking_error"] = pa.array(np.max(errors, axis=0))
@@ -105,6 +112,14 @@ def _proven_columns(
     return {
         "lower_bound": pa.array(certificate.lower_bound[steps]),
         "upper_bound": pa.array(certificate.upper_bound[steps], mask=unseen),
+    }
+
+
+def _left_columns(proven: np.ndarray, expected: np.ndarray, steps: slice) -> dict[str, pa.Array]:
+    """What a budget leaves of each step; null where nothing is expected of it."""
+    return {
+        "proven": pa.array(proven[steps]),
+        "expected": pa.array(expected[steps], from_pandas=True),
     }
 
 

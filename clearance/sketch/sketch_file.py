@@ -27,6 +27,7 @@ from clearance.errors import (
     at,
     nearest_name,
 )
+from clearance.plain_yaml import plain_data
 from clearance.sketch.entities import Line
 
 _SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
@@ -56,19 +57,14 @@ def read(path: Path, kind):
 
 
 def _content(path: Path) -> dict:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import YAMLError
-
     if path.exists() and not path.is_file():  # a pipe or a device may never end
         raise MissingFile("is not a file on disk", valid="a sketch file")
     try:
-        content = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as fault:
+        content = plain_data(path.read_bytes())
+    except OSError as fault:
         raise MissingFile(
             f"cannot be read ({fault.__class__.__name__})", valid="a sketch file"
         ) from None
-    except (YAMLError, ValueError, TypeError, RecursionError) as fault:
-        raise BadSyntax(f"is not YAML: {' '.join(str(fault).split())[:200]}") from None
     if not isinstance(content, dict):
         raise BadSyntax("is not a sketch", valid=f"a mapping with {', '.join(_SECTIONS)}")
     return content

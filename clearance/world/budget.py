@@ -82,6 +82,7 @@ class Budget:
         robots, obstacles: by name; what is not named is exact.
         coverage: standard deviations that the expected value takes off. is_normal: errors are normal with their
             magnitude at three standard deviations; else uniform up to it.
+        unproven_ok: a limit that is kept but not proven to be, with these errors, does not fail the run.
         sources: where its numbers come from, one line each: presets with their source, files.
     """
 
@@ -89,4 +90,5 @@ class Budget:
     obstacles: Mapping[str, ObstacleTolerance] = field(default_factory=dict)
     coverage: float = COVERAGE
     is_normal: bool = False
+    unproven_ok: bool = False
     sources: tuple[str, ...] = ()

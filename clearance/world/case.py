@@ -36,6 +36,7 @@ from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice
 from clearance.world.padding import checked_padding
 from clearance.world.pose_table import require_samples_to_loop
+from clearance.world.recording import Recording
 from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
@@ -154,6 +155,7 @@ class PlacedRobot:
         motion_limits: how fast joints may be, where more than the robot's own file is known.
         path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
         trajectory_path: the file that the trajectory is from; empty where it is from none.
+        recording: of which the trajectory is what the robot did; None where it is what it is asked.
     """
 
     robot: Robot
@@ -170,6 +172,7 @@ class PlacedRobot:
     motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
     path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
     trajectory_path: str = ""
+    recording: Recording | None = None
 
     def __post_init__(self) -> None:
         with at("world_from_base"):

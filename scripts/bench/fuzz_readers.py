@@ -1,9 +1,11 @@
 """Every reader on thousands of damaged files: each is read or refused by an error of ours, soon, in little memory.
 
 A valid small file of each kind is damaged in ways that a fixed seed draws: bytes flipped, cut off, doubled, moved,
-numbers replaced. Each kind is read in a process of its own with 1 GB of memory and 5 s of processor time a file.
+numbers replaced; or, with `--how structure`, its elements, keys, rows or counts are others (as `fuzz_seeds` says);
+or, with `--how cuts`, it is cut off at each byte. Each kind is read in a process of its own with 1 GB of memory,
+and 5 s of processor time a file. A warning, and a word on stderr, are faults too.
 
-    python scripts/bench/fuzz_readers.py [--files 5000] [--kinds OBJ,GLB] [--seed 1] [--keep FOLDER]
+    python scripts/bench/fuzz_readers.py [--how bytes] [--files 5000] [--kinds OBJ,GLB] [--seed 1] [--keep FOLDER]
 """
 
 from __future__ import annotations
@@ -17,15 +19,16 @@ import subprocess
 import sys
 import tempfile
 import time
-import traceback
+import warnings
 from collections import Counter
 from pathlib import Path
+from random import Random
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from clearance.errors import ClearanceError
+from scripts.bench.fuzz_outcome import outcome
 from scripts.bench.fuzz_seeds import Reader, readers
 
 MOST_MEMORY = 1 << 30
@@ -51,6 +54,16 @@ def damaged(valid: bytes, seed: int) -> bytes:
         if data:
             data = bytearray(_DAMAGES[rng.integers(len(_DAMAGES))](data, rng))
     return bytes(data)
+
+
+def content(reader: Reader, how: str, seed: int, i: int) -> bytes:
+    """The `i`-th damaged file of a kind."""
+    if how == "cuts":
+        return reader.valid[:i]
+    number = seed * 1_000_003 + i
+    if how == "structure":
+        return reader.damage(reader.valid, Random(number))
+    return damaged(reader.valid, number)
 
 
 def _span(data: bytearray, rng: np.random.Generator) -> tuple[int, int]:
@@ -118,25 +131,7 @@ _DAMAGES = (
 )  # fmt: skip
 
 
-def outcome(reader: Reader, data: bytes, folder: Path) -> str:
-    """What came of a file: "read", "refused", or the fault: a foreign error, or a message of several lines."""
-    try:
-        reader.read(data, folder)
-    except ClearanceError as error:
-        return "refused" if "\n" not in str(error) else "message of several lines"
-    except MemoryError:
-        return "out of memory"
-    except RecursionError:
-        return "RecursionError"
-    except Exception as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        ours = [f for f in traceback.extract_tb(error.__traceback__) if "clearance" in f.filename]
-        inner = f"{Path(ours[-1].filename).name}:{ours[-1].lineno}" if ours else place.name
-        return f"{type(error).__name__} at {inner}: {error!s:.60}"
-    return "read"
-
-
-def _work(kind: str, first: int, last: int, seed: int) -> None:
+def _work(kind: str, how: str, first: int, last: int, seed: int) -> None:
     """Reads the files `first` to `last` of a kind and tells of each; the system ends it where one is too long."""
     reader = readers()[kind]
     with tempfile.TemporaryDirectory() as folder:
@@ -144,23 +139,24 @@ def _work(kind: str, first: int, last: int, seed: int) -> None:
         used = Path("/proc/self/statm").read_text().split()[5]
         limit = MOST_MEMORY + int(used) * resource.getpagesize()
         resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+        warnings.simplefilter("error")
         for i in range(first, last):
             print(i, end=" ", flush=True)
             signal.setitimer(signal.ITIMER_PROF, MOST_TIME)
-            said = outcome(reader, damaged(reader.valid, seed * 1_000_003 + i), Path(folder))
+            said = outcome(reader, content(reader, how, seed, i), Path(folder))
             signal.setitimer(signal.ITIMER_PROF, 0)
             print(" ".join(said.split()), flush=True)
 
 
 def fuzz(
-    kind: str, n_files: int, seed: int, keep: Path | None
+    kind: str, how: str, n_files: int, seed: int, keep: Path | None
 ) -> tuple[Counter, dict[str, int], float]:
     """How often each outcome came, the first file of each fault, and the seconds that all took."""
     found: Counter = Counter()
     firsts: dict[str, int] = {}
     began, first = time.perf_counter(), 0
     while first < n_files:
-        command = [sys.executable, __file__, "--work", kind, str(first), str(n_files), str(seed)]
+        command = [sys.executable, __file__, "--work", kind, how, *map(str, (first, n_files, seed))]
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONWARNINGS": "ignore"}
         done = subprocess.run(command, capture_output=True, text=True, env=environment)
         lines = [line.partition(" ") for line in done.stdout.splitlines()]
@@ -170,15 +166,15 @@ def fuzz(
             firsts.setdefault(said, int(number))
         if not lines:
             raise SystemExit(f"{kind}: the process did not start: {done.stderr[-2000:]}")
+        if done.stderr.strip():
+            found[f"on stderr: {' '.join(done.stderr.split())[:200]}"] += 1
         first = int(lines[-1][0]) + 1
     if keep is not None:
         keep.mkdir(parents=True, exist_ok=True)
         reader = readers()[kind]
         for said, i in firsts.items():
             if said not in ("read", "refused"):
-                (keep / f"{i}_{reader.name}").write_bytes(
-                    damaged(reader.valid, seed * 1_000_003 + i)
-                )
+                (keep / f"{i}_{Path(reader.name).name}").write_bytes(content(reader, how, seed, i))
     return found, firsts, time.perf_counter() - began
 
 
@@ -187,6 +183,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--how", choices=("bytes", "structure", "cuts"), default="bytes")
     parser.add_argument("--files", type=int, default=5000)
     parser.add_argument("--kinds", default="")
     parser.add_argument("--seed", type=int, default=1)
@@ -195,12 +192,13 @@ def main() -> None:
     n_faults = 0
     print("| kind | files | read | refused | faults | s |\n|---|---|---|---|---|---|", flush=True)
     for kind in given.kinds.split(",") if given.kinds else readers():
-        found, firsts, seconds = fuzz(kind, given.files, given.seed, given.keep)
+        n_files = len(readers()[kind].valid) if given.how == "cuts" else given.files
+        found, firsts, seconds = fuzz(kind, given.how, n_files, given.seed, given.keep)
         faults = {said: n for said, n in found.items() if said not in ("read", "refused")}
         n_faults += sum(faults.values())
         row = [
             kind,
-            given.files,
+            n_files,
             found["read"],
             found["refused"],
             sum(faults.values()),
@@ -208,12 +206,12 @@ def main() -> None:
         ]
         print("| " + " | ".join(map(str, row)) + " |", flush=True)
         for said, n in sorted(faults.items(), key=lambda item: -item[1]):
-            print(f"  {n} x {said} (file {firsts[said]})", flush=True)
+            print(f"  {n} x {said} (file {firsts.get(said, 'unknown')})", flush=True)
     raise SystemExit(n_faults > 0)
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--work"]:
-        _work(sys.argv[2], *map(int, sys.argv[3:]))
+        _work(sys.argv[2], sys.argv[3], *map(int, sys.argv[4:]))
     else:
         main()

@@ -1,298 +1,181 @@
-"""Small valid files of every kind that is read, and what reads each: where `fuzz_readers` starts from."""
+"""One row for each kind of file that is read: a small valid file, what reads it, and how its structure is damaged.
+
+A format that is new is a row here; `tests/load/test_damaged_files.py` holds the suffixes in the tables of readers
+against these rows. Not for: damaging (`fuzz_readers`, `fuzz_trees`, `fuzz_markup`, `fuzz_lines`, `fuzz_bytes`).
+"""
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from scripts.bench.fuzz_meshes import (
-    CUBE,
-    binary_stl,
-    collada,
-    dxf,
-    glb,
-    obj,
-    off,
-    ply_binary,
-    ply_text,
-    step,
-    text_stl,
-)
-from scripts.bench.fuzz_texts import (
-    BOXES,
-    CASE,
-    COMMAS,
-    CONTROL,
-    CURVES,
-    LIMITS,
-    MESSAGE,
-    MESSAGE_JSON,
-    MJCF,
-    PATH,
-    PLANNING_SCENE,
-    POSES,
-    PROFILE,
-    ROBOT,
-    SCENE_TEXT,
-    SDF,
-    SRDF,
-    STAMPED,
-    URDF,
-    XACRO,
-)
+from scripts.bench import fuzz_cases as cases
+from scripts.bench import fuzz_meshes as shapes
+from scripts.bench import fuzz_reading as reading
+from scripts.bench import fuzz_texts as texts
+from scripts.bench.fuzz_bags import bag, bag_metadata, states
+from scripts.bench.fuzz_bytes import Damage, after_header, glb_damaged, parts_damaged
+from scripts.bench.fuzz_lines import lines_damaged, table_damaged
+from scripts.bench.fuzz_markup import xml_damaged
+from scripts.bench.fuzz_trees import json_damaged, yaml_damaged
 from tests.load.making_clouds import pcd, ply, table
+from tests.load.making_moveit import FIRST
 from tests.load.making_octree import octree
 
 CELLS = {(0, 0, 0): True, (1, 0, 0): True, (0, -1, 2): False, (-9, 4, 4): True}
-
 SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
+POINTS = np.concatenate([shapes.CUBE, [[np.nan] * 3]])
 
 
 class Reader(NamedTuple):
-    """What is read: a valid file, its name, and a function of content and folder that reads it."""
+    """What is read.
+
+    Attributes:
+        name: of the file. valid: its content.
+        reads: reads a content, in a folder that it may write into, under a name.
+        damage: another content, of which the structure is damaged in ways that a `Random` draws.
+        table: the module with the table of suffixes that its reader is in, if it is in one.
+        also: other suffixes that are read as this one is.
+    """
 
     name: str
     valid: bytes
-    read: Callable[[bytes, Path], object]
+    reads: reading.Read
+    damage: Damage
+    table: str = ""
+    also: tuple[str, ...] = ()
+
+    def read(self, data: bytes, folder: Path) -> object:
+        """What is read of a content."""
+        return self.reads(data, folder, self.name)
 
 
 def readers() -> dict[str, Reader]:
-    """Every reader by name."""
-    meshes = {
-        "STL binary": ("m.stl", binary_stl()),
-        "STL text": ("m.stl", text_stl()),
-        "OBJ": ("m.obj", obj()),
-        "COLLADA": ("m.dae", collada()),
-        "PLY text": ("m.ply", ply_text()),
-        "PLY binary": ("m.ply", ply_binary()),
-        "OFF": ("m.off", off()),
-        "GLB": ("m.glb", glb()),
-        "STEP": ("m.step", step()),
-        "octomap binary": ("m.bt", octree(CELLS)),
-        "octomap full": ("m.ot", octree(CELLS, full=True)),
-    }
-    made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
-    for kind, (name, data) in _scans().items():
-        made[kind] = Reader(name, data, _points_reader(name))
-    return made | {
-        "DXF": Reader("d.dxf", dxf(), _file_reader("d.dxf", _read_dxf)),
-        "curves": Reader("c.yaml", CURVES, _file_reader("c.yaml", _read_curves)),
-        "profile": Reader("p.yaml", PROFILE, _file_reader("p.yaml", _read_profile)),
-        "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
-        "URDF": Reader("arm.urdf", URDF, _case_reader("arm.urdf")),
-        "MJCF": Reader("arm.xml", MJCF, _mjcf_reader("arm.xml")),
-        "MJCF scene": Reader("world.xml", MJCF, _mjcf_scene_reader("world.xml")),
-        "case": Reader("case.yaml", CASE, _case_reader("case.yaml")),
-        "SRDF": Reader("arm.srdf", SRDF, _robot_reader("arm.srdf")),
-        "joint limits": Reader("limits.yaml", LIMITS, _robot_reader("limits.yaml")),
-        "controllers": Reader("control.yaml", CONTROL, _robot_reader("control.yaml")),
-        "xacro": Reader("arm.xacro", XACRO, _file_reader("arm.xacro", _read_xacro)),
-        "trajectory": Reader("path.csv", PATH, _trajectory_reader("path.csv")),
-        "trajectory semicolons": Reader("path.csv", COMMAS, _trajectory_reader("path.csv")),
-        "JointTrajectory": Reader("path.yaml", MESSAGE, _trajectory_reader("path.yaml")),
-        "JointTrajectory JSON": Reader("path.json", MESSAGE_JSON, _trajectory_reader("path.json")),
-        "pose table": Reader("door.csv", POSES, _file_reader("door.csv", _read_poses)),
-        "poses stamped": Reader("door.yaml", STAMPED, _file_reader("door.yaml", _read_poses)),
-        "PlanningScene": Reader("cell.yaml", PLANNING_SCENE, _scene_reader("cell.yaml")),
-        "scene text": Reader("cell.scene", SCENE_TEXT, _scene_reader("cell.scene")),
-        "SDF": Reader("cell.sdf", SDF, _scene_reader("cell.sdf")),
-        **_bag_readers(),
-    }
+    """Every reader by the kind of file that it reads."""
+    return (
+        _meshes()
+        | _scans()
+        | _drawings()
+        | _robots()
+        | _scenes()
+        | _motions()
+        | _bags()
+        | _others()
+    )
 
 
-def _mesh_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.mesh import mesh_from_bytes
-
-        return mesh_from_bytes(data, name)
-
-    return read
-
-
-def _scans() -> dict[str, tuple[str, bytes]]:
-    points = np.concatenate([CUBE, [[np.nan] * 3]])
+def _meshes() -> dict[str, Reader]:
+    pieces, words, text = parts_damaged, lines_damaged, after_header(b"end_header")
+    read, where = reading.mesh, "load.mesh"
     return {
-        "PCD ascii": ("s.pcd", pcd(points, "ascii")),
-        "PCD binary": ("s.pcd", pcd(points, "binary")),
-        "PCD compressed": ("s.pcd", pcd(points, "binary_compressed")),
-        "points PLY": ("s.ply", ply(points)),
-        "points CSV": ("s.csv", table(points, ",", "x [mm],y [mm],z [mm]")),
-        "points XYZ": ("s.xyz", table(points, " ", "")),
+        "STL binary": Reader("m.stl", shapes.binary_stl(), read, pieces, where),
+        "STL text": Reader("m.stl", shapes.text_stl(), read, words, where),
+        "OBJ": Reader("m.obj", shapes.obj(), read, words, where),
+        "COLLADA": Reader("m.dae", shapes.collada(), read, xml_damaged, where),
+        "PLY text": Reader("m.ply", shapes.ply_text(), read, words, where),
+        "PLY binary": Reader("m.ply", shapes.ply_binary(), read, text, where),
+        "OFF": Reader("m.off", shapes.off(), read, words, where),
+        "GLB": Reader("m.glb", shapes.glb(), read, glb_damaged, where),
+        "STEP": Reader("m.step", shapes.step(), read, words, where, (".stp",)),
+        "octomap binary": Reader("m.bt", octree(CELLS), read, after_header(b"data"), where),
+        "octomap full": Reader(
+            "m.ot", octree(CELLS, full=True), read, after_header(b"data"), where
+        ),
     }
 
 
-def _points_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.cloud import cloud_from_bytes
-
-        return cloud_from_bytes(data, name, 0.01)
-
-    return read
-
-
-def _file_reader(name: str, read_file: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        (folder / name).write_bytes(data)
-        return read_file(folder / name)
-
-    return read
-
-
-def _case_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.case_file import load_case
-
-        valid = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, "m.stl": binary_stl()}
-        for other, content in (valid | {name: data}).items():
-            (folder / other).write_bytes(content)
-        return load_case(folder / "case.yaml")
-
-    return read
-
-
-def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
-    """Reads a robot with all the files that may stand beside it, of which one is damaged."""
-
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load import schema
-        from clearance.load.input_files import InputFiles
-        from clearance.load.mesh_store import MeshStore
-        from clearance.load.robots import RobotReader
-
-        valid = {"arm.urdf": BOXES, "m.stl": binary_stl(), "arm.srdf": SRDF}
-        valid |= {"limits.yaml": LIMITS, "control.yaml": CONTROL}
-        for other, content in (valid | {name: data}).items():
-            (folder / other).write_bytes(content)
-        robot = schema.Robot.model_validate(ROBOT)
-        entry = schema.RobotEntry("robot", robot, None, "trajectory")
-        return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry)
-
-    return read
-
-
-def _mjcf_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.robot_formats import load_robot
-
-        (folder / name).write_bytes(data)
-        (folder / "m.stl").write_bytes(binary_stl())
-        return load_robot(folder / name)
-
-    return read
-
-
-def _mjcf_scene_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.input_files import InputFiles
-        from clearance.load.scene_formats import read_scene
-        from clearance.load.scene_request import SceneRequest
-
-        (folder / name).write_bytes(data)
-        (folder / "m.stl").write_bytes(binary_stl())
-        return read_scene(SceneRequest(folder / name, InputFiles(folder)))
-
-    return read
-
-
-def _read_dxf(path: Path) -> object:
-    from clearance.planar.dxf import read_dxf
-
-    return read_dxf(str(path))
-
-
-def _read_xacro(path: Path) -> object:
-    """What is evaluated in the process that is started for it, and then read as URDF."""
-    from clearance.errors import BadSyntax
-    from clearance.load.urdf_elements import parse_document
-    from clearance.load.xacro_process import Watch, evaluated
-
-    made = evaluated(path, {}, Watch())
-    if "problem" in made:
-        raise BadSyntax(made["problem"], where=path.name)
-    return parse_document(made["urdf"].encode())
-
-
-def _read_curves(path: Path) -> object:
-    from clearance.planar.curve_file import read_curve
-
-    return read_curve(str(path))
-
-
-def _read_profile(path: Path) -> object:
-    from clearance.profiles.outline_file import read_profile
-
-    return read_profile(path)
-
-
-def _read_sketch(path: Path) -> object:
-    from clearance.sketch import Sketch
-
-    return Sketch.load(path)
-
-
-def _read_poses(path: Path) -> object:
-    from clearance.load.pose_formats import read_poses
-    from clearance.load.pose_table_request import PoseRequest
-
-    return read_poses(PoseRequest(lambda: path.open("rb"), path.stat().st_size), path.name)
-
-
-def _scene_reader(name: str) -> Callable[[bytes, Path], object]:
-    """Reads a scene as a case would: its content, then the solids that it names."""
-
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.input_files import InputFiles
-        from clearance.load.mesh_store import MeshStore
-        from clearance.load.obstacle_schema import Scene
-        from clearance.load.scene_file import make_obstacles
-        from clearance.load.scene_formats import read_scene
-        from clearance.load.scene_request import SceneRequest
-        from clearance.load.schema_errors import validated
-
-        (folder / "m.stl").write_bytes(binary_stl())
-        (folder / name).write_bytes(data)
-        files = InputFiles(folder)
-        content = read_scene(SceneRequest(folder / name, files))
-        given = validated(Scene, content.scene, name).obstacles
-        return make_obstacles(given, folder, MeshStore(files))
-
-    return read
-
-
-def _bag_readers() -> dict[str, Reader]:
-    """Bags in each container that rosbags writes; of a folder its one file with the messages."""
-    files = {"bag": "run.bag", "mcap": "run.mcap", "rosbag2 sqlite3": "run.db3"}
+def _scans() -> dict[str, Reader]:
+    read, where, body = reading.points, "load.cloud", after_header(b"DATA")
+    in_mm, plain = table(POINTS, ",", "x [mm],y [mm],z [mm]"), table(POINTS, " ", "")
     return {
-        f"bag {kind}": Reader(name, _bag(kind), _file_reader(name, _read_bag))
-        for kind, name in files.items()
+        "PCD ascii": Reader("s.pcd", pcd(POINTS, "ascii"), read, lines_damaged, where),
+        "PCD binary": Reader("s.pcd", pcd(POINTS, "binary"), read, body, where),
+        "PCD compressed": Reader("s.pcd", pcd(POINTS, "binary_compressed"), read, body, where),
+        "points PLY": Reader("s.ply", ply(POINTS), read, after_header(b"end_header"), where),
+        "points CSV": Reader("s.csv", in_mm, read, table_damaged, where),
+        "points XYZ": Reader("s.xyz", plain, read, table_damaged, where, (".txt", ".asc")),
     }
 
 
-def _read_bag(path: Path) -> object:
-    from clearance.load.timed_files import load_trajectory
-    from clearance.load.trajectory_request import Choice
-
-    return load_trajectory(path, Choice())
-
-
-def _bag(kind: str) -> bytes:
-    from tests.load.making_bags import planned, write_bag
-
-    with tempfile.TemporaryDirectory() as folder:
-        topics = {"/plan": [planned([0.1, 0.0], [0.3, 0.05])]}
-        path = write_bag(Path(folder) / "made", kind, topics)
-        file = next(path.glob("*.db3")) if path.is_dir() else path
-        return file.read_bytes()
+def _drawings() -> dict[str, Reader]:
+    sketch = SKETCH.read_bytes()
+    return {
+        "DXF": Reader("d.dxf", shapes.dxf(), reading.by_path(reading.dxf), lines_damaged),
+        "curves": Reader("c.yaml", texts.CURVES, reading.by_path(reading.curves), yaml_damaged),
+        "profile": Reader("p.yaml", texts.PROFILE, reading.by_path(reading.profile), yaml_damaged),
+        "outline": Reader("p.yaml", texts.PROFILE, reading.by_path(reading.outline), yaml_damaged),
+        "sketch": Reader("s.yaml", sketch, reading.by_path(reading.sketch), yaml_damaged),
+    }
 
 
-def _trajectory_reader(name: str) -> Callable[[bytes, Path], object]:
-    def read(data: bytes, folder: Path) -> object:
-        from clearance.load.trajectory_file import parse_trajectory
+def _robots() -> dict[str, Reader]:
+    where, beside = "load.robot_formats", reading.robot_beside
+    evaluated = reading.by_path(reading.xacro)
+    return {
+        "URDF": Reader("arm.urdf", texts.URDF, reading.robot, xml_damaged, where, (".xml",)),
+        "MJCF": Reader("arm.xml", texts.MJCF, reading.robot, xml_damaged, where, (".mjcf",)),
+        "xacro": Reader("arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.xacro_file"),
+        "SRDF": Reader("arm.srdf", texts.SRDF, beside, xml_damaged),
+        "joint limits": Reader("limits.yaml", texts.LIMITS, beside, yaml_damaged),
+        "controllers": Reader("control.yaml", texts.CONTROL, beside, yaml_damaged),
+    }
 
-        return parse_trajectory(data, name)
 
-    return read
+def _scenes() -> dict[str, Reader]:
+    read, where = reading.scene, "load.scene_formats"
+    return {
+        "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where),
+        "PlanningScene": Reader("cell.yaml", texts.PLANNING_SCENE, read, yaml_damaged, where),
+        "octomap message": Reader(
+            "cell.yaml", cases.octomap_scene(octree(CELLS)), read, yaml_damaged, where
+        ),
+        "scene text": Reader("cell.scene", texts.SCENE_TEXT, read, lines_damaged, where),
+        "scene text 1": Reader("cell.scene", FIRST.encode(), read, lines_damaged, where),
+        "SDF": Reader("cell.sdf", texts.SDF, read, xml_damaged, where, (".world",)),
+        "MJCF scene": Reader("world.xml", texts.MJCF, read, xml_damaged, where, (".mjcf",)),
+    }
+
+
+def _motions() -> dict[str, Reader]:
+    read, where = reading.trajectory, "load.trajectory_file"
+    poses, tables = reading.poses, "load.pose_formats"
+    yml = (".yml",)
+    return {
+        "trajectory": Reader("path.csv", texts.PATH, read, table_damaged, where),
+        "trajectory semicolons": Reader("path.csv", texts.COMMAS, read, table_damaged, where),
+        "JointTrajectory": Reader("path.yaml", texts.MESSAGE, read, yaml_damaged, where, yml),
+        "JointTrajectory JSON": Reader("path.json", texts.MESSAGE_JSON, read, json_damaged, where),
+        "pose table": Reader("door.csv", texts.POSES, poses, table_damaged, tables),
+        "poses stamped": Reader("door.yaml", texts.STAMPED, poses, yaml_damaged, tables, yml),
+        "poses JSON": Reader("door.json", cases.POSES_JSON, poses, json_damaged, tables),
+    }
+
+
+def _bags() -> dict[str, Reader]:
+    read, where = reading.by_path(reading.bag), "load.rosbag_file"
+    folder = reading.by_path(reading.bag_folder)
+    return {
+        "bag bag": Reader("run.bag", bag("bag"), read, parts_damaged, where),
+        "bag mcap": Reader("run.mcap", bag("mcap"), read, parts_damaged, where),
+        "bag mcap states": Reader("run.mcap", states("mcap"), read, parts_damaged, where),
+        "bag rosbag2 sqlite3": Reader(
+            "run.db3", bag("rosbag2 sqlite3"), read, parts_damaged, where
+        ),
+        "bag metadata": Reader("run/metadata.yaml", bag_metadata(), folder, yaml_damaged),
+    }
+
+
+def _others() -> dict[str, Reader]:
+    file = reading.by_path
+    return {
+        "case": Reader("case.yaml", texts.CASE, reading.case, yaml_damaged),
+        "case list": Reader(
+            "all.yaml", b"cases: ['*e.yaml']\n", file(reading.case_list), yaml_damaged
+        ),
+        "manifest": Reader("batch.yaml", cases.MANIFEST, file(reading.manifest), yaml_damaged),
+        "batch": Reader("batch.yaml", cases.MANIFEST, file(reading.batch_items), yaml_damaged),
+        "waivers": Reader("waivers.yaml", cases.WAIVERS, file(reading.waivers), yaml_damaged),
+        "findings": Reader("findings.json", cases.findings(), file(reading.findings), json_damaged),
+    }

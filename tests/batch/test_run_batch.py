@@ -319,3 +319,15 @@ def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeyp
     monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
     _, cut = run_here(manifest, tmp_path / "cut")
     assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}
+
+
+def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
+    manifest = write_cell(tmp_path / "in", [0.2])
+    cell = tmp_path / "in" / "cell.yaml"
+    cell.write_text(cell.read_text() + "tolerance: {base: {xyz: 0.3}}\n")
+    _, found = run_here(manifest, tmp_path / "store")
+    (row,) = found.cases.to_pylist()
+    assert (row["status"], row["measured"], row["exit_code"]) == ("not proven", "near", 1)
+    assert any("with the tolerances" in reason for reason in row["reasons"])
+    page = (tmp_path / "store" / "batch.html").read_text()
+    assert '"not proven"' in page and ".tag.not" in page

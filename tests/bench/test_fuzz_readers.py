@@ -38,8 +38,8 @@ def test_the_same_seed_does_the_same_damage():
 
 
 def test_a_foreign_error_and_a_message_of_several_lines_are_faults(tmp_path):
-    def fails(data, folder):
+    def fails(data, folder, name):
         raise KeyError("x")
 
-    reader = READERS["OBJ"]._replace(read=fails)
+    reader = READERS["OBJ"]._replace(reads=fails)
     assert outcome(reader, reader.valid, tmp_path).startswith("KeyError at")

@@ -18,6 +18,7 @@ from ruamel.yaml import YAML
 from clearance.cli.commands import clearance
 from clearance.load.manifest_schema import Manifest
 from clearance.load.schema import Case
+from clearance.load.tolerance_schema import Tolerance
 from clearance.load.waiver_file import load_waivers
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
@@ -130,6 +131,8 @@ def test_case_files_keep_to_the_schema(block: CodeBlock, tmp_path):
     if block.title == "waivers.yaml":
         (tmp_path / block.title).write_text(block.text)
         assert load_waivers(tmp_path / block.title)
+    elif block.title == "tolerances.yaml":
+        Tolerance.model_validate(content)
     elif isinstance(content, list):  # steps of a job
         assert all(set(step) <= {"uses", "with", "run"} for step in content)
     elif {"robot", "robots"} & content.keys():

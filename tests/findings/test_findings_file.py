@@ -59,6 +59,8 @@ def changed(**changes: object) -> str:
         (findings_text(found())[:-40], BadSyntax, "not JSON"),
         ("[" * 100_000, BadSyntax, "not JSON"),
         (findings_text(found()).replace("0.06", "NaN"), BadSyntax, "NaN"),
+        (findings_text(found()).replace("0.06", "1e400"), BadSyntax, "1e400 is beyond doubles"),
+        (findings_text(found()).replace("0.06", '"inf"'), BadInput, "warn"),
         ("[]", BadInput, "format None"),
         (changed(format=FORMAT + 1), BadInput, f"format {FORMAT + 1}"),
         (changed(findings=[{"id": 1}]), BadInput, "findings[0]"),

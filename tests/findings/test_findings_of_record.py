@@ -13,7 +13,7 @@ import clearance as cl
 from clearance.findings.finding import FindingName
 from clearance.findings.findings_file import finding_list_of
 from clearance.findings.of_record import findings_of, why_incomplete
-from clearance.report import verdict_of
+from clearance.report.verdict import verdict_of
 from clearance.simulate import rule_pairs
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity

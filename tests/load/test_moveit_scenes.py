@@ -130,15 +130,24 @@ def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path):
-    thousand = ", ".join(["*s"] * 1000)
-    objects = ", ".join(["*o"] * 1000)
+@pytest.mark.parametrize(
+    ("n", "more", "told"),
+    [(200, "#" * 200_000, "or 30000 shapes"), (1000, "", "the aliases repeat too much")],
+)
+def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path, n, more, told):
+    shapes, objects = ", ".join(["*s"] * n), ", ".join(["*o"] * n)
     document = f"""robot_model_name: &s {{type: 2, dimensions: [1]}}
-name: &o {{id: a, primitives: [{thousand}]}}
+name: &o {{id: a, primitives: [{shapes}]}}
 world: {{collision_objects: [{objects}]}}
-"""
-    with pytest.raises(BadInput, match="or 30000 shapes"):
+{more}"""
+    with pytest.raises(BadInput, match=told):
         content_of(tmp_path, document)
+
+
+def test_an_octomap_has_a_pose_for_its_origin(tmp_path):
+    map_ = "octomap: {origin: 1, octomap: {id: OcTree, resolution: 0.1, binary: false, data: [1]}}"
+    with pytest.raises(BadInput, match=r"octomap: origin: 1 is given; a mapping is needed"):
+        content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
 
 
 def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):

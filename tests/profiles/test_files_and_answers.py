@@ -262,6 +262,7 @@ def test_a_broken_profile_file_is_refused(tmp_path):
         ("plane: {axes: [[1, 0, 0], [0, .nan, 0]]}", "plane: axes"),
         ("bound: -1", "bound"),
         ("steps: many", "steps"),
+        ("notes: 5", "notes"),
         ("section: [1]", "section"),
         ("origin: {links: [a], link_and_step: [[0, 1]]}", "1 entries for 3 pieces"),
         ("origin: {links: [a], link_and_step: [[0, 1], [1, 1], [0, 2]]}", "a link or step"),

@@ -191,3 +191,24 @@ def test_many_poses_are_as_one_by_one():
         [near.point_a.tolist(), near.point_b.tolist()] for near in single
     ]
     assert 0 < np.count_nonzero(found.distances == 0.0) < 60
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_contact_is_the_same_wherever_the_search_began(order):
+    """Of hundreds of points in a body one is the answer, also where the pose before was apart, or in contact."""
+    random = np.random.default_rng(4)
+    sheet = PointCloud(random.uniform(-1.0, 1.0, (4000, 3)) * [1.0, 1.0, 0.01], 0.01)
+    shapes = (sheet, torus(0.5, 0.1, 24, 12))[::order]
+    way = np.tile(np.eye(4), (40, 1, 1))
+    way[:, 2, 3] = np.linspace(0.4, -0.4, 40)
+    runs = [Query(*shapes).distances(worlds_from_b=one) for one in (way, way[::-1])]
+    points_there, points_back = (np.asarray(found.points) for found in runs)
+    assert np.array_equal(points_there, points_back[::-1])
+    single = [distance(*shapes, pose_b=pose) for pose in way]
+    assert points_there.tolist() == [[n.point_a.tolist(), n.point_b.tolist()] for n in single]
+    in_contact = [n for n in single if n.contact]
+    assert 5 < len(in_contact) < 35
+    for pose, near in zip(way, single, strict=True):
+        if near.contact:
+            centres = sheet.vertices + (pose[:3, 3] if order < 0 else 0.0)
+            assert np.linalg.norm(centres - near.point_a, axis=1).min() <= 0.01 * (1.0 + 1e-12)

@@ -16,10 +16,10 @@ import clearance as cl
 from clearance.findings.comparison import compared
 from clearance.findings.findings_file import finding_list_of
 from clearance.load.trajectory_lines import line_of_sample
-from clearance.report import verdict_of
 from clearance.report.annotations import MOST, annotation_lines, command
 from clearance.report.markdown import MOST_ROWS, markdown, plain
 from clearance.report.trajectory_row import row_of, sample_at
+from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing

@@ -15,10 +15,12 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report import json_text, summary_of, write_junit
+from clearance.report.junit import write_junit
+from clearance.report.output import json_text
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.pair_judge import PairJudge
+from clearance.report.summary import summary_of
 from clearance.simulate.replay import replay_of
 from clearance.world.carry import Carry
 from clearance.world.case import Clock, Limits, SelfClearance

@@ -12,9 +12,8 @@ from types import SimpleNamespace
 import pytest
 
 from clearance.errors import Unwritable
-from clearance.report import write
 from clearance.report.folder import fill_folder, write_file
-from clearance.report.output import OWN
+from clearance.report.output import OWN, write
 from tests.report.records import record
 
 NAMES = {

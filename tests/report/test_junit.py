@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from xml.etree import ElementTree
 
-from clearance.report import write_junit
+from clearance.report.junit import write_junit
 from clearance.simulate.record import ProfileAnswer
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity

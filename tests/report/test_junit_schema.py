@@ -8,7 +8,9 @@ from datetime import date
 import pytest
 
 import clearance as cl
-from clearance.report import junit, verdict_of, write_junit
+from clearance.report import junit
+from clearance.report.junit import write_junit
+from clearance.report.verdict import verdict_of
 from clearance.run import Question, answer
 from clearance.world.case import Limits, Omission
 from clearance.world.notice import Notice, Severity

@@ -4,8 +4,9 @@ import pytest
 from ruamel.yaml import YAML
 
 import clearance as cl
-from clearance.report import moveit_moments, write
+from clearance.report import moveit_moments
 from clearance.report.moments_file import moments_text
+from clearance.report.output import write
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
 from tests.report.records import record, with_contacts

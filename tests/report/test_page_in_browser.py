@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.report import write
+from clearance.report.output import write
 from clearance.report.still.camera import overview
 from clearance.report.still.scene import still_of
 from clearance.report.wording import mm

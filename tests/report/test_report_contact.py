@@ -8,9 +8,10 @@ import json
 import numpy as np
 import pytest
 
-from clearance.report import summary_of, write
 from clearance.report.contact import contacts
+from clearance.report.output import write
 from clearance.report.page import page_of
+from clearance.report.summary import summary_of
 from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
 from clearance.simulate import replay_contact
 from clearance.simulate.replay import load_replay, replay_of

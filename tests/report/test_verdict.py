@@ -12,8 +12,10 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report import summary_of, verdict_of, write_junit
+from clearance.report.junit import write_junit
 from clearance.report.page import page_of
+from clearance.report.summary import summary_of
+from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay import replay_of

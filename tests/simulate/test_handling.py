@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 import clearance as cl
-from clearance.report import notes_of
+from clearance.report.summary import notes_of
 from clearance.simulate.handling import handling_hints
 from clearance.simulate.standing import always_in_contact, standing_hint
 from clearance.world.carry import Carry

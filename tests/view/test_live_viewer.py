@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax, MissingFile
-from clearance.report import write
+from clearance.report.output import write
 from clearance.simulate.replay import replay_of
 from clearance.view import play, show
 from clearance.view.playback import line_tracks

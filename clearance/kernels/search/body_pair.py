@@ -111,6 +111,16 @@ def _contact(bodies, found, tally, table):
 
 
 @inline
+def _touch(frames, found, radii, tally):
+    """The contact of a ball with a face that it reaches, the first found; or of two balls."""
+    hit = found.hit
+    _, _, x, _ = less_balls(wide(np.sqrt(hit.gap_sq)), 0.0, hit.p, hit.q, radii)
+    x = move(frames.a, x)
+    touching = Hit(0.0, found.face_a, found.face_b, x, x)
+    return PairDistance(touching, 0.0, 0.0, found.face_a, found.face_b, tally)
+
+
+@inline
 def _of_centres(question, radii):
     """The question as one about the points of clouds instead of the balls about them."""
     wider = radii.both
@@ -167,6 +177,13 @@ def _seek_planes(roots, best, limit, slack, front, scratch, table):
     return planes
 
 
+@inline
+def _is_within(found, radii):
+    """True if what a descent has found are centres that the balls about them reach."""
+    refined = found.refined
+    return radii.both > 0.0 and refined.face_a != 2**62 and refined.length.hi <= radii.both
+
+
 @inline(one_caller=True)
 def _of_planes(planes, question, slack, radii, tally):
     """What planes say that are farther apart than the limit."""
@@ -213,12 +230,15 @@ def search(bodies, question, front, scratch, table):
     slack = rounding_slack(a, roots.a, b, roots.b, frames)
     margin = margin_of(slack)
     n_nodes, n_faces, n_exact = 0, 0, 0
-    if question.touches and radii.both == 0.0:  # balls touch without their centres
-        over = overlap_of(table, roots, slack, scratch)
+    if question.touches:
+        over = overlap_of(table, roots, slack, radii.both, scratch)
         n_nodes, n_faces = over.n_nodes, over.n_faces
-        if over.meeting.found:
+        if over.face_a != NO_FACE:
             forget(fronts, pair)
-            return _contact(bodies, over, Tally(n_nodes, n_faces, 0), table)
+            tally = Tally(n_nodes, n_faces, 0)
+            if radii.both > 0.0:
+                return _touch(frames, over, radii, tally)
+            return _contact(bodies, over, tally, table)
     first = _begin(a, roots.a, b, roots.b, frames.m, margin, question)
     limit = question.limit + margin
     planes = _seek_planes(roots, first.best, limit, slack, front, scratch, table)
@@ -239,14 +259,20 @@ def search(bodies, question, front, scratch, table):
         if is_all:
             break
         best, planes = found.hit, NOT_SEPARATED  # the hulls are nearer than the bodies
-    if (
-        found.meeting.found
-    ):  # which of several is the answer must not depend on where the search began
-        over = overlap_of(table, roots, slack, scratch)
-        tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
-        if not over.meeting.found:
-            over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
-        return _contact(bodies, over, tally, table)
+    if found.meeting.found or _is_within(found, radii):
+        # which of several is the answer must not depend on where the search began
+        over = overlap_of(table, roots, slack, radii.both, scratch)
+        n_nodes += over.n_nodes
+        n_faces += over.n_faces
+        tally = Tally(n_nodes, n_faces, n_exact)
+        if radii.both > 0.0 and over.face_a != NO_FACE:
+            forget(fronts, pair)
+            return _touch(frames, over, radii, tally)
+        if found.meeting.found:
+            if not over.meeting.found:
+                best = found.hit
+                over = Overlap(found.meeting, best, best.face_a, best.face_b, 0, 0)
+            return _contact(bodies, over, tally, table)
     tally = Tally(n_nodes, n_faces, n_exact)
     if not (question.apart or planes.n_waiting > 0):
         inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch, table)

@@ -1,6 +1,8 @@
 """The contact of two bodies that overlap: the first two faces found to meet, whatever was asked before.
 
 Nodes that are apart are left, so nothing is measured; of those that overlap the deepest in one another come first.
+A ball meets a face where its centre comes within the radius, by more than rounding: a search for the nearest
+centre would go on among all that are in the body.
 Which contact is found depends on the bodies and their poses alone, so that a row in contact is the same wherever a
 sweep starts. Not for: bodies that are apart (`descent`), of which it says nothing.
 """
@@ -12,8 +14,9 @@ import numpy as np
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import OVERLAP, apart, at_address, borrow, table_like
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, marks_within
-from clearance.kernels.arithmetic.vec3 import inverse
-from clearance.kernels.features.bounds import lower_bound_boxes
+from clearance.kernels.arithmetic.vec3 import Vec3, inverse
+from clearance.kernels.features.bounds import lower_bound_boxes, margin_of
+from clearance.kernels.features.face_pair import Hit, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
 from clearance.kernels.features.posed_pair import parts, posed_pair_like
 from clearance.kernels.mesh.surface import is_leaf
@@ -22,29 +25,39 @@ from clearance.kernels.search.scratch import STACK_DEPTH, new_scratch, wait
 
 
 class Overlap(NamedTuple):
-    """Two faces that meet, if any do, and the work of finding them."""
+    """Two faces that meet, if any do (else -1), and the work of finding them.
+
+    Attributes:
+        meeting: of faces. hit: of a ball and what it reaches, or of two balls, in the frame of a.
+    """
 
     meeting: Meeting
+    hit: Hit
     face_a: int
     face_b: int
     n_nodes: int
     n_faces: int
 
 
-NO_OVERLAP = Overlap(NO_MEETING, -1, -1, 0, 0)
+NO_HIT = Hit(np.inf, 2**62, 2**62, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
+NO_OVERLAP = Overlap(NO_MEETING, NO_HIT, -1, -1, 0, 0)
 
 
-@apart(OVERLAP, lambda: (posed_pair_like(), 0.0, new_scratch(), table_like()))
-def overlap(roots, slack, scratch, table):
+@apart(OVERLAP, lambda: (posed_pair_like(), 0.0, 0.0, new_scratch(), table_like()))
+def overlap(roots, slack, reach, scratch, table):
     """The first two faces found to have a point in common, exactly; all that can are looked at.
 
     Args:
         roots: of the bodies' trees.
         slack: [m] of `rounding_slack`, by which nodes may seem to be apart.
+        reach: [m] of the balls of both bodies together; 0 where neither is a cloud.
     """
     a, b = borrow(roots.surface_a), borrow(roots.surface_b)
     m = roots.frames.m
     back = inverse(m)
+    margin = margin_of(slack)
+    within = max(0.0, reach - 4.0 * margin)
+    within_sq = within * within
     n_nodes, n_faces, n_waiting = 1, 0, 1
     scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = roots.a, roots.b, 0.0
     while n_waiting > 0:
@@ -56,27 +69,32 @@ def overlap(roots, slack, scratch, table):
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             n_faces += 1
+            if reach > 0.0:
+                near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(within_sq))
+                if near.best.face_a != 2**62:
+                    return Overlap(NO_MEETING, near.best, face_a, face_b, n_nodes, n_faces)
+                continue
             met = meeting_of(table, parts(roots, face_a, face_b), scratch.exact)
             if met.found:
-                return Overlap(met, face_a, face_b, n_nodes, n_faces)
+                return Overlap(met, NO_HIT, face_a, face_b, n_nodes, n_faces)
             continue
         nodes, count = opened(a, node_a, b, node_b)
         n_nodes += count
         p, q = boxes_of_group(a, b, nodes)
         bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
-        near = ((1 << count) - 1) & marks_within(bounds, 0.0)
+        marks = ((1 << count) - 1) & marks_within(bounds, reach)
         if n_waiting + WIDTH > STACK_DEPTH:
             raise AssertionError("no room for what waits")
         first = n_waiting
-        while near:
-            i = first_of(near)
-            near &= near - 1
+        while marks:
+            i = first_of(marks)
+            marks &= marks - 1
             node_a, node_b = pair_in_group(nodes, i)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(bounds, i), first)
-    return Overlap(NO_MEETING, np.int64(-1), np.int64(-1), n_nodes, n_faces)
+    return Overlap(NO_MEETING, NO_HIT, np.int64(-1), np.int64(-1), n_nodes, n_faces)
 
 
 @inline(one_caller=True)
-def overlap_of(table, roots, slack, scratch):
+def overlap_of(table, roots, slack, reach, scratch):
     """The same by address."""
-    return at_address(table, OVERLAP, NO_OVERLAP, (roots, slack, scratch, table))
+    return at_address(table, OVERLAP, NO_OVERLAP, (roots, slack, reach, scratch, table))

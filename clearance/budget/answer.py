@@ -1,0 +1,106 @@
+"""What the tolerances of a case leave of its clearances, for each rule: its record's `budget`.
+
+Not for: the proof (`proven`), the estimate (`expected`), and who takes how much (`worst`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.budget.expected import expected_of_steps
+from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
+from clearance.budget.section_budget import SectionBudget
+from clearance.budget.worst import WorstMoments
+from clearance.errors import BadInput
+from clearance.simulate.budget_answer import RuleBudget
+from clearance.simulate.resources import Resources
+from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.sections import SectionPlan
+from clearance.world.budget import Budget
+from clearance.world.case import Case
+
+
+def budget_answers(
+    case: Case, plan: SectionPlan, answers: Sequence[SectionAnswer], resources: Resources
+) -> tuple[RuleBudget, ...]:
+    """What a case's tolerances leave, one for each rule that judges something, in their order.
+
+    Args:
+        answers: of the plan's sections. Where they are certified, the motion between the steps is as well.
+
+    Raises:
+        BadInput: tolerances that cannot be honoured in this case, as those of clocks where parts change hands.
+    """
+    budget = case.tolerance
+    if budget is None:
+        raise ValueError("a case without tolerances")
+    require_budget(case, budget, plan)
+    sections = [_of_section(budget, answer, resources) for answer in answers]
+    n_steps = max(section.section.steps.stop for section in sections)
+    names = case.limits.rule_names
+    return tuple(
+        _of_rule(case, rule, names[rule], n_steps, [s for s in sections if s.section.rule == rule])
+        for rule in plan.rules
+    )
+
+
+def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
+    """Nothing, if the budget can be honoured.
+
+    Raises:
+        BadInput: clocks that are not tied, or clocks that may be off in a run in which something changes hands.
+    """
+    if case.clock.slack > 0.0:
+        raise BadInput(
+            "a tolerance budget is given, and the case's clocks are not tied",
+            where="tolerance",
+            valid="`clock: common`, and how far clocks may be off in tolerance.timing",
+        )
+    late = [name for name, own in budget.robots.items() if own.timing > 0.0]
+    late += [name for name, own in budget.obstacles.items() if own.timing > 0.0]
+    if late and len({section.phase.first for section in plan.sections}) > 1:
+        raise BadInput(
+            f"the clock of {late[0]!r} may be off, and parts change hands, come or go during the run",
+            where="tolerance.timing",
+            valid="no timing, or a case for each part of the run",
+        )
+
+
+def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> SectionBudget:
+    what, found = answer.section.in_motion, answer.found
+    pairs = PairsWithErrors(what, budget, resources.n_threads)
+    steps = proven_of_steps(pairs, found)
+    between = None
+    if answer.certificate is not None:
+        between = proven_between(pairs, steps, answer.certificate.gap)
+    expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
+    return SectionBudget(answer, pairs, steps, between, expected)
+
+
+def _of_rule(
+    case: Case, rule: int, name: str, n_steps: int, sections: Sequence[SectionBudget]
+) -> RuleBudget:
+    proven, expected = np.full(n_steps, np.inf), np.full(n_steps, np.nan)
+    between = None if any(s.between is None for s in sections) else np.full(n_steps, np.inf)
+    for one in sections:
+        rows = one.section.steps
+        padding = one.section.padding
+        np.minimum(proven[rows], one.steps.proven - padding, out=proven[rows])
+        np.fmin(expected[rows], one.expected - padding, out=expected[rows])
+        if between is not None and one.between is not None:
+            own = one.between.proven - padding
+            last = one.section.phase.last == n_steps - 1
+            held = slice(rows.start, rows.stop if last else rows.stop - 1)
+            np.minimum(between[held], own if last else own[:-1], out=between[held])
+    limits = case.limits.of_rule(rule)
+    return RuleBudget(name, limits, proven, expected, between, WorstMoments(name, limits, sections))
+
+
+def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) [m] proven and expected of each step, of the rule whose limit what is proven comes nearest to."""
+    margins = np.array([one.proven - one.limits.fail for one in budgets])
+    which, steps = np.argmin(margins, axis=0), np.arange(margins.shape[1])
+    proven = np.array([one.proven for one in budgets])[which, steps]
+    return proven, np.array([one.expected for one in budgets])[which, steps]

@@ -1,0 +1,133 @@
+"""What is expected to be left of the nearest pair of each step: an estimate, no proof.
+
+Errors are independent. A number is uniform up to its size, or normal with its size at three standard deviations; a
+vector is uniform in the ball of its size, or normal in each of three axes alike. To the first order the variance
+of the distance is the sum of theirs, times the squares of their slopes: m^2 / 3, of a ball m^2 / 5 for each axis.
+Not for: what is proven (`proven`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from clearance.budget.sources import Slope, Witness, slopes
+from clearance.simulate.measure import Measurement
+from clearance.simulate.parts import blocks
+from clearance.world.budget import Budget
+from clearance.world.case import Case
+from clearance.world.forest import Forest, forest_of, joined_positions
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+OF_NUMBER, OF_VECTOR, OF_NORMAL = 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0
+"""The variance of an error of size 1, of each axis of a vector."""
+
+A_MOMENT = 1e-4
+"""[s] To either side of a time, within which the speed of what moves is looked at."""
+
+
+def variance_of(slope: Slope, budget: Budget) -> np.ndarray:
+    """(n,) [m^2] what one error adds to the variance of a distance."""
+    uniform = OF_VECTOR if slope.along.shape[1] == 3 else OF_NUMBER
+    share = OF_NORMAL if budget.is_normal else uniform
+    return share * slope.size**2 * (slope.along**2).sum(axis=1)
+
+
+def deviations(case: Case, budget: Budget, witness: Witness) -> np.ndarray:
+    """(n,) [m] the standard deviation of the distance of a pair."""
+    total = np.zeros(len(witness.points))
+    for slope in slopes(case, budget, witness):
+        total += variance_of(slope, budget)
+    return np.sqrt(total)
+
+
+def expected_of_steps(
+    case: Case,
+    budget: Budget,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    found: Measurement,
+) -> np.ndarray:
+    """(n,) [m] the clearance of each step less `coverage` standard deviations; NaN in contact or where unknown."""
+    expected = np.full(len(found.clearance), np.nan)
+    for block in blocks(len(expected)):
+        apart = np.flatnonzero((found.pair[block] >= 0) & ~found.touches(block)) + block.start
+        nearest = found.pair[apart]
+        for i_pair in np.unique(nearest).tolist():
+            steps = apart[nearest == i_pair]
+            witness = witness_of(case, budget, motions, pairs[i_pair], steps, found.points[steps])
+            taken = budget.coverage * deviations(case, budget, witness)
+            expected[steps] = found.clearance[steps] - taken
+    return expected
+
+
+def witness_of(
+    case: Case,
+    budget: Budget,
+    motions: Sequence[Motion],
+    pair: Pair,
+    steps: np.ndarray,
+    points: np.ndarray,
+) -> Witness:
+    """The nearest points of a pair at some steps, and where all is then."""
+    columns = joined_positions(case, motions, steps)
+    rates = clock_rates(case, budget, motions, motions[0].times[steps])
+    return Witness(pair, points, forest_of(case).poses(columns), rates)
+
+
+def clock_rates(
+    case: Case, budget: Budget, motions: Sequence[Motion], times: np.ndarray
+) -> Mapping[str, np.ndarray]:
+    """Of each whose clock may be off: (n, links, 4, 4) [1/s] how poses change with it."""
+    owners = [
+        (name, slice(first, last))
+        for name, first, last in _columns(case)
+        if _timing(budget, name) > 0.0
+    ]
+    if not owners:
+        return {}
+    forest, whole = forest_of(case), slice(0, motions[0].n_steps)
+    samples, knots = joined_positions(case, motions, whole), motions[0].times
+    here = _at(knots, samples, times)
+    return {name: _rate(forest, knots, samples, times, here, own) for name, own in owners}
+
+
+def _rate(
+    forest: Forest,
+    knots: np.ndarray,
+    samples: np.ndarray,
+    times: np.ndarray,
+    here: np.ndarray,
+    own: slice,
+) -> np.ndarray:
+    ends = []
+    for way in (-A_MOMENT, A_MOMENT):
+        moved = here.copy()
+        moved[:, own] = _at(knots, samples[:, own], times + way)
+        ends.append(forest.poses(moved))
+    return (ends[1] - ends[0]) / (2.0 * A_MOMENT)
+
+
+def _at(knots: np.ndarray, samples: np.ndarray, times: np.ndarray) -> np.ndarray:
+    return np.column_stack([np.interp(times, knots, column) for column in samples.T])
+
+
+def _columns(case: Case) -> list[tuple[str, int, int]]:
+    """Who moves which columns of the positions, from the first to before the last."""
+    found, at = [], 0
+    for placed in case.robots:
+        n = len(placed.robot.moving_joints)
+        found.append((placed.robot.name, at, at + n))
+        at += n
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None:
+            found.append((obstacle.name, at, at + 7))
+            at += 7
+    return found
+
+
+def _timing(budget: Budget, name: str) -> float:
+    own = budget.robots.get(name) or budget.obstacles.get(name)
+    return 0.0 if own is None else own.timing

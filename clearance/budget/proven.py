@@ -1,0 +1,177 @@
+"""What the errors of a budget leave of a section's pairs, proven at its steps and in the motion between them.
+
+Not for: what the sections come to together (`answer`), and what is only expected (`expected`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.budget.errors_of import errors_of
+from clearance.compile.kernel_table import call
+from clearance.kernels.budget.rows import Errors
+from clearance.kernels.budget.sweep import (
+    BudgetIntervals,
+    BudgetMoments,
+    BudgetRows,
+    budget_intervals,
+    budget_moments,
+)
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
+from clearance.simulate.layout import PairsInMotion
+from clearance.simulate.measure import Measurement
+from clearance.simulate.parts import in_order, parts
+from clearance.world.budget import Budget
+from clearance.world.forest import joined_positions
+
+ROUNDED_DOWN = 2.0**-48
+"""Relative rounding of the sums that make a proven number, beyond the slacks of the bounds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Moments of a path: (n,) the step before each, and how much of the interval from there has passed, 0 to 1."""
+
+    intervals: np.ndarray
+    shares: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.intervals)
+
+
+@dataclass(frozen=True, eq=False)
+class PairsWithErrors:
+    """Pairs in motion, and the errors of all that moves them.
+
+    Attributes:
+        n_threads: how many may work at it.
+    """
+
+    what: PairsInMotion
+    budget: Budget
+    n_threads: int = 1
+
+    @cached_property
+    def errors(self) -> Errors:
+        """Of the links and bodies of the layout."""
+        return errors_of(self.what.case, self.budget, self.what.layout, self.what.pairs)
+
+    @cached_property
+    def path(self) -> JointPath:
+        """How all joints move; of one step it stands for an interval."""
+        links, case, motions = self.what.layout.world.links, self.what.case, self.what.motions
+        if self.n_steps > 1:
+            return path_of(links, case, motions, slice(0, self.n_steps))
+        positions = np.repeat(joined_positions(case, motions, slice(0, 1)), 2, axis=0)
+        times, cubic = motions[0].times[[0, 0]], np.zeros(positions.shape[1], dtype=bool)
+        return joint_path(links, times, positions, np.zeros_like(positions), cubic)
+
+    def of(self, budget: Budget) -> PairsWithErrors:
+        """The same with another budget."""
+        other = PairsWithErrors(self.what, budget, self.n_threads)
+        other.__dict__["path"] = self.path  # errors are no part of it
+        return other
+
+    @property
+    def n_steps(self) -> int:
+        """Number of steps."""
+        return self.what.motions[0].n_steps
+
+    def steps(self) -> Moments:
+        """All steps."""
+        numbers = np.arange(self.n_steps)
+        intervals = np.minimum(numbers, max(0, self.n_steps - 2))
+        return Moments(intervals, (numbers - intervals).astype(np.float64))
+
+    def at(
+        self, moments: Moments, order: np.ndarray, known: np.ndarray, enough: float = np.inf
+    ) -> BudgetRows:
+        """What is proven at some moments.
+
+        Args:
+            order: (n,) the pair to look at first, or -1. known: (n,) [m] nominal, or NaN.
+            enough: [m] what is proven beyond it is not looked into.
+        """
+
+        def ask(span: slice) -> BudgetMoments:
+            return BudgetMoments(
+                _writable(moments.intervals[span]),
+                _writable(moments.shares[span]),
+                _writable(order[span]),
+                _writable(known[span]),
+                enough,
+            )
+
+        return self._rows(len(moments), budget_moments, ask)
+
+    def between(
+        self,
+        intervals: np.ndarray,
+        order: np.ndarray,
+        known: np.ndarray,
+        gap: float,
+        enough: float = np.inf,
+    ) -> BudgetRows:
+        """What is proven of the motion from some steps to the next.
+
+        Args:
+            known: (n,) [m] the least that is proven at both ends. gap: [m] how far below what occurs it may be.
+        """
+        fail = self.what.limits.fail
+
+        def ask(span: slice) -> BudgetIntervals:
+            return BudgetIntervals(
+                _writable(intervals[span]),
+                _writable(order[span]),
+                _writable(known[span]),
+                enough,
+                gap,
+                fail,
+                MOST_PARTS,
+            )
+
+        return self._rows(len(intervals), budget_intervals, ask)
+
+    def _rows(
+        self, n_rows: int, kernel: Callable, ask: Callable[[slice], BudgetMoments | BudgetIntervals]
+    ) -> BudgetRows:
+        rows = BudgetRows(
+            np.empty(n_rows), np.full(n_rows, -1), np.full((n_rows, 2), -1), np.full(n_rows, -1.0)
+        )
+        if n_rows == 0:
+            return rows
+        layout, errors, path = self.what.layout, self.errors, self.path
+
+        def run(span: slice) -> None:
+            own = BudgetRows(*(column[span] for column in rows))
+            world = with_turning_balls(layout.world)  # no two threads share it
+            tally = np.zeros(4, dtype=np.int64)
+            call(kernel, layout.whole_faces, world, path, errors, ask(span), own, tally)
+
+        for _ in in_order(run, parts(n_rows), self.n_threads):
+            pass
+        rows.proven[:] -= ROUNDED_DOWN * np.abs(rows.proven)
+        return rows
+
+
+def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
+    """What is proven at each step, from what was measured."""
+    return pairs.at(pairs.steps(), found.pair, found.clearance)
+
+
+def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> BudgetRows:
+    """What is proven from each step to the next, of what is proven at the steps; the last row is of its step."""
+    known = np.minimum(steps.proven[:-1], steps.proven[1:])
+    found = pairs.between(np.arange(len(known)), steps.pair[:-1], known, gap)
+    last = BudgetRows(steps.proven[-1:], steps.pair[-1:], steps.faces[-1:], np.full(1, -1.0))
+    return BudgetRows(*(np.concatenate(both) for both in zip(found, last, strict=True)))
+
+
+def _writable(numbers: np.ndarray) -> np.ndarray:
+    """As the kernel takes them: compiled once, for arrays that could be written to."""
+    return np.require(numbers, requirements=["C", "W"])

@@ -1,0 +1,301 @@
+"""How each error of a budget moves the nearest points of a pair, to the first order: what is expected of it.
+
+Every joint, frame, place, surface and clock is a source of its own. Joints that follow another have their leader's
+error, times their factor, so that what it does to both bodies is added up with its sign. Not for: what is proven.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.budget.errors_of import (
+    EXACT_JOINT,
+    EXACT_ROBOT,
+    held_frames,
+    surface_of,
+)
+from clearance.kernels.motion.kinematics import NO_PARENT, TURNING
+from clearance.world.body import Obstacle
+from clearance.world.budget import (
+    Budget,
+    JointTolerance,
+    ObstacleTolerance,
+    PlacementTolerance,
+    RobotTolerance,
+)
+from clearance.world.case import Case
+from clearance.world.forest import WORLD, carried_by, forest_of
+from clearance.world.mimics import Follower, followers
+from clearance.world.mount import Mount
+from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.robot import JointKind
+
+POSITION, TRACKING, FRAME, BASE, PLACE, SURFACE, TIMING = (
+    "position", "tracking", "frame", "base", "place", "surface", "timing",
+)  # fmt: skip
+
+
+class SourceKey(NamedTuple):
+    """One error of a budget.
+
+    Attributes:
+        owner: the robot or obstacle. kind: as in `ErrorSource`. part: the joint or link, or empty.
+    """
+
+    owner: str
+    kind: str
+    part: str
+
+
+class Slope(NamedTuple):
+    """How a distance changes with one error.
+
+    Attributes:
+        key: of the error. place: which of its numbers, as in `sizes_of`. size: what the budget gives of it.
+        along: (n, 3), the gradient by a vector, or (n, 1) by a number.
+    """
+
+    key: SourceKey
+    place: int
+    size: float
+    along: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """The nearest points of one pair at some moments.
+
+    Attributes:
+        points: (n, 2, 3) [m] in the world. poses: (n, links, 4, 4) `world_from_link` of the case's forest [m].
+        rates: of each whose clock may be off, (n, links, 4, 4) [1/s] how the poses change with that clock.
+    """
+
+    pair: Pair
+    points: np.ndarray
+    poses: np.ndarray
+    rates: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+
+def sizes_of(budget: Budget, key: SourceKey) -> tuple[float, ...]:
+    """What a budget gives of one error: of frames an offset [m] and an angle [rad], else one number."""
+    if key.owner in budget.obstacles:
+        obstacle = budget.obstacles[key.owner]
+        if key.kind == PLACE:
+            return obstacle.place.xyz, obstacle.place.angle
+        return (obstacle.surface if key.kind == SURFACE else obstacle.timing,)
+    robot = budget.robots.get(key.owner, EXACT_ROBOT)
+    joint = robot.joints.get(key.part, EXACT_JOINT)
+    numbers = {
+        FRAME: (joint.frame.xyz, joint.frame.angle),
+        BASE: (robot.base.xyz, robot.base.angle),
+        POSITION: (joint.position,),
+        TRACKING: (joint.tracking,),
+        SURFACE: (robot.surfaces.get(key.part, 0.0),),
+        TIMING: (robot.timing,),
+        PLACE: (0.0, 0.0),
+    }
+    return numbers[key.kind]
+
+
+def units_of(case: Case, key: SourceKey) -> tuple[str, ...]:
+    """The unit of each of these numbers."""
+    if key.kind in (FRAME, BASE, PLACE):
+        return "m", "rad"
+    if key.kind in (POSITION, TRACKING):
+        robot = next(one.robot for one in case.robots if one.robot.name == key.owner)
+        kind = next(joint.kind for joint in robot.joints if joint.name == key.part)
+        return ("m" if kind is JointKind.PRISMATIC else "rad",)
+    return ("s" if key.kind == TIMING else "m",)
+
+
+def with_sizes(budget: Budget, key: SourceKey, sizes: tuple[float, ...]) -> Budget:
+    """The budget with other numbers for one error."""
+    if key.owner in budget.robots:
+        own = _robot_with(budget.robots[key.owner], key, sizes)
+        return replace(budget, robots={**budget.robots, key.owner: own})
+    obstacle = _obstacle_with(budget.obstacles[key.owner], key, sizes)
+    return replace(budget, obstacles={**budget.obstacles, key.owner: obstacle})
+
+
+def _robot_with(own: RobotTolerance, key: SourceKey, sizes: tuple[float, ...]) -> RobotTolerance:
+    if key.kind == BASE:
+        return replace(own, base=PlacementTolerance(*sizes))
+    if key.kind == SURFACE:
+        return replace(own, surfaces={**own.surfaces, key.part: sizes[0]})
+    if key.kind == TIMING:
+        return replace(own, timing=sizes[0])
+    joint = own.joints.get(key.part, EXACT_JOINT)
+    return replace(own, joints={**own.joints, key.part: _joint_with(joint, key, sizes)})
+
+
+def _joint_with(joint: JointTolerance, key: SourceKey, sizes: tuple[float, ...]) -> JointTolerance:
+    if key.kind == FRAME:
+        return replace(joint, frame=PlacementTolerance(*sizes))
+    if key.kind == POSITION:
+        return replace(joint, position=sizes[0])
+    return replace(joint, tracking=sizes[0])
+
+
+def _obstacle_with(
+    own: ObstacleTolerance, key: SourceKey, sizes: tuple[float, ...]
+) -> ObstacleTolerance:
+    if key.kind == PLACE:
+        return replace(own, place=PlacementTolerance(*sizes))
+    return replace(own, surface=sizes[0]) if key.kind == SURFACE else replace(own, timing=sizes[0])
+
+
+def slopes(case: Case, budget: Budget, witness: Witness) -> list[Slope]:
+    """How the distance of a pair changes with each error of a budget that is not 0, in the order of the chains."""
+    between = witness.points[:, 1] - witness.points[:, 0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        u = between / np.linalg.norm(between, axis=1)[:, None]
+    common = _common(case, witness.pair)
+    found: dict[tuple[SourceKey, int], np.ndarray] = {}
+    for side, body, x in ((-1.0, witness.pair.a, 0), (1.0, witness.pair.b, 1)):
+        seen = _Side(body, side * u, witness.points[:, x], witness)
+        for key, place, along in _of_body(case, budget, seen, common):
+            before = found.get((key, place))
+            found[key, place] = along if before is None else before + along
+    sizes = {key: sizes_of(budget, key) for key, _ in found}
+    return [
+        Slope(key, place, sizes[key][place], along)
+        for (key, place), along in found.items()
+        if sizes[key][place] > 0.0
+    ]
+
+
+class _Side(NamedTuple):
+    """One body of a pair: its point x (n, 3) [m] comes nearer against u (n, 3)."""
+
+    body: BodyIndex
+    u: np.ndarray
+    x: np.ndarray
+    witness: Witness
+
+
+Effects = Iterator[tuple[SourceKey, int, np.ndarray]]
+"""Errors, which of their numbers, and the gradient by it."""
+
+
+def _common(case: Case, pair: Pair) -> set[int]:
+    """The links that both bodies of a pair hang on: their errors move both alike."""
+    above = [
+        set()
+        if (frame := body.frame_in(case)) == WORLD
+        else set(carried_by(forest_of(case), frame))
+        for body in pair
+    ]
+    return above[0] & above[1]
+
+
+def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effects:
+    """The slopes of one body's errors."""
+    body = side.body
+    if body.is_obstacle:
+        owner, part = case.obstacles[body.i_body].name, ""
+    else:
+        owner, part = case.robots[body.i_robot].robot.name, body.own_name_in(case)
+    if surface_of(case, budget, body) > 0.0:
+        yield SourceKey(owner, SURFACE, part), 0, np.full((len(side.x), 1), -1.0)
+    frame = body.frame_in(case)
+    if frame == WORLD:
+        origin = case.obstacles[body.i_body].world_from_body[:3, 3]
+        yield from _of_frame(SourceKey(owner, PLACE, ""), side, origin)
+        return
+    yield from _of_clocks(frame, side)
+    told = _Told(case, budget)
+    for link in carried_by(forest_of(case), frame):
+        if link in common:
+            return
+        yield from told.of_link(link, side)
+
+
+def _of_clocks(frame: int, side: _Side) -> Effects:
+    """What a body does while clocks are off, both bodies of a pair together where they hang on the same."""
+    pose = side.witness.poses[:, frame]
+    x = np.einsum("nji,nj->ni", pose[:, :3, :3], side.x - pose[:, :3, 3])
+    for owner, rates in side.witness.rates.items():
+        rate = rates[:, frame]
+        v = np.einsum("nij,nj->ni", rate[:, :3, :3], x) + rate[:, :3, 3]
+        if v.any():
+            yield SourceKey(owner, TIMING, ""), 0, np.einsum("ni,ni->n", side.u, v)[:, None]
+
+
+def _of_frame(key: SourceKey, side: _Side, origin: np.ndarray) -> Effects:
+    yield key, 0, side.u
+    yield key, 1, np.cross(side.x - origin, side.u)
+
+
+class _Told:
+    """What each link of a case's forest is called by."""
+
+    def __init__(self, case: Case, budget: Budget) -> None:
+        self.case, self.budget, self.forest = case, budget, forest_of(case)
+        self.joints, self.roots = {}, {}
+        for i, placed in enumerate(case.robots):
+            start = self.forest.robot_starts[i]
+            links = {name: start + k for k, name in enumerate(placed.robot.link_names)}
+            self.roots[start] = placed
+            moves = {one.joint.name: one for one in followers(placed.robot)}
+            for joint in placed.robot.joints:
+                self.joints[links[joint.child]] = placed.robot, joint, moves.get(joint.name)
+        links_of = enumerate(self.forest.obstacle_links)
+        self.obstacles = {link: case.obstacles[i] for i, link in links_of if link != WORLD}
+
+    def of_link(self, link: int, side: _Side) -> Effects:
+        """The slopes of the joint above a link and of all frames that it hangs on."""
+        origin = self._joined(link, side)
+        if link in self.joints:
+            robot, joint, moves = self.joints[link]
+            if moves is not None:
+                yield from self._of_joint(link, robot.name, moves, side)
+            yield from _of_frame(SourceKey(robot.name, FRAME, joint.name), side, origin)
+        elif link in self.roots:
+            placed = self.roots[link]
+            yield from _of_frame(SourceKey(placed.robot.name, BASE, ""), side, origin)
+            yield from self._held(placed.mount, link, side)
+        elif link in self.obstacles:
+            obstacle = self.obstacles[link]
+            yield from _of_frame(SourceKey(obstacle.name, PLACE, ""), side, origin)
+            if obstacle.moves is None:
+                yield from self._held(obstacle.mount, link, side)
+        for obstacle in self._moving_from(link):
+            yield from self._held(obstacle.mount, link, side)
+
+    def _joined(self, link: int, side: _Side) -> np.ndarray:
+        """(n, 3) where the frame that a link hangs on has its origin [m]."""
+        links = self.forest.links
+        origin, parent = links.parent_from_joint[link][:3, 3], int(links.parents[link])
+        if parent == NO_PARENT:
+            return np.broadcast_to(origin, side.x.shape)
+        pose = side.witness.poses[:, parent]
+        return pose[:, :3, 3] + pose[:, :3, :3] @ origin
+
+    def _moving_from(self, link: int) -> Iterator[Obstacle]:
+        """Obstacles whose own motion starts from a root."""
+        parents = self.forest.links.parents
+        if int(parents[link]) == NO_PARENT and link not in self.roots:
+            for last, obstacle in self.obstacles.items():
+                if obstacle.moves is not None and int(parents[last - 3]) == link:
+                    yield obstacle
+
+    def _held(self, mount: Mount | None, link: int, side: _Side) -> Effects:
+        at = side.witness.poses[:, link]
+        for held in held_frames(self.case, self.budget, mount):
+            origin = at[:, :3, 3] + at[:, :3, :3] @ held.origin
+            yield from _of_frame(SourceKey(held.owner, PLACE, ""), side, origin)
+
+    def _of_joint(self, link: int, robot: str, moves: Follower, side: _Side) -> Effects:
+        at, links = side.witness.poses[:, link], self.forest.links
+        way = at[:, :3, :3] @ links.axes[link]
+        if links.kinds[link] == TURNING:
+            way = np.cross(way, side.x - at[:, :3, 3])
+        slope = np.einsum("ni,ni->n", side.u, way)[:, None]
+        for kind in (POSITION, TRACKING):
+            yield SourceKey(robot, kind, moves.joint.name), 0, slope
+            if moves.master != moves.joint.name:
+                yield SourceKey(robot, kind, moves.master), 0, moves.factor * slope

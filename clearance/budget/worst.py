@@ -1,0 +1,189 @@
+"""The moments at which a budget leaves least, and what each error takes of them, worked out when first looked at.
+
+Not for: finding what is left at each step (`proven`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar, overload
+
+import numpy as np
+
+from clearance.budget.expected import clock_rates, deviations, variance_of
+from clearance.budget.largest import Largest
+from clearance.budget.proven import Moments as PathMoments
+from clearance.budget.proven import PairsWithErrors
+from clearance.budget.section_budget import SectionBudget
+from clearance.budget.sources import (
+    Slope,
+    SourceKey,
+    Witness,
+    sizes_of,
+    slopes,
+    units_of,
+    with_sizes,
+)
+from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
+from clearance.simulate.moment import Moment, Moments
+from clearance.world.case import Limits
+from clearance.world.forest import forest_of, positions_between
+from clearance.world.pairs import Pair
+
+MOST_WORST = 3
+"""Moments of a rule that are told of, each of another pair."""
+
+MOST_BETWEEN = 8
+"""Intervals whose least moments are looked at for that."""
+
+Item = TypeVar("Item")
+
+
+class LookedAt(Sequence[Item]):
+    """Items that are worked out when one is first looked at."""
+
+    def __init__(self, work_out: Callable[[], Sequence[Item]]) -> None:
+        self._work_out = work_out
+
+    @cached_property
+    def _items(self) -> tuple[Item, ...]:
+        return tuple(self._work_out())
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    @overload
+    def __getitem__(self, index: int) -> Item: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Item, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Item | tuple[Item, ...]:
+        return self._items[index]
+
+
+@dataclass(frozen=True, eq=False)
+class _Low:
+    """A moment of a section at which little is left of a pair: [m] proven, less padding."""
+
+    section: SectionBudget
+    interval: int
+    share: float
+    pair: int
+    proven: float
+
+    @property
+    def moments(self) -> PathMoments:
+        return PathMoments(np.array([self.interval]), np.array([self.share]))
+
+
+class WorstMoments(LookedAt[BudgetMoment]):
+    """The moments of a rule at which a budget leaves least, each of another pair, the worst first."""
+
+    def __init__(self, rule: str, limits: Limits, sections: Sequence[SectionBudget]) -> None:
+        super().__init__(self._found)
+        self._rule, self._sections = rule, sections
+        self._largest = Largest(limits.fail, sections)
+
+    def _found(self) -> list[BudgetMoment]:
+        lows = sorted(
+            (low for section in self._sections for low in _lows(section)),
+            key=lambda low: low.proven,
+        )
+        named: dict[Pair, _Low] = {}
+        for low in lows:
+            named.setdefault(low.section.section.pairs[low.pair], low)
+        return [self._moment(low) for low in [*named.values()][:MOST_WORST]]
+
+    def _moment(self, low: _Low) -> BudgetMoment:
+        section = low.section.section
+        moment = _measured(low)
+        expected = np.nan
+        if not moment.touches:
+            what = low.section.pairs
+            taken = what.budget.coverage * deviations(
+                section.phase.case, what.budget, _witness(low, moment)
+            )
+            expected = moment.clearance - float(taken[0]) - section.padding
+        told = replace(
+            moment,
+            step=moment.step + section.phase.first,
+            clearance=moment.clearance - section.padding,
+            rule=self._rule,
+        )
+        return BudgetMoment(
+            told, low.proven, expected, LookedAt(lambda: self._sources(low, moment))
+        )
+
+    def _sources(self, low: _Low, moment: Moment) -> list[ErrorSource]:
+        """What each error takes of a moment, what takes most first."""
+        section, pairs = low.section, low.section.pairs
+        case, budget = section.section.phase.case, pairs.budget
+        by_key: dict[SourceKey, list[Slope]] = {}
+        for slope in slopes(case, budget, _witness(low, moment)):
+            by_key.setdefault(slope.key, []).append(slope)
+        found = []
+        for key, own in by_key.items():
+            sizes, units = sizes_of(budget, key), units_of(case, key)
+            without = pairs.of(with_sizes(budget, key, (0.0,) * len(sizes)))
+            taken = _at(without, low) - _at(pairs, low)
+            variance = sum(float(variance_of(slope, budget)[0]) for slope in own)
+            found.append(
+                ErrorSource(
+                    key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
+                    max(0.0, taken), float(np.sqrt(variance)), self._largest.of(case, key),
+                )
+            )  # fmt: skip
+        return sorted(found, key=lambda source: -source.proven)
+
+
+def _at(pairs: PairsWithErrors, low: _Low) -> float:
+    """[m] what is proven of all pairs at a moment."""
+    found = pairs.at(low.moments, np.array([low.pair]), np.array([np.nan]))
+    return float(found.proven[0])
+
+
+def _lows(section: SectionBudget) -> Iterator[_Low]:
+    """The least of each pair over the steps, and over the intervals of which less was seen within."""
+    steps, padding = section.steps, section.section.padding
+    at = section.pairs.steps()
+    for pair in np.unique(steps.pair[steps.pair >= 0]).tolist():
+        i = int(np.argmin(np.where(steps.pair == pair, steps.proven, np.inf)))
+        place = int(at.intervals[i]), float(at.shares[i])
+        yield _Low(section, *place, pair, float(steps.proven[i]) - padding)
+    between = section.between
+    if between is None:
+        return
+    seen = np.flatnonzero(between.share >= 0.0)
+    seen = seen[np.argsort(between.proven[seen], kind="stable")][:MOST_BETWEEN]
+    found = section.pairs.at(
+        PathMoments(seen, between.share[seen]), between.pair[seen], np.full(len(seen), np.nan)
+    )
+    for i, interval in enumerate(seen.tolist()):
+        place = interval, float(between.share[interval])
+        yield _Low(section, *place, int(found.pair[i]), float(found.proven[i]) - padding)
+
+
+def _measured(low: _Low) -> Moment:
+    """The pair, measured as it is without errors, in its phase."""
+    phase = low.section.section.phase
+    moments = Moments(phase.case, phase.motions, low.section.section.pairs)
+    if low.share == 0.0 or phase.n_steps == 1:
+        return moments.at(low.interval, low.pair)
+    if low.share == 1.0:
+        return moments.at(low.interval + 1, low.pair)
+    return moments.between(low.interval, low.share, low.pair)
+
+
+def _witness(low: _Low, moment: Moment) -> Witness:
+    """The nearest points of the pair at the moment, and where all is then."""
+    phase, budget = low.section.section.phase, low.section.pairs.budget
+    step = min(low.interval, max(0, phase.n_steps - 2))
+    columns = positions_between(
+        phase.case, phase.motions, step, low.share if phase.n_steps > 1 else 0.0
+    )
+    points = np.array([[moment.point_link, moment.point_obstacle]])
+    rates = clock_rates(phase.case, budget, phase.motions, np.array([moment.time]))
+    poses = forest_of(phase.case).poses(columns[None])
+    return Witness(low.section.section.pairs[low.pair], points, poses, rates)

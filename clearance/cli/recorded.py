@@ -1,0 +1,71 @@
+"""Options of a recorded run: which file, whose, its clock. Not for: reading it (`load.recorded_run`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from clearance.cli.options import motion_option
+
+if TYPE_CHECKING:
+    from clearance.world.case import Case
+
+_OPTIONS = (
+    click.argument("recorded", metavar="[RUN]", required=False, type=click.Path(path_type=Path)),
+    motion_option(
+        "recorded", told=" recorded: what it did, in RUN, a bag of joint states or a CSV."
+    ),
+    click.option(
+        "--recorded-offset",
+        metavar="S",
+        type=float,
+        help="Added to the times of RUN.  [default: 0; none is estimated]",
+    ),
+    click.option(
+        "--recorded-robot",
+        metavar="NAME",
+        help="Whose run it is, where several robots have trajectories.",
+    ),
+)
+
+
+def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Adds the options to a command, in their order."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def require_recorded(
+    motion: str, recorded: Path | None, offset: float | None, robot: str | None
+) -> None:
+    """Nothing, if a recording is given exactly where one is meant.
+
+    Raises:
+        UsageError: it is not.
+    """
+    if motion == "recorded" and recorded is None:
+        raise click.UsageError(
+            "--motion recorded needs the run: CASE.yaml --motion recorded RUN.csv"
+        )
+    if motion == "recorded":
+        return
+    if recorded is not None:
+        raise click.UsageError(f"{str(recorded)!r} says nothing without --motion recorded")
+    for option, given in (("offset", offset), ("robot", robot)):
+        if given is not None:
+            raise click.UsageError(f"--recorded-{option} says nothing without --motion recorded")
+
+
+def with_recording(case: Case, path: Path, offset: float | None, robot: str | None) -> Case:
+    """The case as it was driven.
+
+    Raises:
+        BadInput: with the file.
+    """
+    from clearance.load.recorded_run import with_recorded
+
+    return with_recorded(case, path, offset or 0.0, robot)

@@ -1,0 +1,45 @@
+"""Unit quaternions of rotation matrices, without importing scipy for it. Not for: the way back (`pose`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def quaternions_of(rotations: np.ndarray) -> np.ndarray:
+    """(n, 4) x, y, z, w of rotation matrices (n, 3, 3); of the two of each the one whose last part that is not 0,
+    from w to x and then y and z, is positive.
+
+    Exactness: to the last bit what scipy 1.17 gives for matrices that are rotations but for rounding.
+    Source: Markley (2008), Unit quaternion from rotation matrix: of four ways the one that loses least.
+    """
+    diagonal = np.diagonal(rotations, axis1=1, axis2=2)
+    trace = diagonal[:, 0] + diagonal[:, 1] + diagonal[:, 2]
+    way = np.argmax(np.column_stack([diagonal, trace]), axis=1)
+    found = np.empty((len(rotations), 4))
+    for i in range(3):
+        rows, j, k = way == i, (i + 1) % 3, (i + 2) % 3
+        own = rotations[rows]
+        found[rows, i] = 1.0 - trace[rows] + 2.0 * own[:, i, i]
+        found[rows, j] = own[:, j, i] + own[:, i, j]
+        found[rows, k] = own[:, k, i] + own[:, i, k]
+        found[rows, 3] = own[:, k, j] - own[:, j, k]
+    rows = way == 3
+    own = rotations[rows]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        found[rows, i] = own[:, k, j] - own[:, j, k]
+    found[rows, 3] = 1.0 + trace[rows]
+    x, y, z, w = found.T
+    found /= np.sqrt(x * x + y * y + z * z + w * w)[:, None]
+    found[_is_negative(found)] *= -1.0
+    return found
+
+
+def _is_negative(found: np.ndarray) -> np.ndarray:
+    """(n,) True where the first of w, x, y, z that is not 0 is below it."""
+    negative = np.zeros(len(found), dtype=bool)
+    undecided = np.ones(len(found), dtype=bool)
+    for i in (3, 0, 1, 2):
+        negative |= undecided & (found[:, i] < 0.0)
+        undecided &= found[:, i] == 0.0
+    return negative

@@ -1,0 +1,307 @@
+"""The least that errors leave of the distance of two bodies, proven: both trees are descended once.
+
+A node pair is done if its distance, less what the errors move both nodes along the direction of the nearest points
+seen so far, or less what they move both bodies at all, stays above the target. A face pair is bounded along the
+direction of its own nearest points, and in pieces where that is far below what occurs. Not for: which pairs and
+steps are asked (`steps`, `intervals`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.compile.kernel_table import borrow
+from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
+from clearance.kernels.arithmetic.vec3 import dot, move, move_back, row
+from clearance.kernels.budget.pieces import Pieces, bound_of_pieces
+from clearance.kernels.budget.rows import (
+    REACH,
+    SURFACE,
+    TURNED,
+    BodyRows,
+    along_of_point,
+    along_of_point_at_rest,
+    reach_of_point,
+)
+from clearance.kernels.budget.view import AlongRows, look_along, moved_of_box
+from clearance.kernels.features.bounds import (
+    direction_between,
+    lower_bound_boxes,
+    lower_bound_boxes_along_direction,
+    margin_of,
+    rounding_slack,
+)
+from clearance.kernels.features.face_pair import nearest_of_faces, nothing_yet
+from clearance.kernels.features.posed_pair import parts
+from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK, MOST_TURNED, STILL, allowed_gap
+from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.node_pairs import (
+    Views,
+    opened,
+    pair_in_group,
+    turned_away_while,
+    views_along,
+)
+from clearance.kernels.search.scratch import STACK_DEPTH, Scratch, wait
+
+REFINED = 0.02
+"""The share of what errors take at the nearest points that the bound of a face pair may be below it."""
+
+FINEST = 1e-9
+"""[m] No face pair is cut for less."""
+
+
+class Aim(NamedTuple):
+    """What is to be proven of a pair.
+
+    Attributes:
+        target: [m] what stays above it needs no look. least: [m] the least that is known to occur.
+        gap: [m] how far the bound over an interval may stay below what occurs, 0 at a step. fail: [m] the limit.
+        is_step: True where all stands: then the bound is as good as it can be made, and never given up.
+    """
+
+    target: float
+    least: float
+    gap: float
+    fail: float
+    is_step: bool
+
+
+class Left(NamedTuple):
+    """What is left of a pair.
+
+    Attributes:
+        lower_bound: [m] proven, or `target` where all is above it. least: [m] the least seen to occur, or as
+            asked.
+        completed: False where the target cannot be proven without a shorter interval.
+        face_a, face_b: the faces that decide it, or -1.
+    """
+
+    lower_bound: float
+    least: float
+    completed: bool
+    face_a: int
+    face_b: int
+
+
+class LeftScratch(NamedTuple):
+    """What a search is made with."""
+
+    found: BodyRows
+    seen: AlongRows
+    pieces: Pieces
+    scratch: Scratch
+
+
+class _Search(NamedTuple):
+    """What a search has come to, of rigid bodies without balls and surfaces.
+
+    Attributes:
+        views: along the direction of the nearest points. nearest: [m] their distance.
+        lower_bound, target, least: as in `Left` and `Aim`. face_a, face_b: which decide the bound.
+    """
+
+    views: Views
+    nearest: float
+    lower_bound: float
+    target: float
+    least: float
+    face_a: int
+    face_b: int
+
+
+@inline
+def _node_bounds(p, q, side, view, seen, reach, slack, target):
+    """[m] lower bounds on what is left of the distances of boxes in lanes, p of body `side`."""
+    direction = view.direction
+    along = lower_bound_boxes_along_direction(p, q, direction) - slack
+    if marks_within(along - reach, target) == 0:
+        return along - reach
+    moved = moved_of_box(q, 1 - side, direction.v, seen)
+    left = along - moved - moved_of_box(p, side, direction.u, seen)
+    if marks_within(left, target) == 0:
+        return left
+    apart = lower_bound_boxes(p, q, view.m, slack) - slack - reach
+    return larger(left, apart)
+
+
+@inline
+def _group_bounds(a, b, nodes, views, seen, reach, slack, target):
+    """[m] the same of the nodes of a group and a node of the other body."""
+    if nodes.is_of_b:
+        p, q = group_of(b, nodes.group), box_of(a, nodes.other)
+        return _node_bounds(p, q, 1, views.b, seen, reach, slack, target)
+    p, q = group_of(a, nodes.group), box_of(b, nodes.other)
+    return _node_bounds(p, q, 0, views.a, seen, reach, slack, target)
+
+
+class _Faces(NamedTuple):
+    """What two faces come to whole: [m] a bound, what occurs at their nearest points, and their distance."""
+
+    bound: float
+    value: float
+    motion: float
+    taken: float
+    apart: float
+
+
+@inline
+def _whole_faces(a, face_a, b, face_b, direction, near, m, body_a, body_b, found, slack):
+    """What errors leave of two faces as they are."""
+    u, v = direction.u, direction.v
+    far = beyond = -math.inf
+    reach_a = reach_b = 0.0
+    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
+        x = row(a.vertices, a.face_vertices[c])
+        height = dot(u, x)
+        far = max(far, height + along_of_point(found, body_a, u, x))
+        beyond = max(beyond, height)
+        reach_a = max(reach_a, reach_of_point(found, body_a, x))
+    first = before = math.inf
+    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
+        x = row(b.vertices, b.face_vertices[c])
+        height = dot(v, x)
+        first = min(first, height - along_of_point(found, body_b, v, x))
+        before = min(before, height)
+        reach_b = max(reach_b, reach_of_point(found, body_b, x))
+    apart = before + direction.offset - beyond - slack
+    reach = reach_a + reach_b
+    if apart <= 0.0:
+        return _Faces(-reach, -reach, 0.0, reach, 0.0)
+    bound = max(first + direction.offset - far - slack, apart - reach)
+    length = math.sqrt(near.gap_sq)
+    q = move_back(m, near.q)
+    taken = along_of_point_at_rest(found, body_a, u, near.p)
+    taken += along_of_point_at_rest(found, body_b, v, q)
+    whole = along_of_point(found, body_a, u, near.p) + along_of_point(found, body_b, v, q)
+    return _Faces(bound, length - taken, whole - taken, taken, apart)
+
+
+@inline
+def _turn_to(direction, m, body_a, body_b, work):
+    """The views along a direction, and how errors are seen along it."""
+    look_along(work.found, body_a, 0, direction.u, work.seen)
+    look_along(work.found, body_b, 1, direction.v, work.seen)
+    return views_along(direction, m)
+
+
+@inline(one_caller=True)
+def _look_at_faces(a, b, faces, body_a, body_b, bound, slack, search, aim, thin, work, tally):
+    """(what a search has come to after two faces, True where it must be given up)."""
+    m = faces.frames.m
+    tally[3] += 1
+    near = nearest_of_faces(a, faces.a, b, faces.b, m, margin_of(slack), nothing_yet(math.inf)).best
+    own = direction_between(near.p, near.q, m)
+    seen = _whole_faces(a, faces.a, b, faces.b, own, near, m, body_a, body_b, work.found, slack)
+    bound = max(bound, seen.bound)
+    views, nearest, least, target = search.views, search.nearest, search.least, search.target
+    length = math.sqrt(near.gap_sq)
+    if length < nearest:
+        nearest = length
+        if length > 0.0:
+            views = _turn_to(own, m, body_a, body_b, work)
+    allowed = max(FINEST, REFINED * seen.taken)
+    if not aim.is_step:
+        least = min(least, seen.value)
+        allowed = allowed_gap(least - thin, aim.gap, aim.fail)
+        target = min(target, least - allowed)
+    gives_up = False
+    if seen.apart > 0.0 and bound < min(target, seen.value - (allowed if aim.is_step else 0.0)):
+        still = aim.is_step or seen.motion < STILL * allowed
+        if still or seen.value - seen.motion >= target:
+            cut = bound_of_pieces(
+                a, faces.a, b, faces.b, bound, m, body_a, body_b, work.found, slack,
+                target if not aim.is_step else min(target, seen.value - allowed), allowed, work.pieces,
+            )  # fmt: skip
+            bound = max(bound, cut.lower_bound)
+            if not aim.is_step:
+                least = min(least, cut.least)
+                allowed = allowed_gap(least - thin, aim.gap, aim.fail)
+                target = min(target, least - allowed)
+        gives_up = bound < target and not still
+    elif seen.apart <= 0.0 and not aim.is_step:
+        gives_up = bound < target and search.least > bound
+    face_a, face_b, lower_bound = search.face_a, search.face_b, search.lower_bound
+    if bound < lower_bound:
+        lower_bound, face_a, face_b = bound, faces.a, faces.b
+    if aim.is_step:
+        target = min(target, bound)
+    found = _Search(views, nearest, lower_bound, target, least, face_a, face_b)
+    return found, gives_up
+
+
+@inline
+def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
+    """What errors leave of a pair, where that is below the target.
+
+    Args:
+        bodies: a `PosedPair` of solids, of surfaces in which every face owns all its features.
+        body_a, body_b: their rows in `work.found`, a `LeftScratch`. witness_faces: (2,) to begin with, or -1.
+    """
+    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    found, scratch, m = work.found, work.scratch, bodies.frames.m
+    roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
+    slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
+    sums_a, sums_b = found.sums[body_a], found.sums[body_b]
+    thin = radii_of(a, bodies.a, b, bodies.b).both + sums_a[SURFACE] + sums_b[SURFACE]
+    reach = sums_a[REACH] + sums_b[REACH]
+    turn = max(sums_a[TURNED], sums_b[TURNED])
+    cos_turn, sin_turn = math.cos(turn), math.sin(turn)
+    centres = direction_between(box_of(a, roots.a).centre, move(m, box_of(b, roots.b).centre), m)
+    search = _Search(
+        _turn_to(centres, m, body_a, body_b, work), math.inf, math.inf,
+        aim.target + thin, aim.least + thin, -1, -1,
+    )  # fmt: skip
+    first_a, first_b = witness_faces[0], witness_faces[1]
+    if first_a >= 0:
+        near = parts(bodies, np.int64(first_a), np.int64(first_b))
+        search, gives_up = _look_at_faces(
+            a, b, near, body_a, body_b, -math.inf, slack, search, aim, thin, work, tally
+        )
+        if gives_up:
+            return Left(-math.inf, search.least - thin, False, search.face_a, search.face_b)
+    lower_bound = math.inf
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
+    scratch.bounds[0] = -math.inf
+    n_waiting = 1
+    while n_waiting > 0:
+        n_waiting -= 1
+        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
+        bound = scratch.bounds[n_waiting]
+        if bound >= search.target:
+            lower_bound = min(lower_bound, bound)
+            continue
+        if is_leaf(a, node_a) and is_leaf(b, node_b):
+            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
+            if face_a == first_a and face_b == first_b:
+                continue
+            faces = parts(bodies, face_a, face_b)
+            search, gives_up = _look_at_faces(
+                a, b, faces, body_a, body_b, bound, slack, search, aim, thin, work, tally
+            )
+            if gives_up:
+                return Left(-math.inf, search.least - thin, False, face_a, face_b)
+            continue
+        nodes, count = opened(a, node_a, b, node_b)
+        bounds = _group_bounds(a, b, nodes, search.views, work.seen, reach, slack, search.target)
+        tally[2] += count
+        away = 0
+        if turn < MOST_TURNED and marks_within(bounds, search.target):
+            away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, reach)
+        if n_waiting + WIDTH > STACK_DEPTH:
+            raise AssertionError("no room for what waits")
+        first = n_waiting
+        for k in range(count):
+            if away >> k & 1:
+                continue
+            bound = lane(bounds, k)
+            if bound >= search.target:
+                lower_bound = min(lower_bound, bound)
+                continue
+            node_a, node_b = pair_in_group(nodes, k)
+            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
+    lower_bound = min(lower_bound, search.lower_bound)
+    return Left(lower_bound - thin, search.least - thin, True, search.face_a, search.face_b)

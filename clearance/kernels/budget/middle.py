@@ -1,0 +1,133 @@
+"""Where all is in the middle of a part of an interval, and what joints do about it while clocks may be off.
+
+A joint whose clock may be off by d is, at a time of the part from t0 to t1, where the path is at some time from
+t0 - d to t1 + d. Before its path begins and after it ends it stands. Not for: the errors (`rows`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.budget.rows import JointMotion
+from clearance.kernels.motion.certify import IntervalMiddle, go_to_middle
+from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
+
+
+class Middle(NamedTuple):
+    """A state and what is about it.
+
+    Attributes:
+        state: positions, swings, bends and poses of all links.
+        turned: (links,) [rad] what ball joints turn since their clocks may be off.
+    """
+
+    state: IntervalMiddle
+    turned: np.ndarray
+
+
+@shared
+def new_middle_of(n_links):
+    """A state that is nowhere yet."""
+    return Middle(
+        IntervalMiddle(
+            np.zeros(n_links), np.zeros(n_links), np.zeros(n_links), np.zeros((n_links, 4, 4))
+        ),
+        np.zeros(n_links),
+    )
+
+
+@inline
+def _position(path, step, link, share):
+    """Where a joint is, and how far its path may be from a straight line to either end of the interval."""
+    part = part_of(path, step, link, share, share)
+    bow = 0.0
+    if len(path.velocities) > 0 and path.is_cubic[link]:
+        length = path.times[step + 1] - path.times[step]
+        way = path.positions[step + 1, link] - path.positions[step, link]
+        e0 = length * path.velocities[step, link] - way
+        e1 = length * path.velocities[step + 1, link] - way
+        bow = 0.25 * max(abs(e0), abs(e1))
+    return part.middle, bow
+
+
+@inline
+def _interval_at(path, step, time):
+    """The interval that a time is in, the path's first or last where it is in none, looked for from `step`."""
+    last = len(path.times) - 2
+    while step > 0 and path.times[step] > time:
+        step -= 1
+    while step < last and path.times[step + 1] <= time:
+        step += 1
+    return step
+
+
+@inline
+def _share_at(path, step, time):
+    length = path.times[step + 1] - path.times[step]
+    return min(1.0, max(0.0, (time - path.times[step]) / length)) if length > 0.0 else 0.0
+
+
+@inline
+def _widen(path, step, low, high, link, delay, state):
+    """The swing and bend of one joint over the part, and `delay` [s] before and after it."""
+    start = path.times[step]
+    length = path.times[step + 1] - start
+    begin, end = start + low * length - delay, start + high * length + delay
+    at = 0.5 * (begin + end)
+    half = 0.5 * (end - begin)
+    first, last = _interval_at(path, step, begin), _interval_at(path, step, end)
+    before, _ = _position(path, first, link, _share_at(path, first, begin))
+    after, _ = _position(path, last, link, _share_at(path, last, end))
+    middle = state.positions[link]
+    swing = 0.5 * (after - before)
+    bend = max(abs(before + swing - middle), abs(after - swing - middle))
+    for k in range(first, last + 1):
+        for side in range(2):
+            time = max(begin, path.times[k]) if side == 0 else min(end, path.times[k + 1])
+            here, bow = _position(path, k, link, _share_at(path, k, time))
+            s = (time - at) / half
+            bend = max(bend, abs(here - middle - s * swing) + 2.0 * bow)
+    state.swing[link] = swing * OUTWARD
+    state.bend[link] = bend * OUTWARD + 2.0**-48 * (abs(before) + abs(after) + abs(middle))
+
+
+@inline
+def _turned_by_arcs(path, step, low, high, ball, delay):
+    """[rad] how far a ball joint turns in the times that its clock may be off, before or after the part."""
+    start = path.times[step]
+    length = path.times[step + 1] - start
+    most = 0.0
+    for side in range(2):
+        end = start + low * length if side == 0 else start + high * length + delay
+        begin = end - delay
+        way = 0.0
+        for k in range(_interval_at(path, step, begin), _interval_at(path, step, end) + 1):
+            share = _share_at(path, k, end) - _share_at(path, k, begin)
+            way += share * path.balls.arcs[k, ball, ANGLE]
+        most = max(most, way)
+    return most * OUTWARD + 2.0**-45
+
+
+@inline
+def go_to_part(links, path, errors, step, low, high, middle):
+    """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
+    state = middle.state
+    go_to_middle(links, path, step, low, high, state)
+    for link in range(len(links.parents)):
+        if errors.delay[link] > 0.0 and links.columns[link] >= 0:
+            _widen(path, step, low, high, link, errors.delay[link], state)
+    for ball in range(len(path.balls.links)):
+        link = path.balls.links[ball]
+        if errors.delay[link] > 0.0:
+            part = 0.5 * (high - low) * path.balls.arcs[step, ball, ANGLE]
+            state.swing[link], state.bend[link] = part * OUTWARD, 0.0
+            middle.turned[link] = _turned_by_arcs(path, step, low, high, ball, errors.delay[link])
+
+
+@inline
+def motion_about(path, step, low, high, middle):
+    """What joints do about a middle, as rows of errors take it."""
+    length = path.times[step + 1] - path.times[step]
+    state = middle.state
+    return JointMotion(state.swing, state.bend, middle.turned, 0.5 * (high - low) * length)

@@ -1,0 +1,411 @@
+"""The errors that move a body, one row each from its tip to its base, seen from the body in its pose.
+
+A row is a turn about an axis, a slide, a turn of a frame about any axis with an offset of its origin, or a motion
+that all joints of one clock make together. `NOTES.md` in `clearance/budget` has the proofs. Not for: what rows
+leave of a distance (`left`), and which errors there are.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.vec3 import (
+    Vec3,
+    add,
+    cross,
+    dot,
+    move,
+    move_back,
+    rigid,
+    sub,
+    turn_back,
+)
+from clearance.kernels.features.bounds import LEAN
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.joint_path import OUTWARD
+from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
+
+TURN, SLIDE, FRAME, TOGETHER = 0.0, 1.0, 2.0, 3.0
+"""Kinds of rows."""
+
+ORIGIN, AXIS, KIND, FIRST, OFFSET, CHORD, WAY = 0, 3, 6, 7, 8, 9, 10
+"""Places in a row: a point of the axis or the frame's origin [m]; the unit axis; the kind; the error [rad] or [m]
+by itself; the offset of a frame [m]; 2 sin(half of all that it can turn); [m] all that it can slide. Of a motion
+together: its velocity in place of the origin, its spin in place of the axis, and in place of the error the share
+of it that is there since a clock may be off."""
+
+N_NUMBERS = 11
+
+
+class Extras(NamedTuple):
+    """Frames on which links hang beside those of their joints, as what is carried by something that is carried.
+
+    Attributes:
+        starts: (n + 1,) of each. origins: (m, 3) [m] in the frame of what hangs there. xyz: (m,) [m]. angle: (m,)
+            [rad].
+    """
+
+    starts: np.ndarray
+    origins: np.ndarray
+    xyz: np.ndarray
+    angle: np.ndarray
+
+
+class Errors(NamedTuple):
+    """How large the errors of a case are, over the links and bodies of its `World`.
+
+    Attributes:
+        joint: (links,) [rad or m] of the joint above each. xyz, angle: (links,) [m], [rad] of the frame that it
+            hangs on, or of where a root stands.
+        delay: (links,) [s] how far the clock of the joint above may be off. owner: (links,) whose clock that is,
+            or -1 where it is not off.
+        of_links, of_bodies: further frames, of links and of bodies that stand.
+        surface: (bodies,) [m] how far the surface of each may stand out.
+        most_rows: of any body.
+    """
+
+    joint: np.ndarray
+    xyz: np.ndarray
+    angle: np.ndarray
+    delay: np.ndarray
+    owner: np.ndarray
+    of_links: Extras
+    of_bodies: Extras
+    surface: np.ndarray
+    most_rows: int
+
+
+class BodyRows(NamedTuple):
+    """The rows of each body, and what is summed up of them.
+
+    Attributes:
+        rows: (bodies, most rows, N_NUMBERS). n_rows: (bodies,).
+        sums: (bodies, 6) [m] offsets of all frames together; the second-order rest; what of it errors make
+            without motion; how far the errors and the motion can move any point of the body; [rad] how far they
+            can turn it; [m] how far the surface may stand out.
+    """
+
+    rows: np.ndarray
+    n_rows: np.ndarray
+    sums: np.ndarray
+
+
+OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE = range(6)
+
+N_SUMS = 6
+
+
+class JointMotion(NamedTuple):
+    """What joints do beside their errors, over half an interval of time and what clocks may be off.
+
+    Attributes:
+        swing, bend: (links,) as in `IntervalMiddle`. turned: (links,) [rad] further turns about any axis.
+        half: [s] half of the interval.
+    """
+
+    swing: np.ndarray
+    bend: np.ndarray
+    turned: np.ndarray
+    half: float
+
+
+class _Chain(NamedTuple):
+    """Sums on the way from the tip of a chain to its base: with what moves, and of the errors alone.
+
+    Attributes:
+        above: [rad] turns of all that is above. moved: [m] how far what is below moves any point. rest: [m].
+    """
+
+    above: float
+    moved: float
+    rest: float
+    above_still: float
+    moved_still: float
+    rest_still: float
+
+
+@shared
+def new_body_rows(n_bodies, most_rows):
+    """Rows of no errors."""
+    return BodyRows(
+        np.zeros((n_bodies, most_rows, N_NUMBERS)), np.zeros(n_bodies, dtype=np.int64),
+        np.zeros((n_bodies, N_SUMS)),
+    )  # fmt: skip
+
+
+@inline
+def _write(rows, n, origin, axis, kind, first, offset):
+    """One more row; how many there are."""
+    r = rows[n]
+    r[0], r[1], r[2] = origin.x, origin.y, origin.z
+    r[3], r[4], r[5] = axis.x, axis.y, axis.z
+    r[KIND], r[FIRST], r[OFFSET] = kind, first, offset
+    r[CHORD], r[WAY] = 0.0, 0.0
+    return n + 1
+
+
+@inline
+def chord(angle):
+    """2 sin(angle / 2), no less than it; of half a turn or more 2."""
+    return 2.0 * math.sin(0.5 * min(angle, math.pi)) * OUTWARD
+
+
+@inline
+def _turned(chain, size, still, arm):
+    """The sums after a turn whose axis or origin is `arm` [m] from the body's farthest point."""
+    above, above_still = max(0.0, chain.above - size), max(0.0, chain.above_still - still)
+    far, far_still = arm + chain.moved, arm + chain.moved_still
+    return _Chain(
+        above, chain.moved + size * far,
+        chain.rest + 0.5 * size * far * (size + 2.0 * above),
+        above_still, chain.moved_still + still * far_still,
+        chain.rest_still + 0.5 * still * far_still * (still + 2.0 * above_still),
+    )  # fmt: skip
+
+
+@inline
+def _slid(chain, size, still):
+    """The sums after a slide or an offset."""
+    return _Chain(
+        chain.above, chain.moved + size, chain.rest + size * chain.above,
+        chain.above_still, chain.moved_still + still, chain.rest_still + still * chain.above_still,
+    )  # fmt: skip
+
+
+@inline
+def _frame(rows, n, origin, angle, xyz, ball, chain):
+    """A row of a frame at `origin` (body frame), and the sums after it."""
+    if angle > 0.0 or xyz > 0.0:
+        n = _write(rows, n, origin, Vec3(0.0, 0.0, 0.0), FRAME, angle, xyz)
+        rows[n - 1, CHORD] = chord(angle)
+        arm = math.sqrt(dot(sub(ball.t, origin), sub(ball.t, origin))) + ball.radius
+        chain = _slid(_turned(chain, angle, angle, arm), xyz, xyz)
+    return n, chain
+
+
+class _Ball(NamedTuple):
+    """A ball about a body, in its frame [m]."""
+
+    t: Vec3
+    radius: float
+
+
+@inline
+def _ball_of(surface, root):
+    box = box_of(surface, root)
+    return _Ball(box.centre, math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN))
+
+
+@inline
+def _extras(extras, i, rows, n, ball, chain):
+    """Rows of all further frames of a link or body, whose origins are told in its own frame or that of the tip."""
+    for k in range(extras.starts[i], extras.starts[i + 1]):
+        o = extras.origins[k]
+        n, chain = _frame(
+            rows, n, Vec3(o[0], o[1], o[2]), extras.angle[k], extras.xyz[k], ball, chain
+        )
+    return n, chain
+
+
+@inline
+def _share_of_clock(errors, motion, link):
+    """How much of what a joint does is there since its clock may be off: 0 to 1."""
+    delay = errors.delay[link]
+    return delay / (delay + motion.half) if delay > 0.0 else 0.0
+
+
+@inline
+def _turns_above(links, errors, motion, link):
+    """[rad] all turns of a chain, with what moves and of the errors alone."""
+    moving = still = 0.0
+    i = link
+    while i != NO_PARENT:
+        extra = errors.angle[i] + motion.turned[i]
+        for k in range(errors.of_links.starts[i], errors.of_links.starts[i + 1]):
+            extra += errors.of_links.angle[k]
+        if links.parents[i] != NO_PARENT and links.kinds[i] == TURNING:
+            size = abs(motion.swing[i]) + motion.bend[i]
+            moving += errors.joint[i] + size
+            still += errors.joint[i] + size * _share_of_clock(errors, motion, i)
+        moving += extra
+        still += extra
+        i = links.parents[i]
+    return moving, still
+
+
+@inline
+def _joint_origin(links, poses, i):
+    """Where the frame that a link hangs on has its origin, in the world [m]."""
+    parent = links.parents[i]
+    t = rigid(links.parent_from_joint[i]).t
+    return t if parent == NO_PARENT else move(rigid(poses[parent]), t)
+
+
+@inline
+def _world_axis(links, poses, i):
+    a = links.axes[i]
+    p = poses[i]
+    return Vec3(
+        p[0, 0] * a[0] + p[0, 1] * a[1] + p[0, 2] * a[2],
+        p[1, 0] * a[0] + p[1, 1] * a[1] + p[1, 2] * a[2],
+        p[2, 0] * a[0] + p[2, 1] * a[1] + p[2, 2] * a[2],
+    )
+
+
+@inline
+def _from_axis(ball, origin, axis):
+    """[m] how far any point of a ball is from a line at most."""
+    away = cross(sub(ball.t, origin), axis)
+    return math.sqrt(dot(away, away)) + ball.radius
+
+
+@inline
+def fill_rows(surface, world, body, errors, motion, poses, found):
+    """Writes the rows of a body that a link carries, with the links at `poses` (links, 4, 4) [m]."""
+    links, link = world.links, world.frames[body]
+    rows = found.rows[body]
+    ball = _ball_of(surface, surface.roots[world.solids[body]])
+    pose = rigid(poses[link])
+    n = 0
+    turns, turns_still = _turns_above(links, errors, motion, link)
+    chain = _Chain(turns, 0.0, 0.0, turns_still, 0.0, 0.0)
+    nothing = Vec3(0.0, 0.0, 0.0)
+    velocity, spin, clock, share, moves = nothing, nothing, -1, 0.0, False
+    i = link
+    while i != NO_PARENT:
+        joint, swing, bend = errors.joint[i], motion.swing[i], motion.bend[i]
+        size = joint + abs(swing) + bend
+        has_joint = links.parents[i] != NO_PARENT
+        if has_joint and size > 0.0 and (links.kinds[i] == TURNING or links.kinds[i] == SLIDING):
+            if moves and clock != errors.owner[i]:
+                n = _write(rows, n, velocity, spin, TOGETHER, share, 0.0)
+                velocity, spin = nothing, nothing
+            clock, moves, share = errors.owner[i], True, _share_of_clock(errors, motion, i)
+            still = joint + share * (size - joint)
+            axis = turn_back(pose, _world_axis(links, poses, i))
+            at = poses[i]
+            origin = move_back(pose, Vec3(at[0, 3], at[1, 3], at[2, 3]))
+            if links.kinds[i] == TURNING:
+                n = _write(rows, n, origin, axis, TURN, joint + bend, 0.0)
+                rows[n - 1, CHORD] = chord(size)
+                chain = _turned(chain, size, still, _from_axis(ball, origin, axis))
+                spin = Vec3(
+                    spin.x + swing * axis.x, spin.y + swing * axis.y, spin.z + swing * axis.z
+                )
+                c = cross(origin, axis)
+                velocity = Vec3(
+                    velocity.x + swing * c.x, velocity.y + swing * c.y, velocity.z + swing * c.z
+                )
+            else:
+                n = _write(rows, n, origin, axis, SLIDE, joint + bend, 0.0)
+                rows[n - 1, WAY] = size * OUTWARD
+                chain = _slid(chain, size, still)
+                velocity = Vec3(
+                    velocity.x + swing * axis.x,
+                    velocity.y + swing * axis.y,
+                    velocity.z + swing * axis.z,
+                )
+        if errors.angle[i] > 0.0 or errors.xyz[i] > 0.0 or motion.turned[i] > 0.0:
+            origin = move_back(pose, _joint_origin(links, poses, i))
+            angle = errors.angle[i] + motion.turned[i]
+            n, chain = _frame(rows, n, origin, angle, errors.xyz[i], ball, chain)
+        for k in range(errors.of_links.starts[i], errors.of_links.starts[i + 1]):
+            o = errors.of_links.origins[k]
+            origin = move_back(pose, move(rigid(poses[i]), Vec3(o[0], o[1], o[2])))
+            n, chain = _frame(
+                rows, n, origin, errors.of_links.angle[k], errors.of_links.xyz[k], ball, chain
+            )
+        i = links.parents[i]
+    if moves:
+        n = _write(rows, n, velocity, spin, TOGETHER, share, 0.0)
+    _sum_up(rows, n, ball, chain, turns, errors.surface[body], body, found)
+
+
+@inline
+def fill_rows_of_standing(surface, world, body, errors, found):
+    """The same of a body that stands."""
+    ball = _ball_of(surface, surface.roots[world.solids[body]])
+    rows = found.rows[body]
+    turned = 0.0
+    extras = errors.of_bodies
+    for k in range(extras.starts[body], extras.starts[body + 1]):
+        turned += extras.angle[k]
+    chain = _Chain(turned, 0.0, 0.0, turned, 0.0, 0.0)
+    n, chain = _extras(extras, body, rows, 0, ball, chain)
+    _sum_up(rows, n, ball, chain, turned, errors.surface[body], body, found)
+
+
+@inline
+def _sum_up(rows, n, ball, chain, turned, surface, body, found):
+    offsets = 0.0
+    for k in range(n):
+        offsets += rows[k, OFFSET]
+    sums = found.sums[body]
+    sums[OFFSETS], sums[REST], sums[REST_AT_REST] = (
+        offsets,
+        chain.rest * OUTWARD,
+        chain.rest_still * OUTWARD,
+    )
+    sums[REACH] = _reach_of_ball(rows, n, ball) * OUTWARD
+    sums[TURNED], sums[SURFACE] = turned, surface
+    found.n_rows[body] = n
+
+
+@inline
+def _reach_of_ball(rows, n, ball):
+    """[m] how far the errors can move any point of a ball: the recursion from tip to base."""
+    moved = 0.0
+    for k in range(n):
+        r = rows[k]
+        kind = r[KIND]
+        origin = Vec3(r[0], r[1], r[2])
+        if kind == TURN:
+            axis = Vec3(r[3], r[4], r[5])
+            moved += r[CHORD] * (_from_axis(ball, origin, axis) + moved)
+        elif kind == SLIDE:
+            moved += r[WAY]
+        elif kind == FRAME:
+            d = sub(ball.t, origin)
+            moved += r[CHORD] * (math.sqrt(dot(d, d)) + ball.radius + moved) + r[OFFSET]
+    return moved
+
+
+@inline
+def reach_of_point(found, body, x):
+    """[m] how far the errors can move a point of a body (body frame): the recursion from tip to base."""
+    return _reach_of_ball(found.rows[body], found.n_rows[body], _Ball(x, 0.0))
+
+
+@inline
+def along_first(found, body, u, x, with_motion):
+    """[m] how far errors move a point of a body along a unit direction, to the first order, and all offsets."""
+    moved = found.sums[body, OFFSETS]
+    rows = found.rows[body]
+    for k in range(found.n_rows[body]):
+        r = rows[k]
+        kind = r[KIND]
+        o, a = Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5])
+        if kind == TURN:
+            moved += r[FIRST] * abs(dot(cross(u, a), sub(x, o)))
+        elif kind == SLIDE:
+            moved += r[FIRST] * abs(dot(u, a))
+        elif kind == FRAME:
+            c = cross(u, sub(x, o))
+            moved += r[FIRST] * math.sqrt(dot(c, c))
+        else:
+            moved += (1.0 if with_motion else r[FIRST]) * abs(dot(u, add(o, cross(a, x))))
+    return moved
+
+
+@inline
+def along_of_point(found, body, u, x):
+    """[m] how far errors and motion bring a point of a body along a unit direction at most."""
+    return (along_first(found, body, u, x, True) + found.sums[body, REST]) * OUTWARD
+
+
+@inline
+def along_of_point_at_rest(found, body, u, x):
+    """[m] the same of the errors alone."""
+    return along_first(found, body, u, x, False) + found.sums[body, REST_AT_REST]

@@ -1,0 +1,32 @@
+"""Tolerances by name, each with its source: files in `presets`. Not for: what they are of (`tolerance_block`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from clearance.load.preset_files import FOLDER
+from clearance.load.schema_errors import validated
+from clearance.load.strict_model import StrictModel
+from clearance.load.tolerance_schema import Tolerance
+from clearance.load.yaml_file import parse_yaml
+
+
+class _File(StrictModel):
+    source: str
+    tolerance: Tolerance
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Tolerances, and where their numbers come from, in one line."""
+
+    name: str
+    source: str
+    tolerance: Tolerance
+
+
+def preset(name: str) -> Preset:
+    """The preset of a name, which is there."""
+    path = FOLDER / f"{name}.yaml"
+    read = validated(_File, parse_yaml(path.read_bytes(), path.name), path.name)
+    return Preset(name, " ".join(read.source.split()), read.tolerance)

@@ -1,0 +1,108 @@
+"""Gaps between what moves and what stands, held against the widths that parts of a person need: information only.
+
+In a gap as wide as its width here a part of a person is not caught, nor in one that it cannot enter. Who can get
+where is not known here, so no verdict follows. Not for: limits of the case (`rules`).
+
+Source: ISO 13854, minimum gaps, as the page of AUVA (app.auva.at) gives them; the standard itself was not read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from markupsafe import Markup
+
+from clearance.report.markup import element, section, step_link, table
+from clearance.report.wording import count, limit_mm, mm, seconds
+from clearance.simulate.record import Record
+from clearance.simulate.standing import standing_bodies
+
+WIDTHS = {
+    "body": 0.5,
+    "head": 0.3,
+    "leg": 0.18,
+    "foot": 0.12,
+    "arm": 0.12,
+    "hand": 0.1,
+    "toes": 0.05,
+    "finger": 0.025,
+}
+"""[m] The least gap in which each part of a person is not caught, the greatest first."""
+
+SOURCE = "widths of ISO 13854 as AUVA (app.auva.at) gives them"
+
+MOST_LINES, MOST_ROWS = 4, 200
+
+
+def body_gaps_of(record: Record) -> list[dict[str, Any]]:
+    """The least gap [m] of each pair of a moving and a standing body that is below the widest of `WIDTHS`, the
+    narrowest first, and which parts it is too narrow for.
+    """
+    standing = standing_bodies(record)
+    return [
+        {
+            "body_a": one.link,
+            "body_b": one.obstacle,
+            "gap": one.clearance,
+            "step": one.step,
+            "time": one.time,
+            "may_catch": [part for part, width in WIDTHS.items() if one.clearance < width],
+        }
+        for one in record.pair_minima
+        if one.clearance < max(WIDTHS.values())
+        and (one.link in standing) != (one.obstacle in standing)
+    ]
+
+
+def gap_lines(record: Record) -> Iterator[str]:
+    """The narrowest of them, and where the widths are from."""
+    found = body_gaps_of(record)
+    for one in found[:MOST_LINES]:
+        where = f"{one['body_a']} - {one['body_b']} at step {one['step']}"
+        yield f"{mm(one['gap'])} mm may catch {_parts(one)}: {where}"
+    more = len(found) - MOST_LINES
+    told = f"{count(more, 'more pair')}; " if more > 0 else ""
+    told += "" if found else f"none below {limit_mm(max(WIDTHS.values()))} mm; "
+    yield f"{told}{SOURCE}; no verdict depends on it"
+
+
+def _parts(gap: dict[str, Any]) -> str:
+    return ", ".join(gap["may_catch"])
+
+
+def body_gaps(summary: dict[str, Any]) -> Markup:
+    """The page's section; nothing where it was not asked for."""
+    found = summary.get("body_gaps")
+    if found is None:
+        return Markup("")
+    widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
+    told = (
+        "Information, no verdict: who can get there, and which gaps are too narrow to enter, is not known here. "
+        "Told are pairs of which one moves and one stands, with their least gap at the steps, less padding. By "
+        f"the {SOURCE}: {widths}."
+    )
+    rows = [_row(one) for one in found[:MOST_ROWS]]
+    heads = ("Between", ">Gap, mm", "When", "May catch")
+    body = [table(heads, rows, class_="clickable bodies", tall=len(rows) > 24)] if rows else [
+        element("p", f"No such gap is below {limit_mm(max(WIDTHS.values()))} mm.")
+    ]  # fmt: skip
+    more = len(found) - len(rows)
+    body += (
+        [element("p", f"{count(more, 'more pair')} in summary.json.", class_="faint")]
+        if more
+        else []
+    )
+    return section("Gaps that people may be caught in", *body, element("p", told, class_="faint"))
+
+
+def _row(gap: dict[str, Any]) -> Markup:
+    return element(
+        "tr",
+        element("td", f"{gap['body_a']} - {gap['body_b']}"),
+        element("td", mm(gap["gap"]), class_="number"),
+        element("td", f"{seconds(gap['time'])}, ", step_link(gap["step"])),
+        element("td", _parts(gap)),
+        data_step=gap["step"],
+        tabindex=0,
+    )

@@ -1,0 +1,111 @@
+"""What a robot really did, held against what it was asked. Not for: reading recordings (`load.recorded_run`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput, BadTime, MissingKey
+from clearance.world.cubic import asked_at
+from clearance.world.notice import listed
+from clearance.world.timing import Timing
+from clearance.world.trajectory import Trajectory
+
+SHARE = 99.0
+"""[%] Of the samples, how many are no farther off than what is told beside the greatest error."""
+
+
+@dataclass(frozen=True)
+class JointError:
+    """How far a joint was off its course.
+
+    Attributes:
+        greatest: [rad or m] at `time` [s]. usual: `SHARE` of the samples are no farther off.
+    """
+
+    joint: str
+    greatest: float
+    usual: float
+    time: float
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A run of one robot.
+
+    Attributes:
+        path: as it is shown. offset: [s] added to its times to have the run's.
+        asked, timing: what the robot was to do. start, end: [s] both are known between.
+        joints: how far each was off.
+    """
+
+    path: str
+    offset: float
+    asked: Trajectory
+    timing: Timing
+    start: float
+    end: float
+    joints: tuple[JointError, ...]
+
+
+def recording_of(
+    path: str,
+    offset: float,
+    driven: Trajectory,
+    asked: Trajectory,
+    timing: Timing,
+    resting: Mapping[str, float],
+) -> Recording:
+    """A recording held against what was asked, at the samples of both while both are known.
+
+    Where joints move linearly between samples in both, the greatest error is at one of these.
+
+    Args:
+        driven: at the run's times. asked: at its own. resting: [rad] or [m] where joints were to stay.
+
+    Raises:
+        MissingKey: a joint that was to move is not recorded. BadTime: both are never known at one time.
+        BadInput: what was asked has no end.
+    """
+    _require_joints(driven, asked)
+    if timing.after == "loop":
+        raise BadInput("what was asked begins again and again", valid="after: hold")
+    times = _times_of_both(driven.times, timing.run_times(asked.times))
+    was = dict(zip(driven.joint_names, asked_at(driven, times).T, strict=True))
+    own = asked_at(asked, (times - timing.start) * timing.rate).T
+    wanted = dict(zip(asked.joint_names, own, strict=True))
+    errors = tuple(
+        _error(joint, np.abs(was[joint] - wanted.get(joint, resting.get(joint, 0.0))), times)
+        for joint in driven.joint_names
+    )
+    return Recording(path, offset, asked, timing, float(times[0]), float(times[-1]), errors)
+
+
+def _require_joints(driven: Trajectory, asked: Trajectory) -> None:
+    missing = [name for name in asked.joint_names if name not in driven.joint_names]
+    if missing:
+        raise MissingKey(
+            f"it does not tell of joints {listed(missing, 8)}, which were to move",
+            valid=f"it tells of {listed([*driven.joint_names], 8)}",
+        )
+
+
+def _times_of_both(driven: np.ndarray, asked: np.ndarray) -> np.ndarray:
+    """(n,) [s] the samples of both, from when both are known until one ends."""
+    start, end = max(driven[0], asked[0]), min(driven[-1], asked[-1])
+    if not start < end:
+        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven, asked)]
+        raise BadTime(
+            f"it is of {spans[0]}, and what the robot was asked of {spans[1]}",
+            valid="--recorded-offset S, which is added to the recording's times",
+        )
+    times = np.union1d(driven, asked)
+    return times[(times >= start) & (times <= end)]
+
+
+def _error(joint: str, off: np.ndarray, times: np.ndarray) -> JointError:
+    worst = int(np.argmax(off))
+    usual = float(np.percentile(off, SHARE, method="higher"))
+    return JointError(joint, float(off[worst]), usual, float(times[worst]))

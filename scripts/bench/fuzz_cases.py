@@ -1,0 +1,87 @@
+"""Small valid files of scenes, batches, waivers and findings. Not for: damaging them (`fuzz_readers`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+SCENE = b"""obstacles:
+- {name: post, pose: {xyz: [2, 0, 0], rpy: [0, 0, 0.5]}, box: {size: [0.1, 0.1, 1]}}
+- {name: ball, pose: {xyz: [2, 1, 0], rpy: [0.1, 0, 0]}, sphere: {radius: 0.2}}
+- {name: rod, on: post, cylinder: {radius: 0.1, length: 0.5}}
+- {name: part, pose: {xyz: [-2, 1, 0]}, mesh: {file: m.stl, scale: [0.5, 1, -1]}}
+"""
+
+MANIFEST = b"""name: night
+cases: [case.yaml]
+cell: cell.yaml
+trajectories: ["a*.csv"]
+read_as: {units: {angle: deg}, period: 0.5, joints: [shoulder]}
+need: steps
+limits: {fail: 0.002, warn: 0.01}
+certify_gap: 0.001
+accept: [units]
+"""
+
+WAIVERS = b"""- between: [post, tip]
+  at_least: 0.002
+  reason: a soft
+    bumper
+  by: A. Smith
+  until: 2027-03-31
+  case: small
+- {between: ["ba*", upper], rule: near, at_least: 0, reason: r, by: b, until: '2027-03-31'}
+"""
+
+POSES_JSON = b"""{"header": {"stamp": {"sec": 3, "nanosec": 5}, "frame_id": "map"}, "poses": [
+{"header": {"stamp": {"sec": 3, "nanosec": 5}, "frame_id": "map"},
+ "pose": {"position": {"x": 1.0, "y": -2.5, "z": 0.5}, "orientation": {"x": 0, "y": 0, "z": 0.6, "w": 0.8}}},
+{"header": {"stamp": {"sec": 4, "nanosec": 0}, "frame_id": "map"},
+ "pose": {"position": {"x": 1.0, "y": 2.5, "z": 0.5}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}}]}
+"""
+
+
+def octomap_scene(octree: bytes) -> bytes:
+    """A PlanningScene of an octomap in binary form, as its file holds it."""
+    header, _, body = octree.partition(b"\ndata\n")
+    resolution = header.rpartition(b"res ")[2].decode()
+    return f"""world:
+  octomap:
+    header: {{frame_id: map}}
+    origin: {{position: {{x: 0, y: 0, z: 1}}, orientation: {{x: 0, y: 0, z: 0, w: 1}}}}
+    octomap: {{id: OcTree, resolution: {resolution}, binary: true, data: {_signed(body)}}}
+""".encode()
+
+
+def _signed(body: Iterable[int]) -> list[int]:
+    """Bytes as `int8`, as messages hold them."""
+    return [value - 256 if value > 127 else value for value in body]
+
+
+def findings() -> bytes:
+    """`findings.json` of one pair that breaks its rule."""
+    from clearance.findings.finding import Finding, WaivedBy
+    from clearance.findings.findings_file import FindingList, findings_text
+    from clearance.findings.measured_as import (
+        MeasuredAs,
+        MeasuredPairs,
+        MeasuredRobot,
+        MeasuredRule,
+    )
+
+    measured = MeasuredAs(
+        need="steps",
+        method="exact",
+        motion="kinematic",
+        basis="motion",
+        certify_gap=1e-4,
+        robots=(MeasuredRobot("arm", 64 * "0", ("base", "tip")),),
+        rules=(MeasuredRule("default", (), "", 0.04, 0.06),),
+        pairs=(MeasuredPairs(("tip",), ("post",)),),
+    )
+    waived = WaivedBy(0.002, "soft", "A. Smith", "2027-03-31", 0.003)
+    found = Finding(
+        16 * "0", "clearance", "default", "tip", "post", 0, "violated", 0.035, 0.034, 0.04, 0.06, 2.5, None, 132,
+        True,
+        2.0, 3.0, 129, 135, (0.1, 0.2, 0.3), (0.1, 0.2, 0.4), {"shoulder": 0.5}, "", waived,
+    )  # fmt: skip
+    return findings_text(FindingList("small", "", 0, measured, (found,))).encode()

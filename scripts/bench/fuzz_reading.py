@@ -1,0 +1,197 @@
+"""What reads each kind of file: functions of its content, a folder that they may write into, and its name.
+
+Not for: the files (`fuzz_seeds`), nor damaging them (`fuzz_readers`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+from scripts.bench.fuzz_meshes import binary_stl
+from scripts.bench.fuzz_texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
+
+Read = Callable[[bytes, Path, str], object]
+
+
+def mesh(data: bytes, folder: Path, name: str) -> object:
+    from clearance.load.mesh import mesh_from_bytes
+
+    return mesh_from_bytes(data, name).shape.vertices
+
+
+def points(data: bytes, folder: Path, name: str) -> object:
+    from clearance.load.cloud import cloud_from_bytes
+
+    return cloud_from_bytes(data, name, 0.01).shape.vertices
+
+
+def by_path(read_path: Callable[[Path], object]) -> Read:
+    """A reader of files on disk."""
+
+    def read(data: bytes, folder: Path, name: str) -> object:
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(data)
+        return read_path(path)
+
+    return read
+
+
+def case(data: bytes, folder: Path, name: str) -> object:
+    """A case with its files, of which one is damaged."""
+    from clearance.load.case_file import load_case
+
+    valid = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, "m.stl": binary_stl()}
+    for other, content in (valid | {name: data}).items():
+        (folder / other).write_bytes(content)
+    return load_case(folder / "case.yaml")
+
+
+def robot_beside(data: bytes, folder: Path, name: str) -> object:
+    """A robot with all the files that may stand beside it, of which one is damaged."""
+    from clearance.load import schema
+    from clearance.load.input_files import InputFiles
+    from clearance.load.mesh_store import MeshStore
+    from clearance.load.robots import RobotReader
+
+    valid = {"arm.urdf": BOXES, "m.stl": binary_stl(), "arm.srdf": SRDF}
+    valid |= {"limits.yaml": LIMITS, "control.yaml": CONTROL}
+    for other, content in (valid | {name: data}).items():
+        (folder / other).write_bytes(content)
+    robot = schema.Robot.model_validate(ROBOT)
+    entry = schema.RobotEntry("robot", robot, None, "trajectory")
+    return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry)
+
+
+def robot(data: bytes, folder: Path, name: str) -> object:
+    from clearance.load.robot_formats import load_robot
+
+    (folder / "m.stl").write_bytes(binary_stl())
+    (folder / name).write_bytes(data)
+    return load_robot(folder / name)
+
+
+def scene(data: bytes, folder: Path, name: str) -> object:
+    """A scene as a case would have it: its content, then the solids that it names."""
+    from clearance.load.input_files import InputFiles
+    from clearance.load.mesh_store import MeshStore
+    from clearance.load.obstacle_schema import Scene
+    from clearance.load.scene_file import make_obstacles
+    from clearance.load.scene_formats import read_scene
+    from clearance.load.scene_request import SceneRequest
+    from clearance.load.schema_errors import validated
+
+    (folder / "m.stl").write_bytes(binary_stl())
+    (folder / name).write_bytes(data)
+    files = InputFiles(folder)
+    content = read_scene(SceneRequest(folder / name, files))
+    given = validated(Scene, content.scene, name).obstacles
+    return make_obstacles(given, folder, MeshStore(files))
+
+
+def trajectory(data: bytes, folder: Path, name: str) -> object:
+    from clearance.load.trajectory_file import parse_trajectory
+
+    return parse_trajectory(data, name)
+
+
+def bag(path: Path) -> object:
+    from clearance.load.timed_files import load_trajectory
+    from clearance.load.trajectory_request import Choice
+
+    return load_trajectory(path, Choice())
+
+
+def bag_folder(path: Path) -> object:
+    """A bag that is a folder, of which the file beside the messages is damaged."""
+    from scripts.bench import fuzz_bags
+
+    (path.parent / "run.db3").write_bytes(fuzz_bags.bag("rosbag2 sqlite3"))
+    return bag(path.parent)
+
+
+def poses(data: bytes, folder: Path, name: str) -> object:
+    from clearance.load.pose_formats import read_poses
+    from clearance.load.pose_table_request import PoseRequest
+
+    return read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+
+
+def xacro(path: Path) -> object:
+    """What is evaluated in the process that is started for it, and then read as URDF."""
+    from clearance.errors import BadSyntax
+    from clearance.load.urdf_elements import parse_document
+    from clearance.load.xacro_process import Watch, evaluated
+
+    with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
+        made = evaluated(path, {}, Watch())
+    if "problem" in made:
+        raise BadSyntax(made["problem"], where=path.name)
+    parse_document(made["urdf"].encode())
+    return None
+
+
+def dxf(path: Path) -> object:
+    from clearance.planar.dxf import read_dxf
+
+    return read_dxf(str(path))
+
+
+def curves(path: Path) -> object:
+    from clearance.planar.curve_file import read_curve
+
+    return read_curve(str(path))
+
+
+def outline(path: Path) -> object:
+    from clearance.profiles.outline_file import read_outline
+
+    return read_outline(path)
+
+
+def profile(path: Path) -> object:
+    from clearance.profiles.outline_file import read_profile
+
+    return read_profile(path)
+
+
+def sketch(path: Path) -> object:
+    from clearance.sketch import Sketch
+
+    return Sketch.load(path)
+
+
+def waivers(path: Path) -> object:
+    from clearance.load.waiver_file import load_waivers
+
+    return load_waivers(path)
+
+
+def manifest(path: Path) -> object:
+    from clearance.load.manifest_schema import load_manifest
+
+    return load_manifest(path)
+
+
+def batch_items(path: Path) -> object:
+    from clearance.batch.manifest import Changes, items_of
+
+    for name in ("case.yaml", "cell.yaml", "a.csv"):
+        (path.parent / name).write_bytes(CASE)
+    return items_of([str(path)], Changes())
+
+
+def case_list(path: Path) -> object:
+    from clearance.load.case_list import cases_in
+
+    (path.parent / "case.yaml").write_bytes(CASE)
+    return cases_in(path)
+
+
+def findings(path: Path) -> object:
+    from clearance.findings.findings_file import read_findings
+
+    return read_findings(path)

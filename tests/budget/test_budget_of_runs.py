@@ -1,0 +1,126 @@
+"""What a run with tolerances tells: its record, its steps, its worst moments; and a run without is as it was."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.budget.sources import SourceKey, with_sizes
+from clearance.errors import BadInput
+from clearance.world.budget import Budget, ObstacleTolerance, RobotTolerance
+from clearance.world.case import Clock
+from tests.budget.budget_cases import random_case
+
+
+@pytest.fixture(scope="module")
+def run():
+    case = replace(random_case(0, n_steps=12), limits=cl.Limits(0.02, 0.03))
+    return cl.check(case)
+
+
+def test_a_case_without_tolerances_has_no_budget():
+    before = set(sys.modules)
+    run = cl.check(replace(random_case(0), tolerance=None))
+    assert run.record.budget is None
+    assert not {"proven", "expected"} & set(run.record.steps.column_names)
+    assert not any(name.startswith("clearance.budget") for name in set(sys.modules) - before)
+
+
+def test_columns_of_steps_are_those_of_the_rule(run):
+    (budget,) = run.record.budget
+    steps = run.record.steps
+    assert steps["proven"].to_pylist() == budget.proven.tolist()
+    assert np.array_equal(steps["expected"].to_numpy(), budget.expected, equal_nan=True)
+    assert (budget.proven < budget.expected).all()
+    assert (budget.expected < steps["clearance"].to_numpy()).all()
+
+
+def test_other_columns_are_as_without_tolerances(run):
+    plain = cl.check(replace(run.record.case, tolerance=None, notices=())).record.steps
+    assert run.record.steps.drop_columns(["proven", "expected"]).equals(plain)
+
+
+def test_the_motion_is_proven_no_better_than_its_ends(run):
+    (budget,) = run.record.budget
+    ends = np.minimum(budget.proven[:-1], budget.proven[1:])
+    assert (budget.between[:-1] <= ends + 1e-12).all()
+    assert (budget.between[:-1] >= ends - 0.01).all()
+
+
+def test_the_worst_moment_is_the_least_and_its_sources_make_it_up(run):
+    (budget,) = run.record.budget
+    worst = budget.worst[0]
+    assert worst.proven <= budget.proven.min()
+    assert worst.proven >= budget.least - 1e-12
+    taken = sum(source.proven for source in worst.sources)
+    assert taken == pytest.approx(worst.moment.clearance - worst.proven, rel=0.05)
+    assert [s.proven for s in worst.sources] == sorted(
+        (s.proven for s in worst.sources), reverse=True
+    )
+
+
+def test_the_expected_value_is_that_of_the_sources(run):
+    (budget,) = run.record.budget
+    worst = budget.worst[0]
+    deviation = np.sqrt(sum(source.expected**2 for source in worst.sources))
+    assert worst.expected == pytest.approx(worst.moment.clearance - 3.0 * deviation, abs=1e-9)
+
+
+def test_the_largest_tolerance_keeps_the_limit_and_little_more_does_not(run):
+    (budget,) = run.record.budget
+    case = run.record.case
+    limit = budget.least - 0.002
+    lower = replace(case, limits=cl.Limits(limit, limit), notices=())
+    (again,) = cl.check(lower).record.budget
+    source = again.worst[0].sources[0]
+    key = SourceKey(source.owner, source.kind, source.part)
+    for factor, keeps in ((1.0, True), (1.01, False)):
+        sizes = (source.largest[0] * factor, *(size for size, _ in source.tolerances[1:]))
+        loose = replace(lower, tolerance=with_sizes(case.tolerance, key, sizes))
+        (other,) = cl.check(loose).record.budget
+        assert other.keeps is keeps
+
+
+def test_what_even_none_of_an_error_does_not_keep_has_no_largest(run):
+    case = replace(run.record.case, limits=cl.Limits(10.0, 10.0), notices=())
+    (budget,) = cl.check(case).record.budget
+    assert not budget.keeps
+    assert all(number is None for source in budget.worst[0].sources for number in source.largest)
+
+
+def test_a_budget_of_nothing_takes_nothing():
+    case = random_case(0)
+    run = cl.check(replace(case, tolerance=Budget()))
+    (budget,) = run.record.budget
+    assert budget.proven == pytest.approx(run.record.clearances, abs=1e-9)
+    assert budget.expected == pytest.approx(run.record.clearances, abs=1e-12)
+    assert not budget.worst[0].sources
+
+
+def test_contact_is_never_kept():
+    case = random_case(3)
+    (budget,) = cl.check(case).record.budget
+    assert budget.least < 0.0
+    assert not budget.keeps
+    assert np.isnan(budget.expected[budget.proven < -1.0]).all()
+    budget.worst[0].sources[:1]
+
+
+def test_clocks_that_are_not_tied_are_refused():
+    case = replace(random_case(3), clock=Clock(0.1))
+    with pytest.raises(BadInput, match="clocks are not tied"):
+        cl.check(case)
+
+
+def test_a_late_clock_is_refused_where_parts_change_hands():
+    case = random_case(3)
+    part = replace(case.obstacles[3], mount=None, world_from_body=np.eye(4))
+    obstacles = (*case.obstacles[:3], part, *case.obstacles[4:])
+    carries = (cl.Carry("part", "hand", cl.Window(0.2, 0.3)),)
+    late = Budget({"arm": RobotTolerance(timing=0.01)}, {"o0": ObstacleTolerance()})
+    with pytest.raises(BadInput, match="clock of 'arm' may be off"):
+        cl.check(replace(case, obstacles=obstacles, carries=carries, tolerance=late))

@@ -1,0 +1,88 @@
+"""`--tolerance` and `--unproven-ok`, and the same in Python: what they change, and what they refuse."""
+
+import json
+
+import pytest
+
+import clearance as cl
+from clearance.cli import run
+from clearance.world.budget import Budget
+from tests.load.making import CASE, write_case
+
+TOO_MUCH = "base: {xyz: 0.4}\n"
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    """The nearest is some 0.45 m; its limits are 5 and 20 mm."""
+    text = CASE.replace("xyz: [2, 0, 0]", "xyz: [0.8, 0, 0.5]")
+    assert text != CASE
+    return write_case(tmp_path, text)
+
+
+def checked(capsys, *given):
+    code = run(["check", *map(str, given)])
+    return code, capsys.readouterr()
+
+
+def test_a_limit_that_is_not_proven_fails_the_run(case_file, tmp_path, capsys):
+    own = tmp_path / "t.yaml"
+    own.write_text(TOO_MUCH)
+    code, told = checked(capsys, case_file, "--tolerance", own)
+    assert code == 1 and told.out.startswith("NOT PROVEN with tolerances, CLEAR without")
+    code, told = checked(capsys, case_file, "--tolerance", own, "--unproven-ok")
+    assert code == 0 and told.out.startswith("NOT PROVEN with tolerances (accepted), CLEAR without")
+    code, told = checked(capsys, case_file)
+    assert code == 0 and told.out.startswith("CLEAR ")
+
+
+def test_a_file_takes_the_place_of_the_case_s_own(case_file, tmp_path, capsys):
+    case_file.write_text(f"{case_file.read_text()}tolerance: {{joints: {{all: 0.001}}}}\n")
+    own = tmp_path / "t.yaml"
+    own.write_text(TOO_MUCH)
+    code, told = checked(capsys, case_file, "--tolerance", own, "--json")
+    summary = json.loads(told.out)
+    assert code == 1 and "tolerances of t.yaml take the place of the case's own" in summary["notes"]
+    assert "t.yaml" in [one["path"] for one in summary["inputs"]]
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("base: {xyz: 4}\n", "t.yaml: base.xyz: 4 m is given; at most 0.5 m, in metres"),
+        ("joints: {shulder: 0.001}\n", "did you mean 'shoulder'?"),
+        ("", "t.yaml: nothing is given"),
+    ],
+)
+def test_what_is_refused(case_file, tmp_path, capsys, text, told):
+    own = tmp_path / "t.yaml"
+    own.write_text(text)
+    code, said = checked(capsys, case_file, "--tolerance", own)
+    assert code == 2 and told in said.err and len(said.err.splitlines()) == 1
+
+
+def test_there_is_nothing_to_be_lenient_with(case_file, capsys):
+    code, said = checked(capsys, case_file, "--unproven-ok")
+    assert code == 2 and "--unproven-ok says nothing without tolerances" in said.err
+
+
+def test_the_file_is_not_written_over(case_file, tmp_path, capsys):
+    own = tmp_path / "t.yaml"
+    own.write_text(TOO_MUCH)
+    code, said = checked(capsys, case_file, "--tolerance", own, "--junit", own)
+    assert code == 2 and own.read_text() == TOO_MUCH and said.err
+
+
+def test_the_same_in_python(case_file, tmp_path):
+    own = tmp_path / "t.yaml"
+    own.write_text(TOO_MUCH)
+    block = {"base": {"xyz": 0.4}}
+    runs = [cl.check(case_file, tolerance=given) for given in (own, str(own), block)]
+    assert {one.status for one in runs} == {"not proven"} and not any(one.passed for one in runs)
+    budget = runs[0].record.case.tolerance
+    assert cl.check(case_file, tolerance=budget).status == "not proven"
+    assert isinstance(budget, Budget)
+    accepted = cl.check(case_file, tolerance=block | {"unproven_ok": True})
+    assert accepted.passed and accepted.status == "not proven"
+    with pytest.raises(cl.BadInput, match="no joint that moves matches 'elbow'"):
+        cl.check(case_file, tolerance={"joints": {"elbow": 0.1}})

@@ -1,0 +1,63 @@
+"""Gaps that people may be caught in: which are told, with which source, and that no verdict follows."""
+
+import dataclasses
+
+import pytest
+
+import clearance as cl
+from clearance.cli import run
+from clearance.report import summary_of, verdict_of
+from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
+from clearance.report.page import page_of
+from clearance.simulate.replay import replay_of
+from tests.load.making import CASE, write_case
+from tests.report.test_verdict import made
+
+SWING = dataclasses.replace(made(), body_gaps=True)
+
+
+def test_a_gap_may_catch_what_needs_more(tmp_path):
+    near = [one for one in SWING.pair_minima if one.clearance < 0.5]
+    told = body_gaps_of(SWING)
+    assert len(told) == len(near)
+    for one, minimum in zip(told, near, strict=True):
+        assert one["gap"] == minimum.clearance
+        assert one["may_catch"] == [
+            part for part, width in WIDTHS.items() if minimum.clearance < width
+        ]
+
+
+def test_pairs_that_both_stand_are_left_out(tmp_path):
+    text = CASE.replace("xyz: [2, 0, 0]", "xyz: [0.2, 0.3, 0]")
+    assert text != CASE
+    file = write_case(tmp_path, text)
+    found = cl.answer(cl.Question(cl.load_case(file), body_gaps=True))
+    pairs = {(one["body_a"], one["body_b"]) for one in body_gaps_of(found.record)}
+    nearest = {(one.link, one.obstacle): one.clearance for one in found.record.pair_minima}
+    assert ("base", "post") in nearest and nearest["base", "post"] < 0.5
+    assert pairs == {("upper", "post")}
+
+
+def test_it_is_told_with_its_source_and_decides_nothing():
+    assert verdict_of(SWING) == verdict_of(made())
+    assert list(gap_lines(SWING))[-1].endswith(
+        "widths of ISO 13854 as AUVA (app.auva.at) gives them; no verdict depends on it"
+    )
+    page = page_of(summary_of(SWING), replay_of(SWING))
+    assert (
+        "<h2>Gaps that people may be caught in</h2>" in page and "Information, no verdict" in page
+    )
+    assert "body_gaps" not in summary_of(made())
+
+
+def test_on_the_command_line(tmp_path, capsys):
+    file = write_case(tmp_path, CASE.replace("xyz: [2, 0, 0]", "xyz: [0.2, 0.6, 0]"))
+    run(["check", str(file), "--body-gaps"])
+    assert "body gaps   " in capsys.readouterr().out
+    assert run(["check", str(file), "--body-gaps", "--need", "minimum"]) == 2
+    assert "body gaps need the least of every pair" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("part", "width"), [("body", 0.5), ("head", 0.3), ("finger", 0.025)])
+def test_the_widths_are_those_of_the_table(part, width):
+    assert WIDTHS[part] == width

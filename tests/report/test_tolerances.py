@@ -1,0 +1,250 @@
+"""Tolerances in every answer: verdict, exit code, lines, findings, JUnit, tables; none where there are none."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pyarrow.csv
+import pytest
+
+from clearance.findings.comparison import compared
+from clearance.findings.finding import NOT_PROVEN, TOLERANCES
+from clearance.findings.findings_file import finding_list_of, findings_text, read_findings
+from clearance.findings.of_record import findings_of
+from clearance.report import summary_of, verdict_of, write, write_junit
+from clearance.report.annotations import annotation_lines
+from clearance.report.markdown import markdown
+from clearance.report.tolerances import largest_text
+from clearance.run import Run
+from clearance.simulate.budget_answer import ErrorSource
+from clearance.world.budget import Budget, ObstacleTolerance
+from clearance.world.case import Limits
+from tests.report.budgets import with_budget
+from tests.report.records import record
+from tests.report.test_verdict import UNITS, made, printed
+
+LIMITS = Limits(warn=0.02)
+NEAR = made(LIMITS)
+"""0.376 mm at least: near."""
+
+KEPT = with_budget(NEAR, 0.0001)
+OPEN = with_budget(NEAR, 0.0025)
+ACCEPTED = with_budget(NEAR, 0.0025, ok=True)
+NO_ANSWER = dataclasses.replace(OPEN, budget=None)
+BROKEN = with_budget(record(limits=Limits(fail=0.01, warn=0.06)))
+WITHOUT = "NEAR without, looked at the samples only"
+SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
+
+
+@pytest.mark.parametrize(
+    ("one", "status", "exit_code", "text"),
+    [
+        (KEPT, "near", 0, "NEAR with tolerances at the samples only"),
+        (OPEN, "not proven", 1, f"NOT PROVEN with tolerances, {WITHOUT}"),
+        (ACCEPTED, "not proven", 0, f"NOT PROVEN with tolerances (accepted), {WITHOUT}"),
+        (NO_ANSWER, "not proven", 1, f"NOT PROVEN with tolerances, {WITHOUT}"),
+        (BROKEN, "contact", 1, "CONTACT, looked at the samples only"),
+        (SUSPECT, "suspect", 2, f"SUSPECT (would be NOT PROVEN with tolerances, {WITHOUT})"),
+    ],
+)  # fmt: skip
+def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
+    verdict, run = verdict_of(one), Run(one)
+    assert (verdict.status, verdict.exit_code, verdict.text(str.upper)) == (status, exit_code, text)
+    assert (run.status, run.passed) == (status, exit_code == 0)
+    summary = summary_of(one)
+    assert (summary["verdict"], summary["exit_code"]) == (status, exit_code)
+    assert printed(one)[0].startswith(text)
+    write_junit(one, tmp_path / "junit.xml")
+    cases = ElementTree.parse(tmp_path / "junit.xml").getroot().iter("testcase")
+    failing = {case.get("classname") for case in cases if case.find("failure") is not None}
+    assert ("verdict" in failing) == bool(exit_code)
+    assert ("tolerances" in failing) == (
+        (status == "not proven" and exit_code == 1) or status == "suspect"
+    )
+
+
+def test_what_is_left_is_told_in_words_that_can_be_signed():
+    kept = with_budget(NEAR, 0.0001, between=True)
+    assert verdict_of(kept).with_tolerances == (
+        "With every error at its worst at once at least 0.176 mm are left; proven for the motion. "
+        "Expected (3 sigma, estimate): 0.342 mm.",
+    )
+    (line,) = verdict_of(OPEN).with_tolerances
+    assert (
+        "contact is not ruled out (they could overlap by 2.124 mm); proven for the samples only"
+        in line
+    )
+    for told in (printed(OPEN), markdown(OPEN, verdict_of(OPEN), findings_of(OPEN)).splitlines()):
+        assert any("contact is not ruled out" in row for row in told)
+
+
+def test_the_terminal_says_what_takes_most_and_what_it_may_be():
+    told = "\n".join(printed(KEPT))
+    assert "most is taken by position of joint lift 1.200 mm (0.001 rad), base of arm_0" in told
+    assert "others as given: position of joint lift 0.0021 rad, base of arm_0 3.5 mm, none" in told
+    assert "preset typical: read somewhere" in told
+
+
+def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
+    (finding,) = [one for one in findings_of(OPEN) if one.kind == TOLERANCES]
+    assert (finding.status, finding.fails, finding.body_a, finding.body_b) == (
+        NOT_PROVEN,
+        True,
+        "gripper",
+        "post",
+    )
+    assert finding.proven == pytest.approx(finding.clearance - 0.0025)
+    assert findings_of(OPEN)[0] is not None and findings_of(OPEN)[0].kind == TOLERANCES
+    assert [one.kind for one in findings_of(KEPT)] == ["clearance"]
+    assert all(one.kind != TOLERANCES for one in findings_of(BROKEN))
+
+
+def test_its_name_does_not_depend_on_numbers_or_bodies():
+    moved = dataclasses.replace(OPEN.budget[0].worst[0].moment, link="fore", clearance=0.002)
+    worst = dataclasses.replace(OPEN.budget[0].worst[0], moment=moved)
+    other = with_budget(NEAR, 0.003, worst=(worst,))
+    first, second = (
+        next(f for f in findings_of(one) if f.kind == TOLERANCES) for one in (OPEN, other)
+    )
+    assert first.id == second.id and first.body_a != second.body_a
+
+
+def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
+    (finding,) = [one for one in findings_of(ACCEPTED) if one.kind == TOLERANCES]
+    assert finding.broken and not finding.fails
+    write_junit(ACCEPTED, tmp_path / "junit.xml")
+    text = (tmp_path / "junit.xml").read_text()
+    assert "accepted: what is not proven with the tolerances may pass" in text
+    assert (
+        list(annotation_lines(ACCEPTED, verdict_of(ACCEPTED), findings_of(ACCEPTED), tmp_path))
+        == []
+    )
+    lines = list(annotation_lines(OPEN, verdict_of(OPEN), findings_of(OPEN), tmp_path))
+    assert (
+        len(lines) == 1
+        and "not proven to keep the fail limit of 0 mm with the tolerances" in lines[0]
+    )
+
+
+def test_what_was_not_worked_out_is_not_clear():
+    (finding,) = [one for one in findings_of(NO_ANSWER) if one.kind == TOLERANCES]
+    assert finding.text == "what the tolerances leave was not worked out" and finding.fails
+
+
+def test_findings_are_kept_and_compared(tmp_path):
+    for one in (OPEN, ACCEPTED, NEAR):
+        path = tmp_path / "findings.json"
+        path.write_text(findings_text(finding_list_of(one)))
+        assert read_findings(path) == finding_list_of(one)
+    less = with_budget(NEAR, 0.0015)
+    rows = {
+        row.finding.kind: row for row in compared(finding_list_of(OPEN), finding_list_of(less)).rows
+    }
+    assert rows[TOLERANCES].change == "better"
+    other = dataclasses.replace(
+        OPEN.case.tolerance, obstacles={"post": ObstacleTolerance(surface=0.001)}
+    )
+    other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=other))
+    rows = {
+        row.finding.kind: row
+        for row in compared(finding_list_of(OPEN), finding_list_of(other)).rows
+    }
+    assert (
+        rows[TOLERANCES].change == "not comparable"
+        and rows[TOLERANCES].why == "its tolerances are others"
+    )
+    assert rows["clearance"].change == "unchanged"
+
+
+def test_it_alarms_where_there_were_no_tolerances_before():
+    found = compared(finding_list_of(NEAR), finding_list_of(OPEN))
+    assert not found.passed and compared(finding_list_of(NEAR), finding_list_of(KEPT)).passed
+
+
+def test_where_numbers_are_from_is_no_part_of_the_comparison():
+    named = dataclasses.replace(OPEN.case.tolerance, sources=("elsewhere",), unproven_ok=True)
+    other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=named))
+    one, two = (finding_list_of(each).measured.tolerances for each in (OPEN, other))
+    assert one == two != finding_list_of(NEAR).measured.tolerances == ""
+
+
+def test_the_steps_have_columns_of_it(tmp_path):
+    certified = with_budget(NEAR, 0.001, between=True)
+    table = Run(certified).steps
+    assert table.column_names[-3:] == ["proven", "expected", "proven_between"]
+    assert np.array_equal(table["proven"].to_numpy(), certified.budget[0].proven)
+    write(certified, tmp_path / "out")
+    read = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
+    assert np.array_equal(read["expected"].to_numpy(), certified.budget[0].expected)
+    assert Run(KEPT).steps.column_names[-2:] == ["proven", "expected"]
+
+
+def test_what_is_not_known_is_null():
+    expected = np.full(8, np.nan)
+    one = with_budget(NEAR, 0.001, expected=expected)
+    assert Run(one).steps["expected"].null_count == 8
+    assert summary_of(one)["tolerances"]["rules"][0]["expected"] is None
+    assert "Expected" not in verdict_of(one).with_tolerances[0]
+
+
+def test_the_report_has_a_table_of_what_takes_it(tmp_path):
+    write(OPEN, tmp_path / "out")
+    read = pyarrow.csv.read_csv(tmp_path / "out" / "budget.csv").to_pylist()
+    assert [row["kind"] for row in read] == ["position", "base", "surface"]
+    assert read[1]["tolerance"] == 0.002 and read[1]["second_tolerance"] == 0.001
+    assert read[1]["second_unit"] == "rad" and read[1]["second_at_most"] is None
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    worst = summary["tolerances"]["rules"][0]["worst"][0]
+    assert [one["name"] for one in worst["sources"]] == [
+        "position of joint lift",
+        "base of arm_0",
+        "surface of post",
+    ]
+    assert summary["tolerances"]["verdict"] == "not proven"
+
+
+def test_a_report_without_tolerances_has_nothing_of_them(tmp_path):
+    write(OPEN, tmp_path / "out")
+    write(NEAR, tmp_path / "out")
+    assert not (tmp_path / "out" / "budget.csv").exists()
+    for path in (tmp_path / "out").iterdir():
+        if path.suffix in (".json", ".html", ".csv", ".yaml"):
+            assert "tolerances" not in path.read_text(), path.name
+
+
+def test_the_same_bytes_twice(tmp_path):
+    for name in ("a", "b"):
+        write(OPEN, tmp_path / name)
+    for path in (tmp_path / "a").iterdir():
+        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("given", "largest", "told"),
+    [
+        ((0.001, "m"), 0.00345678, "3.45 mm"),
+        ((0.001, "rad"), 0.0012, "0.0012 rad"),
+        ((0.02, "s"), 0.0, "0 s"),
+        ((0.02, "s"), None, "none"),
+        ((0.02, "s"), np.inf, "any"),
+    ],
+)
+def test_what_it_may_be_is_rounded_down(given, largest, told):
+    assert largest_text(ErrorSource("arm", "base", "", (given,), 0.0, 0.0, (largest,))) == told
+
+
+def test_several_rules_are_told_apart():
+    budget = OPEN.budget[0]
+    other = dataclasses.replace(
+        budget, rule="fence", limits=Limits(0.001, 0.001), proven=budget.proven + 0.1
+    )
+    both = dataclasses.replace(OPEN, budget=(budget, other))
+    assert " of rule 'fence'; proven" in verdict_of(both).with_tolerances[1]
+    assert Run(both).steps["proven"].to_pylist() == budget.proven.tolist()
+
+
+def test_a_budget_without_any_error_is_known_as_one():
+    assert Budget() == Budget() and finding_list_of(with_budget(NEAR)).measured.tolerances

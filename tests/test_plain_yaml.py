@@ -1,0 +1,75 @@
+"""YAML to plain data: what no YAML is ends with one line; aliases repeat no more than the file's length allows."""
+
+import pytest
+
+from clearance.errors import BadInput, BadSyntax, DuplicateName
+from clearance.plain_yaml import MOST_REPEATED, plain_data
+
+
+def grown(levels: int, begin: str, holds: str) -> bytes:
+    """A file of which each line repeats the one before it ten times."""
+    lines = [f"a0: &a0 {begin}"]
+    for i in range(1, levels):
+        lines.append(f"a{i}: &a{i} {holds % ', '.join([f'*a{i - 1}'] * 10)}")
+    return "\n".join(lines).encode()
+
+
+def test_aliases_are_the_data_that_they_name():
+    assert plain_data(b"a: &one [1, 1e-3]\nb: *one\nc: {<<: &two {x: no}, y: 2}\nd: *two") == {
+        "a": [1, 1e-3],
+        "b": [1, 1e-3],
+        "c": {"x": "no", "y": 2},
+        "d": {"x": "no"},
+    }
+
+
+@pytest.mark.parametrize(
+    ("begin", "holds"), [("[1, 2]", "[%s]"), ("{x: 1}", "{<<: [%s]}"), ("{x: 1}", "{y: [%s]}")]
+)
+def test_aliases_that_repeat_each_other_are_refused(begin, holds):
+    plain_data(grown(4, begin, holds))
+    with pytest.raises(BadSyntax, match=r"line 6: the aliases repeat too much; 100,\d\d\d values"):
+        plain_data(grown(10, begin, holds))
+
+
+def test_a_long_file_may_repeat_as_much_as_it_is_long():
+    row = ", ".join(["0.125"] * 1000)
+    uses = ", ".join(["*row"] * (MOST_REPEATED // 1001))
+    assert len(plain_data(f"- &row [{row}]\n- [{uses}]".encode())[1]) == MOST_REPEATED // 1001
+
+
+@pytest.mark.parametrize("text", ["&a [*a]", "&a {b: [1, *a]}", "&a [{? *a : 1}]"])
+def test_an_alias_of_what_it_stands_in_is_refused(text):
+    with pytest.raises(BadSyntax, match="line 1: an alias stands in what it repeats"):
+        plain_data(text.encode())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"a: !!bool maybe", b"a: !!int ''", b"a: !!float ''", b"a: !!timestamp x", b"%YAML 1.1\n---\na: -_",
+        b"a: " + b"1" * 5000, b"a: 2020-13-45", b"? {a: [1]}\n: 2", b"a: *b", b"a\0", b"\xff", b"[" * 500, b"a: [",
+        b"--- 1\n--- 2", b"!!python/object:os.system x",
+    ],
+)  # fmt: skip
+def test_what_no_plain_data_is_made_of_is_refused_in_one_line(text):
+    with pytest.raises(BadSyntax) as caught:
+        plain_data(text)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_key_twice_is_refused_with_its_line():
+    with pytest.raises(DuplicateName, match="line 2: "):
+        plain_data(b"a: 1\na: 2")
+
+
+def test_every_file_of_ours_is_bounded(tmp_path):
+    """Each room reads YAML by the same door."""
+    from clearance.planar.curve_file import read_curve
+    from clearance.profiles.outline_file import read_outline
+    from clearance.sketch import Sketch
+
+    (tmp_path / "f.yaml").write_bytes(grown(10, "[1, 2]", "[%s]"))
+    for read in (read_curve, read_outline, Sketch.load):
+        with pytest.raises(BadInput, match=r"f\.yaml: line 6: the aliases repeat too much"):
+            read(str(tmp_path / "f.yaml"))
