@@ -20,7 +20,7 @@ from rich.console import Console
 from rich.table import Table
 from rows import write_csv
 
-from clearance.gain.answer import Gain, gain
+from clearance.gains.answer import Gain, gain
 
 COLUMNS = (
     "source", "kind", "who", "kept", "size", "known", "lower_bound", "seconds", "measured", "blocked", "general",

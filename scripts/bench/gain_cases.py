@@ -14,8 +14,8 @@ import numpy as np
 from inputs import ROOT
 
 import clearance as cl
-from clearance.gain.offsets import joint_offsets
-from clearance.gain.shift import Shift, base_shift, obstacle_shift
+from clearance.gains.offsets import joint_offsets
+from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.world.case import Case, Limits
 
 OURS = ("iiwa_pipe_rack", "hot_cell", "box_box", "dual_arm_handover", "turntable_cell", "door_and_arm")

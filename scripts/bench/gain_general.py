@@ -1,6 +1,6 @@
 """The same shifts by a general optimiser: scipy's SLSQP from 20 starts on our exact clearances.
 
-Not for: ours (`clearance.gain`).
+Not for: ours (`clearance.gains`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from gain_cases import Made
 
 import clearance as cl
-from clearance.gain.shift import base_shift, obstacle_shift
+from clearance.gains.shift import base_shift, obstacle_shift
 
 STARTS = 20
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.gain.shortfalls import Gradient, State
+from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
 
 

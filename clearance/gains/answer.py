@@ -11,13 +11,13 @@ from os import PathLike
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, UnknownRobot, nearest_name
-from clearance.gain.blocked import Blocked, blocked_by, worst_pair
-from clearance.gain.delay import least_delay
-from clearance.gain.offsets import joint_offsets
-from clearance.gain.search import Change, Found, Search
-from clearance.gain.shift import Shift, base_shift, obstacle_shift
-from clearance.gain.shortfalls import State
-from clearance.gain.unreachable import least_offset, least_shift
+from clearance.gains.blocked import Blocked, blocked_by, worst_pair
+from clearance.gains.delay import least_delay
+from clearance.gains.offsets import joint_offsets
+from clearance.gains.search import Change, Found, Search
+from clearance.gains.shift import Shift, base_shift, obstacle_shift
+from clearance.gains.shortfalls import State
+from clearance.gains.unreachable import least_offset, least_shift
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
 

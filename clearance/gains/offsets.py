@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gain.basis import Basis
-from clearance.gain.programme import Box, Inequalities, reachable
-from clearance.gain.shortfalls import Rows
+from clearance.gains.basis import Basis
+from clearance.gains.programme import Box, Inequalities, reachable
+from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
 from clearance.world.case import Case, PlacedRobot
 

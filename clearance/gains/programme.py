@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from clearance.gain.shortfalls import Rows
+from clearance.gains.shortfalls import Rows
 
 
 class Box(NamedTuple):

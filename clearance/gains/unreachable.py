@@ -12,9 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.gain.offsets import JointOffsets
-from clearance.gain.shift import Shift
-from clearance.gain.shortfalls import State
+from clearance.gains.offsets import JointOffsets
+from clearance.gains.shift import Shift
+from clearance.gains.shortfalls import State
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 from clearance.simulate.approaches import Approach
 from clearance.world.case import Case

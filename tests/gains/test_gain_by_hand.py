@@ -7,8 +7,8 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
-from clearance.gain.answer import gain
-from tests.gain.gantries import along_x, crossing, gantry, slot, standing
+from clearance.gains.answer import gain
+from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
 FINE = 1e-6
 

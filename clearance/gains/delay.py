@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gain.offsets import columns_of
-from clearance.gain.shortfalls import State, Wanted, keeps, measured, proven
-from clearance.gain.unreachable import motion_radii, way_needed
+from clearance.gains.offsets import columns_of
+from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
+from clearance.gains.unreachable import motion_radii, way_needed
 from clearance.simulate.record import Record
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_name
-from clearance.gain.programme import Box, least_norm
-from clearance.gain.shortfalls import Rows
+from clearance.gains.programme import Box, least_norm
+from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.world.body import Obstacle

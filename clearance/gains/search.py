@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.gain.programme import Box, Inequalities, least_missing
-from clearance.gain.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
+from clearance.gains.programme import Box, Inequalities, least_missing
+from clearance.gains.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
 from clearance.world.case import Case
