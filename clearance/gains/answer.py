@@ -1,18 +1,29 @@
 """What can be gained: the least change of a kind, proven, with what no such change can do better.
 
-Not for: how it is written down (`written`), what it looks like (`page`).
+Not for: how it is written down (`written`), told (`told`) or shown (`page`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
+from pathlib import Path
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, UnknownRobot, nearest_name
-from clearance.gains.blocked import Blocked, blocked_by, worst_pair
+from clearance.gains.binding import bound_by
+from clearance.gains.blocked import (
+    NOT_FOUND,
+    TOO_LATE,
+    Blocked,
+    blocked_by,
+    unproven,
+    worst_pair,
+)
 from clearance.gains.delay import least_delay
+from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import joint_offsets
 from clearance.gains.search import Change, Found, Search
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
@@ -63,6 +74,8 @@ class Asked:
             raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
         if not 0.0 <= self.margin < np.inf:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
+        if not 0.0 <= self.most_delay < np.inf:
+            raise BadInput(f"a delay of {self.most_delay!r:.60} s", valid="a time, 0 or more")
         for start, end in self.keep:
             if not start <= end:
                 raise BadInput(
@@ -81,8 +94,10 @@ class Gain:
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
-        blocked: what stays too near, where it is not kept.
+        blocked: what stays too near, where it is not kept. binding: what the best that was reached is up against,
+            a line each.
         n_measured: how many cases were measured.
+        joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
     """
 
     asked: Asked
@@ -97,6 +112,23 @@ class Gain:
     blocked: Blocked | None
     n_measured: int
     joint_names: tuple[str, ...] = field(default=())
+    binding: tuple[str, ...] = field(default=())
+    case_file: Path | None = None
+
+    def save(self, folder: str | PathLike[str], *, force: bool = False) -> Path:
+        """Writes the changed case, `gain.json` and `gain.html`, with the reports of before and after, and returns
+        the folder.
+
+        Args:
+            force: overwrite an older one there.
+
+        Raises:
+            BadInput: the case was not read from a file, or cannot be written so that it is read as what it is.
+            Unwritable: something is there; nothing is left half-written.
+        """
+        from clearance.gains.folder import save_gain
+
+        return save_gain(self, Path(folder), force=force)
 
     @property
     def unit(self) -> str:
@@ -104,22 +136,41 @@ class Gain:
         return {"waypoints": "rad", "timing": "s"}.get(self.asked.kind, "m")
 
 
-def gain(case: Case | str | PathLike[str], kind: str = "waypoints", **how: object) -> Gain:
-    """The least change of a kind that makes every rule of a case hold, proven.
+def gain(
+    case: Case | str | PathLike[str],
+    kind: str = "waypoints",
+    *,
+    margin: float = 0.0,
+    robot: str | None = None,
+    obstacle: str | None = None,
+    keep: Sequence[tuple[float, float]] = (),
+    keep_ends: bool = True,
+    most_delay: float = MOST_DELAY,
+) -> Gain:
+    """The least change of a kind that was found to make every rule of a case hold, proven.
 
     Args:
         case: or the path of a case file.
         kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
             joints as they are; "timing": a robot begins later.
-        how: as the attributes of `Asked`.
+        margin: [m] above the fail limits.
+        robot, obstacle: what is changed; where there is one, it need not be named.
+        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
+        most_delay: [s] that is looked at.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
     """
     from clearance.load.case_file import load_case
 
-    whole = case if isinstance(case, Case) else load_case(case)
-    return gained(whole, Asked(kind, **how))  # type: ignore[arg-type]
+    kept = tuple((start, end) for start, end in keep)
+    asked = Asked(kind, margin, robot, obstacle, kept, keep_ends, most_delay)
+    if isinstance(case, Case):
+        return gained(case, asked)
+    if not isinstance(case, str | PathLike):
+        given = type(case).__name__
+        raise BadInput(f"a {given} is given", valid="a Case, or the path of a case file")
+    return replace(gained(load_case(case), asked), case_file=Path(case))
 
 
 def gained(case: Case, asked: Asked) -> Gain:
@@ -159,6 +210,7 @@ def _least_of_several(search: Search, shift: Shift, first: State, at_least: floa
 def _by_path(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
     who = case.robots[i_robot].robot.name
+    require_within_limits(case.robots[i_robot])
     for n_intervals in INTERVALS:
         offsets = joint_offsets(case, i_robot, n_intervals, _kept(case, i_robot, asked))
         search = Search(offsets, asked.margin)
@@ -194,34 +246,30 @@ def _gain(
     blocked: Blocked | None,
 ) -> Gain:
     size = way.size(found.state.x)
+    before, after = answer(Question(case)), answer(Question(found.state.case))
+    binding: tuple[str, ...] = ()
     if found.kept:
         at_least = min(at_least, size)
     elif blocked is None:
-        blocked = worst_pair(found.state)
-    runs = answer(Question(case)), answer(Question(found.state.case))
+        blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, asked.margin)
+        robot = found.state.case.robots[_robot(case, who)] if asked.kind == "waypoints" else None
+        binding = bound_by(found.state, blocked, robot)
     return Gain(
-        asked,
-        found.kept,
-        found.state.case,
-        change,
-        size,
-        at_least,
-        who,
-        *runs,
-        blocked,
-        found.n_measured,
-    )
+        asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
+        found.n_measured, binding=binding,
+    )  # fmt: skip
 
 
 def _by_delay(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
     found = least_delay(case, i_robot, asked.margin, asked.most_delay)
-    blocked = None if found.kept else worst_pair(found.state)
-    runs = answer(Question(case)), answer(Question(found.state.case))
-    change = np.array([found.delay])
+    before, after = answer(Question(case)), answer(Question(found.state.case))
+    blocked = None
+    if not found.kept:
+        blocked = worst_pair(found.state, TOO_LATE) or unproven(after.record, asked.margin)
     return Gain(
-        asked, found.kept, found.state.case, change, found.delay, found.at_least,
-        case.robots[i_robot].robot.name, *runs, blocked, found.n_measured,
+        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, found.at_least,
+        case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
     )  # fmt: skip
 
 

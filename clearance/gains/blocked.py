@@ -11,6 +11,13 @@ import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
+from clearance.simulate.record import Record
+
+NOT_MOVED = "nothing of this change moves them"
+KEPT_STILL = "that moment is to be kept"
+NOT_FOUND = "the search found no change that gives more"
+NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
+TOO_LATE = "no delay that was looked at gives more"
 
 
 @dataclass(frozen=True)
@@ -19,8 +26,7 @@ class Blocked:
 
     Attributes:
         body_a, body_b: names, as in tables. time: [s]. clearance: [m] less padding and depth. wanted: [m].
-        moves: whether the change moves either body against the other at another time, so that what is kept still
-            is at fault.
+        why: one of the reasons of this file.
     """
 
     body_a: str
@@ -28,12 +34,14 @@ class Blocked:
     time: float
     clearance: float
     wanted: float
-    moves: bool
+    why: str
 
     def __str__(self) -> str:
-        told = f"{self.body_a} and {self.body_b} are {self.clearance * 1e3:.2f} mm apart at {self.time:.3f} s"
-        why = "that moment is to be kept" if self.moves else "nothing of this change moves them"
-        return f"{told}, {self.wanted * 1e3:g} mm are needed, and {why}"
+        far = f"{self.clearance * 1e3:.3f} mm apart"
+        if self.clearance < 0.0:
+            far = f"{-self.clearance * 1e3:.3f} mm deep in each other"
+        told = f"{self.body_a} and {self.body_b} are {far} at {self.time:.3f} s"
+        return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
 def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
@@ -42,7 +50,7 @@ def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 
 
-def pair_at(state: State, approach: Approach, row: int, *, moves: bool) -> Blocked:
+def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
     """What falls short in a row of an approach."""
     case, phase = approach.case, approach.section.phase
     step = int(approach.steps[row])
@@ -52,18 +60,25 @@ def pair_at(state: State, approach: Approach, row: int, *, moves: bool) -> Block
         float(phase.motions[0].times[step - phase.first]),
         float(approach.clearances[row]),
         approach.rule.limits.fail + state.margin,
-        moves,
+        why,
     )
 
 
-def worst_pair(state: State) -> Blocked | None:
-    """The pair that falls short by most; None where none does."""
+def worst_pair(state: State, why: str) -> Blocked | None:
+    """The pair that falls short by most; None where none does at a step."""
     rows = [(float(own.max()), i, int(own.argmax())) for i, one in enumerate(state.near)
             if len(own := state.missing(one))]  # fmt: skip
     if not rows or max(rows)[0] <= 0.0:
         return None
     _, i, row = max(rows)
-    return pair_at(state, state.near[i], row, moves=True)
+    return pair_at(state, state.near[i], row, why)
+
+
+def unproven(record: Record, margin: float) -> Blocked:
+    """The moment that stands worst in a run whose steps keep what is wanted, and that is not proven."""
+    moment = record.worst
+    wanted = record.rule(moment.rule).limits.fail + margin
+    return Blocked(moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN)
 
 
 def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
@@ -74,4 +89,5 @@ def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | No
     rows = np.flatnonzero(stays)
     if not len(rows):
         return None
-    return pair_at(state, approach, int(rows[np.argmax(missing[rows])]), moves=by_unit is not None)
+    why = NOT_MOVED if by_unit is None else KEPT_STILL
+    return pair_at(state, approach, int(rows[np.argmax(missing[rows])]), why)
