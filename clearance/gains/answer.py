@@ -115,21 +115,6 @@ class Gain:
     binding: tuple[str, ...] = field(default=())
     case_file: Path | None = None
 
-    def save(self, folder: str | PathLike[str], *, force: bool = False) -> Path:
-        """Writes the changed case, `gain.json` and `gain.html`, with the reports of before and after, and returns
-        the folder.
-
-        Args:
-            force: overwrite an older one there.
-
-        Raises:
-            BadInput: the case was not read from a file, or cannot be written so that it is read as what it is.
-            Unwritable: something is there; nothing is left half-written.
-        """
-        from clearance.gains.folder import save_gain
-
-        return save_gain(self, Path(folder), force=force)
-
     @property
     def unit(self) -> str:
         """Of `size` and `lower_bound`."""

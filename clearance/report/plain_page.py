@@ -1,0 +1,28 @@
+"""A page without a script: head, look and foot around what a page of curves and tables says.
+
+Not for: the page of a report, which moves a replay (`page`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from string import Template
+
+from markupsafe import Markup, escape
+
+from clearance import __version__
+from clearance.report.markup import element
+
+_HERE = Path(__file__).parent
+
+
+def plain_page(title: str, header: Markup, content: Markup) -> str:
+    """The whole page."""
+    template = Template((_HERE / "comparison.html").read_text(encoding="utf-8"))
+    return template.substitute(
+        title=escape(title),
+        style=(_HERE / "page.css").read_text(encoding="utf-8"),
+        header=header,
+        content=content,
+        footer=element("p", f"clearance {__version__}"),
+    )
