@@ -99,7 +99,12 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
         found = _found(read, case, kind, options)
     _say(found)
     _save(found, out, force=force)
-    return ExitCode.CLEAR if found.kept else ExitCode.VIOLATED
+    return _code(found)
+
+
+def _code(found: Gain) -> int:
+    """That of a check of the changed case, where every rule is proven to hold by the margin."""
+    return found.after.verdict.exit_code if found.kept else ExitCode.VIOLATED
 
 
 def _found(read: Case, file: Path, kind: str, options: dict[str, Any]) -> Gain:
@@ -127,7 +132,8 @@ def _every_kind(
         found.append(tried)
     for line in table_lines(found):
         click.echo(shown(line))
-    return ExitCode.CLEAR if any(one.kept for one in found) else ExitCode.VIOLATED
+    kept = [_code(one.gain) for one in found if one.gain is not None and one.kept]
+    return min(kept, default=ExitCode.VIOLATED)
 
 
 def _say(found: Gain, before: str = "") -> None:

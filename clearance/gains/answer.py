@@ -19,6 +19,7 @@ from clearance.gains.blocked import (
     TOO_LATE,
     Blocked,
     blocked_by,
+    kept_still,
     unproven,
     worst_pair,
 )
@@ -202,6 +203,8 @@ def _by_path(case: Case, asked: Asked) -> Gain:
         first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
         at_least = least_offset(offsets, first, asked.margin)
         blocked = blocked_by(first, offsets.gradient)
+        if blocked is not None:
+            blocked = kept_still(blocked, _windows(case, i_robot, asked))
         found = Found(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
@@ -212,12 +215,20 @@ def _by_path(case: Case, asked: Asked) -> Gain:
 
 def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
     """The windows of the robot's table [s] in which its path stays as it is."""
-    placed = case.robots[i_robot]
-    times, timing = placed.asked.times, placed.timing
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
     kept = [tuple((time - timing.start) * timing.rate for time in window) for window in asked.keep]
     if asked.keep_ends:
         kept += [(times[0], times[0]), (times[-1], times[-1])]
     return tuple((float(start), float(end)) for start, end in kept)
+
+
+def _windows(case: Case, i_robot: int, asked: Asked) -> list[tuple[float, float]]:
+    """The same in times of the run; before its path begins and after it ends the robot stands at an end that is
+    kept."""
+    placed = case.robots[i_robot]
+    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]].tolist()
+    ends = [(-np.inf, start), (end, np.inf)] if asked.keep_ends else []
+    return [*asked.keep, *ends]
 
 
 def _gain(

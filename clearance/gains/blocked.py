@@ -5,7 +5,8 @@ Not for: what is too far to reach (`unreachable`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from clearance.simulate.record import Record
 
 NOT_MOVED = "nothing of this change moves them"
 KEPT_STILL = "that moment is to be kept"
+NOT_APART = "small changes of this kind do not part them there"
 NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
 TOO_LATE = "no delay that was looked at gives more"
@@ -48,6 +50,12 @@ def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
     """The worst pair that falls short and that no change moves; None without one."""
     found = [told for one in state.near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+
+
+def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:
+    """The same, for the reason that a path stays as it is then, if one of the windows [s of the run] says so."""
+    within = any(start <= blocked.time <= end for start, end in windows)
+    return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_APART else blocked
 
 
 def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
@@ -89,5 +97,5 @@ def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | No
     rows = np.flatnonzero(stays)
     if not len(rows):
         return None
-    why = NOT_MOVED if by_unit is None else KEPT_STILL
+    why = NOT_MOVED if by_unit is None else NOT_APART
     return pair_at(state, approach, int(rows[np.argmax(missing[rows])]), why)

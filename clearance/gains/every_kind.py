@@ -70,8 +70,11 @@ def table_lines(tried: Sequence[Tried]) -> list[str]:
         if one.gain is None:
             rows.append((one.name, "-", "-", f"does not apply: {one.why}"))
             continue
-        kept, size = ("yes" if one.kept else "no"), size_text(one.gain)
-        rows.append((one.name, kept, size, f"{one.gain.who}; {bound_text(one.gain)}"))
+        if one.kept:
+            told = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
+        else:
+            told = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")
+        rows.append((one.name, *told))
     widths = [max(len(row[i]) for row in rows) for i in range(3)]
     return ["  ".join([*(row[i].ljust(widths[i]) for i in range(3)), row[3]]) for row in rows]
 

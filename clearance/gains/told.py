@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
+from clearance.gains.blocked import KEPT_STILL, NOT_MOVED
 from clearance.gains.moved import Moved, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
@@ -28,18 +29,36 @@ def lines_of(gain: Gain) -> Iterator[Line]:
     if gain.kept and gain.size == 0.0:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
         return
-    if not gain.kept:
-        yield "not kept", _not_kept(gain)
-    yield from (("changed" if gain.kept else "best", line) for line in changed_lines(gain))
-    yield "after" if gain.kept else "reached", _worst(gain.after)
-    if gain.kept:
-        yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
+    yield from _kept(gain) if gain.kept else _not_kept(gain)
+    if not _is_hopeless(gain):
+        yield "bound", bound_text(gain)
+    if gain.asked.margin:
+        yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _kept(gain: Gain) -> Iterator[Line]:
+    """A change with which every rule holds, and what else the verdict of the changed case says."""
+    yield from (("changed", line) for line in changed_lines(gain))
+    yield "after", _worst(gain.after)
+    yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
+    if not gain.after.passed:
+        yield "but", f"the changed case is not passed: {gain.after.verdict.text()}"
+
+
+def _not_kept(gain: Gain) -> Iterator[Line]:
+    """The best that was reached, and what it is up against."""
+    yield "not kept", _not_kept_text(gain)
+    if gain.size > 0.0:
+        yield from (("best", line) for line in changed_lines(gain))
+        yield "reached", _worst(gain.after)
     if gain.blocked is not None:
         yield "blocked", str(gain.blocked)
     yield from (("binding", line) for line in gain.binding)
-    yield "bound", bound_text(gain)
-    if gain.asked.margin:
-        yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _is_hopeless(gain: Gain) -> bool:
+    """True if no change of the kind, however large, can make every rule hold."""
+    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL)
 
 
 def changed_lines(gain: Gain) -> list[str]:
@@ -72,13 +91,13 @@ def size_text(gain: Gain) -> str:
 def bound_text(gain: Gain) -> str:
     """What no change of the kind can beat."""
     if gain.lower_bound <= 0.0:
-        return f"not known how little would be enough; {_LOCAL}"
+        return f"not known how little would be enough{f'; {_LOCAL}' if gain.kept else ''}"
     factor, unit = size_unit(gain)
     bound = f"{_down(gain.lower_bound * factor)} {unit}{_counted(gain)}"
     if not gain.kept:
         return f"whatever is enough, less than {bound} cannot do"
     if gain.lower_bound >= gain.size * (1.0 - TIGHT):
-        return f"less than {bound} cannot do: no change of this kind is noticeably smaller"
+        return f"less than {bound} cannot do: no change of this kind is smaller by 0.1 %"
     return f"less than {bound} cannot do; {_LOCAL}"
 
 
@@ -94,8 +113,8 @@ def _counted(gain: Gain) -> str:
     return " at a joint"
 
 
-def _not_kept(gain: Gain) -> str:
-    if gain.n_measured == 1 and gain.asked.kind != "timing":
+def _not_kept_text(gain: Gain) -> str:
+    if _is_hopeless(gain):
         return "no change of this kind can make every rule hold"
     if gain.asked.kind == "timing":
         return f"no delay up to {gain.asked.most_delay:g} s was found with which every rule holds"
