@@ -14,6 +14,7 @@ from markupsafe import Markup, escape
 from clearance import __version__
 from clearance.errors import BadInput
 from clearance.findings.comparison import Change, Compared, Comparison
+from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import Curve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
@@ -48,11 +49,18 @@ def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str])
     text = comparison_text(comparison)
     return template.substitute(
         title=escape(f"{comparison.now}: compared"),
-        style=(_HERE / "page.css").read_text(encoding="utf-8"),
+        style=(_HERE / "page.css").read_text(encoding="utf-8") + _not_proven(comparison),
         header=_header(comparison, text),
         content=_curves(comparison, curves, names) + _findings(comparison),
         footer=element("p", f"clearance {__version__}"),
     )
+
+
+def _not_proven(comparison: Comparison) -> str:
+    """The colour of limits that are not proven with tolerances, where there are some."""
+    found = [one for row in comparison.rows for one in (row.before, row.now) if one is not None]
+    told = any(one.status == NOT_PROVEN for one in found)
+    return ".tag.not { background: var(--violated); }\n" if told else ""
 
 
 def _header(comparison: Comparison, text: str) -> Markup:
