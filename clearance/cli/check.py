@@ -17,7 +17,7 @@ from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
 from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
-from clearance.cli.verify import receipt_option, refuse_case, require_receipt, write_receipt_of
+from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -147,7 +147,6 @@ def check(
         )
     require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
-    require_receipt(receipt, out, certify=not samples_only, motion=motion, method=method)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
     _require_file(case_file)
@@ -161,7 +160,6 @@ def check(
         case = with_recording(case, recorded, recorded_offset, recorded_robot)
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
-    refuse_case(receipt, case)
     before = baseline_of(baseline, outputs.files)
     question = Question(
         case,
@@ -176,9 +174,9 @@ def check(
         today=today,
         body_gaps=body_gaps,
     )
+    require_receipt(receipt, out, question)
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
-    if receipt is not None and out is not None:
-        write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
+    write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 

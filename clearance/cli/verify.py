@@ -13,8 +13,7 @@ import click
 from clearance.cli import ExitCode
 
 if TYPE_CHECKING:
-    from clearance.run import Run
-    from clearance.world.case import Case
+    from clearance.run import Question, Run
 
 receipt_option = click.option(
     "--receipt",
@@ -26,9 +25,7 @@ receipt_option = click.option(
 )
 
 
-def require_receipt(
-    receipt: str | None, out: Path | None, *, certify: bool, motion: str, method: str
-) -> None:
+def require_receipt(receipt: str | None, out: Path | None, question: Question) -> None:
     """Refuses, before anything is measured, a receipt that could not be written.
 
     Raises:
@@ -36,37 +33,27 @@ def require_receipt(
     """
     if receipt is None:
         return
-    if out is None or not certify:
+    if out is None or not question.certify:
         lacks = "--out DIR" if out is None else "a certified run: leave out --samples-only"
         raise click.UsageError(f"--receipt needs {lacks}")
-    from clearance.receipt.writing import refuse_motion
+    from clearance.receipt.writing import refuse_uncovered
 
-    refuse_motion(motion, method)
+    refuse_uncovered(question.case, question.motion, question.method)
 
 
-def write_receipt_of(run: Run, receipt: str, out: Path, case_file: Path, *, quiet: bool) -> None:
-    """Writes it, and says how long it is."""
+def write_receipt_of(
+    run: Run, receipt: str | None, out: Path | None, case_file: Path, *, quiet: bool
+) -> None:
+    """Writes the receipt where one is wanted, and says how long it is."""
+    if receipt is None or out is None:
+        return
     from clearance.receipt.writing import write_receipt
 
     path = write_receipt(run, out, case_file, receipt)
     if not quiet:
         size = path.stat().st_size / 1e3
-        what = "receipt" if receipt == "full" else "sampled receipt"
-        click.echo(
-            f"  {what}: {path}, {size:.0f} kB; clearance verify {out} proves the bound again"
-        )
-
-
-def refuse_case(receipt: str | None, case: Case) -> None:
-    """Refuses a case that no receipt is written of.
-
-    Raises:
-        BadInput: why not.
-    """
-    if receipt is not None:
-        from clearance.receipt.case_data import require_covered
-
-        require_covered(case)
+        told = "receipt     " if receipt == "full" else "sampled receipt  "
+        click.echo(f"  {told}{path}, {size:.0f} kB; proven again by: clearance verify {out}")
 
 
 @click.command()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -45,6 +46,7 @@ class CaseData:
         """How many intervals the run has."""
         return max(1, len(self.times) - 1)
 
+    @cached_property
     def digest(self) -> str:
         """sha256 of all numbers and names."""
         digest = hashlib.sha256()

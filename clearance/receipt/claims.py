@@ -27,7 +27,7 @@ def judged(data: CaseData) -> np.ndarray:
 
 def sampled(data: CaseData) -> np.ndarray:
     """(intervals,) True for those that a sampled receipt must claim something of."""
-    seed = data.digest().encode()
+    seed = data.digest.encode()
     draws = (hashlib.sha256(seed + b"%d" % i).digest()[0] for i in range(data.n_intervals))
     return np.array([draw % EVERY == 0 for draw in draws])
 

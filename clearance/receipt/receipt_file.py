@@ -21,7 +21,7 @@ from clearance.receipt.proof.proving import SIZES, BadEvidence
 FILE_NAME = "receipt.bin"
 MAGIC = b"clearance receipt 1\n"
 
-MOST_ITEMS = 2**24
+MOST_ITEMS = 2**23
 """Of a receipt; more would take minutes to go through."""
 
 LARGEST = 2**28
@@ -38,7 +38,7 @@ class Receipt:
 
     Attributes:
         head: as in the file: kind ("full" or "sampled"), case, name, data (sha256 of the case's numbers), inputs
-            (path and sha256), report (sha256 by file), rules (names).
+            (path and sha256), report (sha256 by file), rules (names), nominal (the run had tolerances).
         claims: (rules, intervals) in nanometres, as `proof.motion_data.UNIT` says.
         deeds: (k,) what is done with each item. codes: directions of each size, (n, 2).
     """
@@ -133,6 +133,8 @@ def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
     texts = [head["kind"], head["case"], head["name"], head["data"], *head["rules"]]
     texts += [one[key] for one in head["inputs"] for key in ("path", "sha256")]
     texts += [*head["report"], *head["report"].values()]
+    if not isinstance(head["nominal"], bool):
+        raise ValueError("nominal")
     if not all(isinstance(text, str) for text in texts) or head["kind"] not in ("full", "sampled"):
         raise ValueError("head")
     if claims.shape[0] != len(head["rules"]):

@@ -15,6 +15,7 @@ import numpy as np
 from clearance.errors import BadInput, BadSyntax, MissingFile, at
 from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.claims import judged, missing
+from clearance.receipt.proof.depths import depths_reached
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
@@ -111,10 +112,10 @@ def verify(
         data.n_intervals,
         int(claimed.any(axis=0).sum()),
         int((claimed & (receipt.claims <= 0)).any(axis=0).sum()),
-        data.digest(),
+        data.digest,
         tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
         data.unmeasured,
-        given.tolerance is not None,
+        receipt.head["nominal"] or given.tolerance is not None,
     )
 
 
@@ -123,9 +124,9 @@ def _failure(data: CaseData, receipt: Receipt) -> str:
         return f"nothing is claimed of rule {rule} in interval {interval}"
     evidence = GoneThrough(receipt)
     try:
-        found = failure_in(
-            data.stretches, data.shapes, halves_of(data.shapes), receipt.claims, evidence
-        )
+        depths = depths_reached(data.stretches, len(data.shapes), GoneThrough(receipt).deeds)
+        halves = halves_of(data.shapes, depths)
+        found = failure_in(data.stretches, data.shapes, halves, receipt.claims, evidence)
     except BadEvidence as error:
         return f"the evidence is none: {error}"
     if found is not None:
@@ -205,7 +206,7 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
         BadSyntax: they are not.
     """
     with at(FILE_NAME):
-        if data.digest() != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
+        if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
             raise BadSyntax(
                 f"it is of other numbers than those of case {data.name!r}",
                 valid="the case that the receipt was made of",

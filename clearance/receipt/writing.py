@@ -21,6 +21,7 @@ from clearance.receipt.search import evidence_for
 if TYPE_CHECKING:
     from clearance.run import Run
     from clearance.simulate.record import Record
+    from clearance.world.case import Case
 
 REPORT = ("summary.json", "steps.csv", "findings.json")
 """Files of the report whose bytes the receipt is of."""
@@ -54,10 +55,11 @@ def write_receipt(
         "kind": kind,
         "case": _way(place, case_file),
         "name": data.name,
-        "data": data.digest(),
+        "data": data.digest,
         "inputs": [{"path": s.path, "sha256": s.sha256} for s in record.case.sources],
         "report": report,
         "rules": list(data.rules),
+        "nominal": record.case.tolerance is not None,
     }
     receipt = Receipt(head, claims, found.all_deeds, found.all_codes)
     write_file(place / FILE_NAME, receipt_bytes(receipt))
@@ -72,12 +74,11 @@ def require_certified(record: Record) -> None:
     """
     if record.certificate is None:
         raise BadInput("no receipt of a run that is not certified", valid="certify=True")
-    refuse_motion(record.motion_kind, record.method)
-    require_covered(record.case)
+    refuse_uncovered(record.case, record.motion_kind, record.method)
 
 
-def refuse_motion(motion: str, method: str) -> None:
-    """Refuses motions and methods that no receipt can be written of.
+def refuse_uncovered(case: Case, motion: str, method: str) -> None:
+    """Refuses what no receipt can be written of.
 
     Raises:
         BadInput: why not.
@@ -88,6 +89,7 @@ def refuse_motion(motion: str, method: str) -> None:
         )
     if method != "exact":
         raise BadInput(f"no receipt for the method {method}", valid="exact")
+    require_covered(case)
 
 
 def claims_of(record: Record, data: CaseData) -> np.ndarray:

@@ -9,7 +9,7 @@ from pathlib import Path
 from string import Template
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from clearance import __version__
 from clearance.errors import BadInput
@@ -18,6 +18,7 @@ from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import Curve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
+from clearance.report.head import head_of
 from clearance.report.markup import element, section, table
 
 FILE_NAME = "comparison.html"
@@ -45,11 +46,12 @@ def write_comparison(comparison: Comparison, before: Path, now: Path, folder: Pa
 
 def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> str:
     """The whole page."""
-    template = Template((_HERE / "comparison.html").read_text(encoding="utf-8"))
+    template, style = (
+        (_HERE / name).read_text(encoding="utf-8") for name in ("comparison.html", "comparison.css")
+    )
     text = comparison_text(comparison)
-    return template.substitute(
-        title=escape(f"{comparison.now}: compared"),
-        style=(_HERE / "page.css").read_text(encoding="utf-8") + _not_proven(comparison),
+    return Template(template).substitute(
+        head=head_of(f"{comparison.now}: compared", style + _not_proven(comparison)),
         header=_header(comparison, text),
         content=_curves(comparison, curves, names) + _findings(comparison),
         footer=element("p", f"clearance {__version__}"),

@@ -12,7 +12,8 @@ from clearance.receipt.receipt_file import MAGIC, GoneThrough, Receipt, receipt_
 
 def small():
     head = {
-        "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "rules": ["default"],
+        "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "nominal": False,
+        "rules": ["default"],
         "inputs": [{"path": "case.yaml", "sha256": "1" * 64}], "report": {"summary.json": "2" * 64},
     }  # fmt: skip
     codes = {most: np.array([[most, -most]]) for _, most in SIZES}
@@ -47,7 +48,7 @@ def test_every_changed_byte_is_found():
     "head",
     [
         b"[]", b"{}", b"[" * 100_000, b'{"shapes": 3}', b'{"shapes": {"claims": [1, 99999999999]}}',
-        b'{"shapes": {"claims": [1, 0], "deeds": [16777216], "codes_127": [0, 2], "codes_32767": [0, 2], '
+        b'{"shapes": {"claims": [1, 0], "deeds": [8388608], "codes_127": [0, 2], "codes_32767": [0, 2], '
         b'"codes_2147483647": [0, 2]}}',
     ],
 )  # fmt: skip

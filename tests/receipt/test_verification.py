@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +16,8 @@ from clearance.receipt.proof.items import CUT_TIME
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
 from tests.receipt.receipts import everything_moves, rewritten, saved, turning_arm
+
+ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -199,3 +203,18 @@ def test_clouds_are_balls(tmp_path):
     case = replace(case, obstacles=(cloud, case.obstacles[1]))
     saved(case, tmp_path)
     assert cl.verify(tmp_path, case).proven
+
+
+PROVES = """
+import sys
+import clearance.receipt.proof.proving, clearance.receipt.proof.depths
+rooms = ("kernels", "compile", "query", "simulate", "world")
+barred = {"numba", *("clearance." + room for room in rooms)}
+print(*sorted(barred & {".".join(name.split(".")[:2]) for name in sys.modules}))
+"""
+
+
+@pytest.mark.cold
+def test_the_proof_brings_nothing_that_measures():
+    done = subprocess.run([sys.executable, "-c", PROVES], capture_output=True, text=True, cwd=ROOT)
+    assert (done.returncode, done.stdout.strip()) == (0, ""), done.stderr

@@ -41,10 +41,15 @@ class Halves(NamedTuple):
         return self.stop[at] - self.start[at]
 
 
-def halves_of(shapes: Sequence[Shape]) -> Halves:
-    """The nodes of some bodies."""
+def halves_of(shapes: Sequence[Shape], depths: np.ndarray | None = None) -> Halves:
+    """The nodes of some bodies.
+
+    Args:
+        depths: (bodies,) how often each is cut, if not down to single faces.
+    """
+    most = [None] * len(shapes) if depths is None else depths.tolist()
     width = max(shape.faces.shape[1] for shape in shapes)
-    parts = [_halved(_widened(shape.corners, width)) for shape in shapes]
+    parts = [_halved(_widened(s.corners, width), n) for s, n in zip(shapes, most, strict=True)]
     nodes = np.cumsum([0, *(len(part[0]) for part in parts)])
     faces = np.cumsum([0, *(len(shape.faces) for shape in shapes)])
     low, high, corners = (np.concatenate([part[k] for part in parts], -1) for k in (2, 3, 4))
@@ -65,13 +70,13 @@ def _widened(corners: np.ndarray, width: int) -> np.ndarray:
     return np.concatenate([corners, *([corners[:, :1]] * short)], axis=1)
 
 
-def _halved(corners: np.ndarray) -> tuple[np.ndarray, ...]:
+def _halved(corners: np.ndarray, most: int | None) -> tuple[np.ndarray, ...]:
     """Starts, stops, boxes of all nodes of one body, and its faces in their order."""
     n = len(corners)
     middles = np.add.reduce(corners, axis=1)
     order, starts, stops = np.arange(n), np.array([0]), np.array([n])
     all_starts, all_stops = [starts], [stops]
-    while (stops - starts).max() > 1:
+    while (stops - starts).max() > 1 and (most is None or len(all_starts) <= most):
         order = _ordered(middles, order, starts, stops)
         half = (starts + stops) // 2
         starts, stops = _beside(starts, half), _beside(half, stops)

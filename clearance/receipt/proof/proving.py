@@ -96,16 +96,13 @@ def _of_stretch(stage: Stage, evidence: Evidence) -> tuple[int, int, str] | None
 def _first_unproven(
     stage: Stage, items: Items, deeds: np.ndarray, evidence: Evidence
 ) -> tuple[int, int, str] | None:
-    for deed, most in ((BALLS, 0), *SIZES):
-        own = items.of(np.flatnonzero(deeds == deed))
-        if not len(own.pair):
-            continue
-        if most:
-            codes = evidence.codes(len(own.pair), most)
-            require_codes(codes, most)
-            beyond = by_directions(stage, own, directions(codes, most))
-        else:
-            beyond = by_balls(stage, own)
+    balls = items.of(np.flatnonzero(deeds == BALLS))
+    rows = [np.flatnonzero(deeds == deed) for deed, _ in SIZES]
+    directed, u = items.of(np.concatenate(rows)), _directions(evidence, [len(r) for r in rows])
+    for own, beyond in (
+        (balls, by_balls(stage, balls)),
+        (directed, by_directions(stage, directed, u)),
+    ):
         short = np.flatnonzero(~(beyond >= 0.0))
         if len(short):
             item, interval = own.rows()
@@ -113,6 +110,20 @@ def _first_unproven(
             return int(own.pair[item[row]]), int(interval[row]), "not apart by its evidence"
         stage.note_apart(own)
     return None
+
+
+def _directions(evidence: Evidence, counts: Sequence[int]) -> np.ndarray:
+    """(3, k) the next so many directions of each size.
+
+    Raises:
+        BadEvidence: there are not so many, or one is none.
+    """
+    found = []
+    for (_, most), count in zip(SIZES, counts, strict=True):
+        codes = evidence.codes(count, most)
+        require_codes(codes, most)
+        found.append(directions(codes, most))
+    return np.concatenate(found, axis=1)
 
 
 def require_possible(stage: Stage, items: Items, deeds: np.ndarray) -> None:
