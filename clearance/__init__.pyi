@@ -1,5 +1,6 @@
 from .errors import BadInput, ClearanceError
 from .findings.finding import Finding
+from .gains.answer import Gain, gain
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
@@ -59,6 +60,7 @@ __all__ = [
     "Curve",
     "Finding",
     "Fit",
+    "Gain",
     "Intersection",
     "Limits",
     "Mount",
@@ -101,6 +103,7 @@ __all__ = [
     "distance",
     "ellipsoid",
     "fit",
+    "gain",
     "hausdorff",
     "intersect",
     "load_case",

@@ -18,6 +18,7 @@ COMMANDS: dict[str, Callable[[], click.Command]] = {
     "compare": lambda: import_module("clearance.cli.comparison").compare,
     "compile": lambda: import_module("clearance.cli.compile_kernels").compile_kernels,
     "convert": lambda: import_module("clearance.cli.convert").convert,
+    "gain": lambda: import_module("clearance.cli.gain").gain,
     "new": lambda: import_module("clearance.cli.new").new,
     "pre-commit": lambda: import_module("clearance.cli.pre_commit").pre_commit,
     "profile": lambda: import_module("clearance.cli.profile").profile,

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import Unwritable
+from clearance.overwriting import refuse_inputs
 
 if TYPE_CHECKING:
     from clearance.world.case import Case
@@ -33,32 +34,9 @@ def require_file_place(file: Path | None, option: str = "--junit") -> None:
     _require_writable(file, file.absolute().parent)
 
 
-def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[str | Path]) -> None:
-    """Raises `Unwritable` if one of the files `outputs` is one of `inputs`, by whatever name or link."""
-    read = {_identity(Path(path)): path for path in inputs}
-    read.pop(None, None)
-    for output in outputs:
-        found = read.get(_identity(output))
-        if found is not None:
-            raise Unwritable(
-                f"would overwrite {str(found)!r}, which this run reads",
-                where=str(output),
-                valid="another place is needed",
-            )
-
-
 def refuse_inputs_of_cases(cases: Iterable[Case], outputs: Iterable[Path]) -> None:
     """Raises `Unwritable` if one of the files `outputs` is one that the cases were made from."""
     refuse_inputs(outputs, [one.read_from for case in cases for one in case.sources if one.is_file])
-
-
-def _identity(path: Path) -> tuple[int, int] | None:
-    """What two names of one file share; None for what is not there."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_dev, found.st_ino
 
 
 def _require_writable(place: Path, folder: Path) -> None:

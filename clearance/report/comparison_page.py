@@ -6,27 +6,28 @@ Not for: comparing (`findings.comparison`), nor drawing the curves (`comparison_
 from __future__ import annotations
 
 from pathlib import Path
-from string import Template
+from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup
 
-from clearance import __version__
 from clearance.errors import BadInput
 from clearance.findings.comparison import Change, Compared, Comparison
 from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import Curve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
-from clearance.report.head import head_of
 from clearance.report.markup import element, section, table
+from clearance.report.plain_page import plain_page
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 FILE_NAME = "comparison.html"
 
 MOST_ROWS = 1000
 """Most findings in the table."""
 
-_HERE = Path(__file__).parent
 _TABLE = "steps.parquet"
 
 
@@ -46,16 +47,10 @@ def write_comparison(comparison: Comparison, before: Path, now: Path, folder: Pa
 
 def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> str:
     """The whole page."""
-    template, style = (
-        (_HERE / name).read_text(encoding="utf-8") for name in ("comparison.html", "comparison.css")
-    )
     text = comparison_text(comparison)
-    return Template(template).substitute(
-        head=head_of(f"{comparison.now}: compared", style + _not_proven(comparison)),
-        header=_header(comparison, text),
-        content=_curves(comparison, curves, names) + _findings(comparison),
-        footer=element("p", f"clearance {__version__}"),
-    )
+    content = _curves(comparison, curves, names) + _findings(comparison)
+    title = f"{comparison.now}: compared"
+    return plain_page(title, _header(comparison, text), content, _not_proven(comparison))
 
 
 def _not_proven(comparison: Comparison) -> str:
@@ -127,12 +122,17 @@ def _curve(name: str, place: Path) -> Curve | None:
 
     try:
         steps = parquet.read_table(place / _TABLE)
-        known = {column: steps[column].to_numpy() for column in ("time", "clearance")}
-        if "lower_bound" in steps.column_names:
-            bound = steps["lower_bound"].to_numpy()
-            known["clearance"] = np.where(np.isnan(known["clearance"]), bound, known["clearance"])
+        return curve_of(name, steps)
     except (pa.ArrowException, KeyError, OSError, TypeError) as error:
         raise BadInput(
             f"no table of steps: {error!s:.100}", where=str(place / _TABLE), valid="a report folder"
         ) from None
+
+
+def curve_of(name: str, steps: pa.Table) -> Curve:
+    """The curve of a table of steps: their clearances, or their bounds where only those are known."""
+    known = {column: steps[column].to_numpy() for column in ("time", "clearance")}
+    if "lower_bound" in steps.column_names:
+        bound = steps["lower_bound"].to_numpy()
+        known["clearance"] = np.where(np.isnan(known["clearance"]), bound, known["clearance"])
     return Curve(name, known["time"].astype(np.float64), known["clearance"].astype(np.float64))

@@ -16,6 +16,7 @@ from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.names import pair_names
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.sections import Section
 
 MOST_NEAR_STEPS = 250_000
 """Of a section; where something is near at more, only the nearest pair of each is told, to save memory."""
@@ -59,6 +60,11 @@ class RulePairs:
         columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
         order = np.lexsort((columns[1], columns[0]))
         return NearRows(*(column[order] for column in columns))
+
+    def near_by_section(self, within: float) -> Iterator[tuple[Section, NearRows]]:
+        """The same, section by section: its pairs are as it is."""
+        for answer in self.answers:
+            yield answer.section, NearRows(*_near(answer, within))
 
     def is_cut(self, within: float) -> bool:
         """True if `near` knows only the nearest pair of some steps, since there are too many."""

@@ -1,0 +1,163 @@
+"""`clearance gain`: the least change that was found to make every rule of a case hold, with proof."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.notices import say_notices
+from clearance.cli.options import Millimetres, OutputPath
+from clearance.errors import shown
+
+if TYPE_CHECKING:
+    from clearance.gains.answer import Gain
+    from clearance.world.case import Case
+
+_KINDS = ("waypoints", "obstacle", "base", "timing", "all")
+
+
+class _Stretch(click.ParamType):
+    """A stretch of time, START:END."""
+
+    name = "start:end"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Start and end [s]."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            start, end = (float(part) for part in value.split(":"))
+        except ValueError:
+            start, end = math.nan, math.nan
+        if not (math.isfinite(start) and math.isfinite(end) and start <= end):
+            self.fail(
+                f"{value!r} is no stretch of time; START:END in seconds, as 1.2:1.5", param, ctx
+            )
+        return start, end
+
+
+@click.command()
+@click.argument("case", metavar="CASE", type=click.Path(path_type=Path))
+@click.option("--kind", type=click.Choice(_KINDS), required=True, help="What may be changed.")
+@click.option("--out", metavar="DIR", type=OutputPath(), help="Where the changed case goes.")
+@click.option(
+    "--margin-mm", "margin", type=Millimetres(), default="0", help="Above the fail limits."
+)
+@click.option("--robot", metavar="NAME", help="Which; needed where there are several.")
+@click.option("--obstacle", metavar="NAME", help="Which; needed where there are several.")
+@click.option(
+    "--keep",
+    metavar="START:END",
+    multiple=True,
+    type=_Stretch(),
+    help="[s] In which a path stays as it is; may be given again.",
+)
+@click.option(
+    "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."
+)
+@click.option(
+    "--most-delay",
+    metavar="S",
+    type=click.FloatRange(min=0.0),
+    default=60.0,
+    show_default=True,
+    help="[s] That is looked at.",
+)
+@click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
+def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
+    """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
+
+    waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, all joints as they
+    are. timing: a robot begins later. all: each of them that applies, and the obstacle of the worst pair. DIR gets
+    the changed case, ready to be checked, gain.html and gain.json. Exit code: 0 if every rule is proven to hold
+    then, 1 if not, 2 for bad input.
+    """
+    from clearance.cli.places import require_folder_place
+    from clearance.gains.every_kind import SUB_FOLDERS
+    from clearance.gains.folder import FIGURES, PAGE, refuse_taken
+    from clearance.gains.written import OWN
+    from clearance.load.case_file import load_case
+
+    require_folder_place(out)
+    if out is not None:
+        for folder in [out / name for name in SUB_FOLDERS] if kind == "all" else [out]:
+            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
+    read = load_case(case)
+    say_notices(read)
+    if kind == "all":
+        return _every_kind(read, case, out, options, force=force)
+    with _shown_search(kind):
+        found = _found(read, case, kind, options)
+    _say(found)
+    _save(found, out, force=force)
+    return _code(found)
+
+
+def _code(found: Gain) -> int:
+    """That of a check of the changed case, where every rule is proven to hold by the margin."""
+    return found.after.verdict.exit_code if found.kept else ExitCode.VIOLATED
+
+
+def _found(read: Case, file: Path, kind: str, options: dict[str, Any]) -> Gain:
+    from dataclasses import replace
+
+    from clearance.gains.answer import gain as gain_of
+
+    return replace(gain_of(read, kind, **options), case_file=file)
+
+
+def _every_kind(
+    read: Case, file: Path, out: Path | None, options: dict[str, Any], *, force: bool
+) -> int:
+    """All kinds one after another, then a table; 0 if any makes every rule hold."""
+    from dataclasses import replace
+
+    from clearance.gains.every_kind import every_kind, table_lines
+
+    found = []
+    for tried in every_kind(read, options, _shown_search):
+        if tried.gain is not None:
+            click.echo(f"{tried.name}:")
+            _say(tried.gain, "  ")
+            _save(replace(tried.gain, case_file=file), out and out / tried.name, force=force)
+        found.append(tried)
+    for line in table_lines(found):
+        click.echo(shown(line))
+    kept = [_code(one.gain) for one in found if one.gain is not None and one.kept]
+    return min(kept, default=ExitCode.VIOLATED)
+
+
+def _say(found: Gain, before: str = "") -> None:
+    from clearance.gains.told import lines_of
+
+    for label, line in lines_of(found):
+        click.echo(f"{before}{label:10}{shown(line)}")
+
+
+def _save(found: Gain, out: Path | None, *, force: bool) -> None:
+    from clearance.gains.folder import save_gain
+
+    if out is not None:
+        save_gain(found, out, force=force)
+        click.echo(f"{'written':10}{out}: case.yaml, gain.html, gain.json")
+
+
+@contextmanager
+def _shown_search(kind: str) -> Iterator[None]:
+    """Says on a terminal that a search runs, while it does."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(f"searching for the least change: {kind}"):
+        yield

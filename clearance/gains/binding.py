@@ -1,0 +1,58 @@
+"""What the best that a search reached is up against: other pairs, and limits of joints.
+
+Not for: what is plain before any search (`blocked`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.gains.blocked import Blocked
+from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.shortfalls import State
+from clearance.world.case import PlacedRobot
+
+CLOSE = 1e-5
+"""[m], [rad] or that a second: a pair or a joint that is no farther from what it must keep is up against it."""
+
+MOST = 4
+"""Lines of each sort."""
+
+
+def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tuple[str, ...]:
+    """Pairs beside the blocked one that want all that they have, and joints at a limit at that moment.
+
+    Args:
+        placed: the robot whose path is changed, as it was reached.
+    """
+    return (
+        *_pairs(state, blocked)[:MOST],
+        *(_joints(placed, blocked.time) if placed else [])[:MOST],
+    )
+
+
+def _pairs(state: State, blocked: Blocked) -> list[str]:
+    told = dict[tuple[str, str], str]()
+    for approach in state.near:
+        names = approach.pair.a.name_in(approach.case), approach.pair.b.name_in(approach.case)
+        missing = state.missing(approach)
+        if {*names} == {blocked.body_a, blocked.body_b} or not len(missing):
+            continue
+        if missing.max() < -CLOSE:
+            continue
+        phase, step = approach.section.phase, int(approach.steps[missing.argmax()])
+        time = phase.motions[0].times[step - phase.first]
+        told.setdefault(names, f"{names[0]} and {names[1]} have no more to give at {time:.3f} s")
+    return list(told.values())
+
+
+def _joints(placed: PlacedRobot, time: float) -> list[str]:
+    """The joints that are at a limit at the samples next to a time of the run [s]."""
+    own = (time - placed.timing.start) * placed.timing.rate
+    told = []
+    for one in joint_ranges(placed):
+        after = int(np.clip(np.searchsorted(one.times, own), 0, len(one.times) - 1))
+        near = one.room[max(after - 1, 0) : after + 1]
+        if near.min() < CLOSE:
+            told.append(f"joint {one.joint} is at its {one.what}")
+    return told

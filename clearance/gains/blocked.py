@@ -1,0 +1,101 @@
+"""What no change of a kind can mend: a pair at a step that falls short, and that nothing of it moves.
+
+Not for: what is too far to reach (`unreachable`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.gains.shortfalls import Gradient, State
+from clearance.simulate.approaches import Approach
+from clearance.simulate.record import Record
+
+NOT_MOVED = "nothing of this change moves them"
+KEPT_STILL = "that moment is to be kept"
+NOT_APART = "small changes of this kind do not part them there"
+NOT_FOUND = "the search found no change that gives more"
+NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
+TOO_LATE = "no delay that was looked at gives more"
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """A pair that stays too near.
+
+    Attributes:
+        body_a, body_b: names, as in tables. time: [s]. clearance: [m] less padding and depth. wanted: [m].
+        why: one of the reasons of this file.
+    """
+
+    body_a: str
+    body_b: str
+    time: float
+    clearance: float
+    wanted: float
+    why: str
+
+    def __str__(self) -> str:
+        far = f"{self.clearance * 1e3:.3f} mm apart"
+        if self.clearance < 0.0:
+            far = f"{-self.clearance * 1e3:.3f} mm deep in each other"
+        told = f"{self.body_a} and {self.body_b} are {far} at {self.time:.3f} s"
+        return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
+
+
+def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
+    """The worst pair that falls short and that no change moves; None without one."""
+    found = [told for one in state.near if (told := _worst(state, one, gradient)) is not None]
+    return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+
+
+def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:
+    """The same, for the reason that a path stays as it is then, if one of the windows [s of the run] says so."""
+    within = any(start <= blocked.time <= end for start, end in windows)
+    return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_APART else blocked
+
+
+def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
+    """What falls short in a row of an approach."""
+    case, phase = approach.case, approach.section.phase
+    step = int(approach.steps[row])
+    return Blocked(
+        approach.pair.a.name_in(case),
+        approach.pair.b.name_in(case),
+        float(phase.motions[0].times[step - phase.first]),
+        float(approach.clearances[row]),
+        approach.rule.limits.fail + state.margin,
+        why,
+    )
+
+
+def worst_pair(state: State, why: str) -> Blocked | None:
+    """The pair that falls short by most; None where none does at a step."""
+    rows = [(float(own.max()), i, int(own.argmax())) for i, one in enumerate(state.near)
+            if len(own := state.missing(one))]  # fmt: skip
+    if not rows or max(rows)[0] <= 0.0:
+        return None
+    _, i, row = max(rows)
+    return pair_at(state, state.near[i], row, why)
+
+
+def unproven(record: Record, margin: float) -> Blocked:
+    """The moment that stands worst in a run whose steps keep what is wanted, and that is not proven."""
+    moment = record.worst
+    wanted = record.rule(moment.rule).limits.fail + margin
+    return Blocked(moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN)
+
+
+def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
+    missing, by_unit = state.missing(approach), gradient(approach)
+    stays = missing > 0.0
+    if by_unit is not None:
+        stays &= ~by_unit.any(axis=1)
+    rows = np.flatnonzero(stays)
+    if not len(rows):
+        return None
+    why = NOT_MOVED if by_unit is None else NOT_APART
+    return pair_at(state, approach, int(rows[np.argmax(missing[rows])]), why)

@@ -1,0 +1,131 @@
+"""A change of time: a robot begins later. The least delay is gone up to from below, and never past.
+
+Where at a delay a pair is `missing` short, no point that the robot carries moves faster than `speed`, so no delay
+that is longer by less than missing / speed is enough. Not for: changes of place (`search`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.gains.offsets import columns_of
+from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
+from clearance.gains.unreachable import motion_radii, way_needed
+from clearance.simulate.record import Record
+from clearance.world.case import Case
+from clearance.world.pairs import BodyIndex
+
+FINEST = 1e-3
+"""[s] Delays are sought this finely: controllers run at some milliseconds."""
+
+MOST_DELAYS = 400
+"""That are measured."""
+
+
+@dataclass(frozen=True, eq=False)
+class Delayed:
+    """Where the search ended.
+
+    Attributes:
+        delay: [s] the least found that keeps the rules, else the last looked at.
+        at_least: [s] no shorter one does.
+        n_measured: how many delays were measured.
+    """
+
+    state: State
+    record: Record | None
+    delay: float
+    at_least: float
+    n_measured: int
+
+    @property
+    def kept(self) -> bool:
+        """True if every rule is proven to hold."""
+        return self.record is not None and keeps(self.record)
+
+
+def case_later(case: Case, i_robot: int, delay: float) -> Case:
+    """The case with one robot that begins later by `delay` [s]."""
+    robots = list(case.robots)
+    timing = robots[i_robot].timing
+    robots[i_robot] = replace(robots[i_robot], timing=replace(timing, start=timing.start + delay))
+    return replace(case, robots=tuple(robots))
+
+
+def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed:
+    """The least delay up to `most` [s] at which the rules hold by a margin [m].
+
+    Raises:
+        BadInput: nothing else moves, or the robot goes through its path again and again.
+    """
+    _require_another(case, i_robot)
+    speed = greatest_speed(case, i_robot)
+    wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
+    record: Record | None = None
+    n_measured = 0
+    while n_measured < MOST_DELAYS:
+        n_measured += 1
+        state = measured(case_later(case, i_robot, delay), np.zeros(0), wanted, 0.0)
+        if state.worst <= 0.0:
+            record = proven(state.case, margin)
+            if keeps(record):
+                break
+        excluded = delay + _way(state, i_robot, margin) / speed
+        at_least = max(at_least, excluded) if at_least >= delay else at_least
+        if max(excluded, delay + FINEST) > most:
+            break
+        delay = max(excluded, delay + FINEST)
+    return Delayed(state, record, delay, min(at_least, delay), n_measured)
+
+
+def greatest_speed(case: Case, i_robot: int) -> float:
+    """[m/s] No point of any body moves faster by the joints of a robot, on its table's lines or cubics.
+
+    On a cubic a velocity lies between the least and the greatest of the Bernstein coefficients of its parabola.
+    """
+    placed = case.robots[i_robot]
+    asked = placed.asked
+    mean = np.diff(asked.positions, axis=0) / np.diff(asked.times)[:, None]
+    rates = [mean]
+    if asked.velocities is not None:
+        before, after = asked.velocities[:-1], asked.velocities[1:]
+        rates = [before, after, 3.0 * mean - before - after]
+    fastest = np.abs(np.concatenate(rates)).max(axis=0) * placed.timing.rate
+    columns = columns_of(case, i_robot)
+    bodies = [
+        BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
+    ]
+    bodies += [BodyIndex(-1, i) for i in range(len(case.obstacles))]
+    return max(float(motion_radii(case, body)[columns] @ fastest) for body in bodies)
+
+
+def _way(state: State, i_robot: int, margin: float) -> float:
+    """[m] How far what the robot carries must at least be moved."""
+    columns, most = columns_of(state.case, i_robot), 0.0
+    for approach in state.near:
+        radii = [motion_radii(approach.case, body)[columns].any() for body in approach.pair]
+        if any(radii) and not all(radii):
+            most = max(most, float(way_needed(approach, margin).max(initial=0.0)))
+    return most
+
+
+def _require_another(case: Case, i_robot: int) -> None:
+    """Nothing, if a delay can change anything."""
+    placed = case.robots[i_robot]
+    others = [
+        one for i, one in enumerate(case.robots) if i != i_robot and one.trajectory is not None
+    ]
+    others_move = bool(others) or any(one.moves is not None for one in case.obstacles)
+    if placed.trajectory is None or placed.trajectory.n_steps < 2 or not others_move:
+        raise BadInput(
+            f"a delay of robot {placed.robot.name!r} changes no clearance",
+            valid="a robot that moves, and another actor that moves",
+        )
+    if placed.timing.after == "loop":
+        raise BadInput(
+            f"robot {placed.robot.name!r} goes through its path again and again",
+            valid="a path that ends",
+        )

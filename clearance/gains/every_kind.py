@@ -1,0 +1,86 @@
+"""Every kind of change to one case, tried one after another, and a table of what each comes to.
+
+Not for: one kind (`answer`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any
+
+from clearance.errors import BadInput
+from clearance.gains.answer import Gain, gain
+from clearance.gains.told import bound_text, size_text
+from clearance.run import Question, answer
+from clearance.world.case import Case
+
+SUB_FOLDERS = ("waypoints", "base", "timing", "obstacle")
+"""Where each kind goes; in this order they are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """A kind of change that was tried.
+
+    Attributes:
+        name: of the kind. gain: what it comes to; None where it does not apply. why: why not.
+    """
+
+    name: str
+    gain: Gain | None
+    why: str = ""
+
+    @property
+    def kept(self) -> bool:
+        """True if every rule is proven to hold with it."""
+        return self.gain is not None and self.gain.kept
+
+
+def every_kind(
+    case: Case, options: Mapping[str, Any], told: Callable[[str], AbstractContextManager[None]]
+) -> Iterator[Tried]:
+    """What each kind comes to; of obstacles the one of the worst pair, unless one is named.
+
+    Args:
+        options: as `gain` takes them. told: around each search, with its kind.
+    """
+    for kind in SUB_FOLDERS:
+        own = dict(options)
+        if kind == "obstacle" and own.get("obstacle") is None:
+            nearest = _obstacle_of_worst(case)
+            if nearest is None:
+                yield Tried(kind, None, "the worst pair is of no obstacle that stands free")
+                continue
+            own["obstacle"] = nearest
+        try:
+            with told(kind):
+                found = gain(case, kind, **own)
+        except BadInput as error:
+            yield Tried(kind, None, str(error))
+            continue
+        yield Tried(kind, found)
+
+
+def table_lines(tried: Sequence[Tried]) -> list[str]:
+    """A line for each kind."""
+    rows = [("kind", "kept", "change", "what")]
+    for one in tried:
+        if one.gain is None:
+            rows.append((one.name, "-", "-", f"does not apply: {one.why}"))
+            continue
+        if one.kept:
+            told = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
+        else:
+            told = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")
+        rows.append((one.name, *told))
+    widths = [max(len(row[i]) for row in rows) for i in range(3)]
+    return ["  ".join([*(row[i].ljust(widths[i]) for i in range(3)), row[3]]) for row in rows]
+
+
+def _obstacle_of_worst(case: Case) -> str | None:
+    """The obstacle of the pair that stands worst at the steps; None where it is of two links."""
+    worst = answer(Question(case, certify=False, contact="none")).record.worst
+    names = [one.name for one in case.obstacles]
+    return next((name for name in (worst.obstacle, worst.link) if name in names), None)

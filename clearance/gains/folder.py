@@ -1,0 +1,132 @@
+"""A gain as a folder: the changed case, its figures, a page, and the reports of before and after, all or none.
+
+Not for: how the case is written (`written`), the page (`page`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+from clearance.errors import Unwritable
+from clearance.extras import LIBRARIES, is_installed
+from clearance.gains.answer import Gain
+from clearance.gains.moved import moved_parts
+from clearance.gains.page import page_of
+from clearance.gains.written import OWN as OF_CASE
+from clearance.gains.written import written_case
+from clearance.overwriting import refuse_inputs
+from clearance.report.folder import fill_folder
+from clearance.report.output import OWN as OF_REPORT
+from clearance.report.output import json_text
+from clearance.run import Run
+from clearance.simulate.moment import Moment
+
+FIGURES, PAGE = "gain.json", "gain.html"
+
+REPORTS = ("before", "after")
+
+FORMAT = 1
+"""Of `gain.json`: `NOTES.md`."""
+
+
+def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
+    """Writes everything, or nothing; the folder.
+
+    The reports are left out, and the page says so, where what draws them is not installed.
+
+    Raises:
+        BadInput: as `written_case`. Unwritable: something is there, or there is no way to write.
+    """
+    folder = Path(folder)
+    made = written_case(gain, folder)
+    drawn = all(is_installed(library) for library in LIBRARIES["report"])
+    names = [*dict.fromkeys((*OF_CASE, FIGURES, PAGE, *made.files))]
+    sources = [one.read_from for one in gain.before.record.case.sources if one.is_file]
+    refuse_taken(folder, names, force=force)
+    refuse_inputs([folder / name for name in names], sources)
+    page = page_of(gain, made.notes, with_reports=drawn)
+
+    def fill(fresh: Path) -> None:
+        for name, content in made.files.items():
+            (fresh / name).write_bytes(content)
+        (fresh / FIGURES).write_text(json_text(figures_of(gain, made.notes)), encoding="utf-8")
+        (fresh / PAGE).write_text(page, encoding="utf-8")
+        for name, run in zip(REPORTS, (gain.before, gain.after), strict=True):
+            if drawn:
+                run.save(fresh / name)
+
+    fill_folder(folder, fill, (*names, *REPORTS))
+    return folder
+
+
+def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
+    """Nothing, if the files of a gain, and its reports, can be put into a folder without loss.
+
+    Raises:
+        Unwritable: one is there and may not be overwritten, or a folder of ours holds something else.
+    """
+    for name in (*names, *REPORTS):
+        there = folder / name
+        if there.exists() and not force:
+            raise Unwritable("is there already", where=str(there), valid="--force overwrites it")
+        if there.is_dir() and name not in REPORTS:
+            raise Unwritable("is a folder", where=str(there), valid="a file is to be written there")
+    for name in REPORTS:
+        there = folder / name
+        if there.is_file():
+            raise Unwritable("is a file", where=str(there), valid="a report is to be written there")
+        other = (
+            [one.name for one in there.iterdir() if one.name not in OF_REPORT]
+            if there.is_dir()
+            else []
+        )
+        if other:
+            raise Unwritable(
+                f"holds {other[0]!r}, which is of no report",
+                where=str(there),
+                valid="another place",
+            )
+
+
+def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
+    """All figures, in metres, radians and seconds."""
+    asked, blocked = gain.asked, gain.blocked
+    return {
+        "format": FORMAT,
+        "name": gain.case.name,
+        "kind": asked.kind,
+        "who": gain.who,
+        "kept": gain.kept,
+        "margin": asked.margin,
+        "keep": [list(window) for window in asked.keep],
+        "keep_ends": asked.keep_ends,
+        "size": gain.size,
+        "unit": gain.unit,
+        "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
+        "parts": [part._asdict() for part in moved_parts(gain)],
+        "before": _of_run(gain.before),
+        "after": _of_run(gain.after),
+        "blocked": None if blocked is None else vars(blocked) | {"text": str(blocked)},
+        "binding": list(gain.binding),
+        "n_measured": gain.n_measured,
+        "notes": list(notes),
+    }
+
+
+def _of_run(run: Run) -> dict[str, Any]:
+    certificate, limits = run.certificate, run.record.case.limits
+    return {
+        "verdict": run.status,
+        "verdict_text": run.verdict.text(),
+        "passed": run.passed,
+        "fail": limits.fail,
+        "worst": _moment(run.record.worst),
+        "proven": None if certificate is None else float(certificate.lower_bound.min()),
+    }
+
+
+def _moment(moment: Moment) -> dict[str, Any]:
+    names = ("link", "obstacle", "time", "step", "between", "clearance", "rule", "touches")
+    return {name: getattr(moment, name) for name in names}

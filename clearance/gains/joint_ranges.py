@@ -1,0 +1,68 @@
+"""How a path of joints stands to their limits of place and speed. Not for: keeping them (`offsets`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.world.case import PlacedRobot
+
+ROUNDING = 1e-9
+"""[rad], [m], or that a second: what is less beyond a limit is at it."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointRange:
+    """What one limit leaves a joint.
+
+    Attributes:
+        joint: its name. what: which limit. times: (n,) [s] of the table.
+        room: (n,) [unit] left; negative beyond it.
+        unit: "rad", "m", "rad/s" or "m/s".
+    """
+
+    joint: str
+    what: str
+    times: np.ndarray
+    room: np.ndarray
+    unit: str
+
+
+def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
+    """What is left of each limit of the joints that a robot's table names: places at its samples, and the mean
+    speeds between them."""
+    asked, rate = placed.asked, placed.timing.rate
+    joints = {joint.name: joint for joint in placed.robot.moving_joints}
+    times = asked.times
+    for i, name in enumerate(asked.joint_names):
+        joint, own = joints[name], asked.positions[:, i]
+        unit = "m" if joint.kind == "prismatic" else "rad"
+        if np.isfinite(joint.upper):
+            yield JointRange(name, "upper limit", times, joint.upper - own, unit)
+        if np.isfinite(joint.lower):
+            yield JointRange(name, "lower limit", times, own - joint.lower, unit)
+        limit = placed.motion_limits.get(name)
+        if limit is not None and np.isfinite(limit.velocity) and len(times) > 1:
+            speed = np.abs(np.diff(own) / np.diff(times)) * rate
+            yield JointRange(name, "speed limit", times[:-1], limit.velocity - speed, f"{unit}/s")
+
+
+def require_within_limits(placed: PlacedRobot) -> None:
+    """Nothing, if a robot's table keeps the limits of its joints.
+
+    Raises:
+        BadInput: which joint is beyond which limit, when and by how much.
+    """
+    if placed.trajectory is None:
+        return
+    for one in joint_ranges(placed):
+        worst = int(np.argmin(one.room))
+        if one.room[worst] < -ROUNDING:
+            raise BadInput(
+                f"joint {one.joint!r} is {-one.room[worst]:.6g} {one.unit} beyond its {one.what} at "
+                f"{one.times[worst]:.3f} s of its table already",
+                valid="a path within the limits of the joints, or other limits",
+            )

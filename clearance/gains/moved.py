@@ -1,0 +1,82 @@
+"""What a change moves, part by part, for who reads of it: joints, axes, a delay. Not for: sentences (`told`)."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.gains.answer import Gain
+from clearance.world.case import index_of_robot
+
+STILL = 1e-9
+"""[rad], [m] or [s]: what moves no farther is not told as moved."""
+
+
+class Moved(NamedTuple):
+    """A part of a change.
+
+    Attributes:
+        name: a joint, "x", "y", "z", or "start". amount: the greatest one, with its sign [rad], [m] or [s].
+        unit: "rad", "m" or "s". time: when that is; start, end: from when until when it is moved [s of the run];
+            None for what is so throughout.
+    """
+
+    name: str
+    amount: float
+    unit: str
+    time: float | None = None
+    start: float | None = None
+    end: float | None = None
+
+
+def moved_parts(gain: Gain) -> list[Moved]:
+    """All joints that move, in their table's order; the three components of a shift; the delay."""
+    if gain.asked.kind == "waypoints":
+        return _joints(gain)
+    change = gain.change.tolist()
+    if gain.asked.kind == "timing":
+        return [Moved("start", change[0], "s")]
+    return [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=True)]
+
+
+def _joints(gain: Gain) -> list[Moved]:
+    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
+    kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
+    times = placed.timing.run_times(placed.asked.times)
+    found = []
+    for name, offsets in zip(gain.joint_names, gain.change.T, strict=True):
+        rows = np.flatnonzero(np.abs(offsets) > STILL)
+        if len(rows):
+            most = int(np.argmax(np.abs(offsets)))
+            unit = "m" if kinds[name] == "prismatic" else "rad"
+            ends = (
+                float(times[max(rows[0] - 1, 0)]),
+                float(times[min(rows[-1] + 1, len(times) - 1)]),
+            )
+            found.append(Moved(name, float(offsets[most]), unit, float(times[most]), *ends))
+    return found
+
+
+def size_unit(gain: Gain) -> tuple[float, str]:
+    """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
+    if gain.asked.kind != "waypoints":
+        return (1.0, "s") if gain.asked.kind == "timing" else (1e3, "mm")
+    from clearance.gains.offsets import SLIDE
+
+    return (1e3 / SLIDE, "mm") if not turning(gain) else (math.degrees(1.0), "deg")
+
+
+def turning(gain: Gain) -> bool:
+    """True if a joint of the path that is changed turns."""
+    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
+    kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
+    return any(kinds[name] != "prismatic" for name in gain.joint_names)
+
+
+def sliding(gain: Gain) -> bool:
+    """True if a joint of the path that is changed slides."""
+    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
+    kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
+    return any(kinds[name] == "prismatic" for name in gain.joint_names)

@@ -1,0 +1,221 @@
+"""A change of path: smooth offsets of a robot's joints over its table, and the limits that they keep.
+
+A change is as large as the greatest offset of any joint at any sample, slides counted by `SLIDE`. Of those
+that are as large the least in sum is taken. Not for: by how much (`search`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.gains.basis import Basis
+from clearance.gains.programme import Box, Inequalities, reachable
+from clearance.gains.shortfalls import Rows
+from clearance.simulate.approaches import Approach
+from clearance.world.case import Case, PlacedRobot
+
+SLIDE = 2.0
+"""[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""
+
+FIRST_REACH = 0.05
+"""[rad] How far the first step may go at each spline."""
+
+ARM = 0.5
+"""[m] How far what comes near is from the joints, to guess what a step may bring near."""
+
+PER_INTERVAL = 6
+"""Samples of each interval of the splines at which the greatest offset is sought."""
+
+EVENLY = 0.01
+"""[-] What the sum of all offsets weighs beside the greatest."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointOffsets:
+    """Offsets of a robot's joints: for each joint that its table names, a spline over the table's times.
+
+    Attributes:
+        i_robot: which robot. basis: the splines.
+    """
+
+    case: Case
+    i_robot: int
+    basis: Basis
+    price: float = 100.0
+    weights: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        kinds = {joint.name: joint.kind for joint in self.placed.robot.moving_joints}
+        named = (kinds[name] for name in self.placed.asked.joint_names)
+        slides = np.array([SLIDE if kind == "prismatic" else 1.0 for kind in named])
+        object.__setattr__(self, "weights", slides)
+
+    @property
+    def placed(self) -> PlacedRobot:
+        """The robot as it was."""
+        return self.case.robots[self.i_robot]
+
+    @property
+    def n_joints(self) -> int:
+        """Of the table."""
+        return len(self.weights)
+
+    @property
+    def n_splines(self) -> int:
+        """Of each joint."""
+        return len(self.basis.free)
+
+    @cached_property
+    def box(self) -> Box:
+        size = self.n_joints * self.n_splines
+        return Box(np.full(size, -np.inf), np.full(size, np.inf))
+
+    @cached_property
+    def first_reach(self) -> np.ndarray:
+        return np.repeat(FIRST_REACH / self.weights, self.n_splines)
+
+    @cached_property
+    def _samples(self) -> np.ndarray:
+        return self.basis.at(self.placed.asked.times)
+
+    @cached_property
+    def _few_samples(self) -> np.ndarray:
+        """The same at some of the samples, as many as the splines can tell apart."""
+        n_rows, wanted = len(self._samples), PER_INTERVAL * self.basis.n_intervals + 1
+        few = np.unique(np.linspace(0, n_rows - 1, min(n_rows, wanted)).astype(int))
+        return self._samples[few]
+
+    def offsets(self, x: np.ndarray) -> np.ndarray:
+        """(n, k) [rad or m] of the samples of the table."""
+        return np.asarray(self._samples @ x.reshape(self.n_joints, -1).T)
+
+    def case_of(self, x: np.ndarray) -> Case:
+        asked = self.placed.asked
+        velocities = asked.velocities
+        if velocities is not None:
+            rates = self.basis.at(asked.times, 1)
+            velocities = velocities + rates @ x.reshape(self.n_joints, -1).T
+        changed = replace(asked, positions=asked.positions + self.offsets(x), velocities=velocities)
+        robots = list(self.case.robots)
+        robots[self.i_robot] = replace(self.placed, trajectory=changed)
+        return replace(self.case, robots=tuple(robots))
+
+    def gradient(self, approach: Approach) -> np.ndarray | None:
+        by_joint = approach.by_columns()[:, self.columns]
+        if not by_joint.any():
+            return None
+        splines = self.basis.at(self._table_times(approach))
+        return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
+
+    @cached_property
+    def columns(self) -> list[int]:
+        """The column of the case's forest of each joint of the table."""
+        return columns_of(self.case, self.i_robot)
+
+    def _table_times(self, approach: Approach) -> np.ndarray:
+        timing = self.placed.timing
+        phase = approach.section.phase
+        times = phase.motions[0].times[approach.steps - phase.first]
+        return np.asarray((times - timing.start) * timing.rate)
+
+    def size(self, x: np.ndarray) -> float:
+        return float((np.abs(self.offsets(x)) * self.weights).max(initial=0.0))
+
+    def swing(self, reach: np.ndarray) -> float:
+        return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())
+
+    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
+        from scipy.optimize import linprog
+
+        a, b, cost = self._programme(reachable(rows, x, box), x)
+        size = len(x)
+        bounds = [*zip(box.low, box.high, strict=True)]
+        bounds += [(0.0, None)] * (size + 1)
+        found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
+        return None if found.x is None else np.asarray(found.x[:size])
+
+    def _programme(self, rows: Rows, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
+        """A, b and cost of: x, its magnitudes, and the greatest offset."""
+        from scipy.sparse import block_array, csr_array, eye_array, kron
+
+        size = len(x)
+        wanted = rows.missing + rows.gradients @ x
+        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self._few_samples))
+        ones = csr_array(np.ones((offsets.shape[0], 1)))
+        unit = eye_array(size)
+        kept, most = self.kept
+        a = block_array(
+            [
+                [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
+                [offsets, None, -ones],
+                [-offsets, None, -ones],
+                [unit, -unit, None],
+                [-unit, -unit, None],
+                [kept, None, None],
+            ],
+            format="csr",
+        )
+        flat = np.zeros(2 * offsets.shape[0] + 2 * size)
+        weight = EVENLY / size * np.repeat(self.weights, self.n_splines)
+        cost = np.concatenate([np.zeros(size), weight, [1.0]])
+        return a, np.concatenate([-wanted, flat, most]), cost
+
+    @cached_property
+    def kept(self) -> Inequalities:
+        """The limits of joints, which hold at the samples, and of their speeds between them."""
+        from scipy.sparse import csr_array, kron, vstack
+
+        asked = self.placed.asked
+        joints = {joint.name: joint for joint in self.placed.robot.moving_joints}
+        parts, most = [], []
+        samples = csr_array(self._samples)
+        lengths = np.diff(asked.times)[:, None]
+        steps = csr_array(np.diff(self._samples, axis=0) / lengths)
+        speeds = np.diff(asked.positions, axis=0) / lengths
+        for i, name in enumerate(asked.joint_names):
+            joint, one = joints[name], np.zeros((1, self.n_joints))
+            one[0, i] = 1.0
+            limit = self.placed.motion_limits.get(name)
+            for sign, level in ((1.0, joint.upper), (-1.0, -joint.lower)):
+                if np.isfinite(level):
+                    parts.append(kron(csr_array(sign * one), samples))
+                    most.append(level - sign * asked.positions[:, i])
+                if limit is not None and np.isfinite(limit.velocity):
+                    parts.append(kron(csr_array(sign * one), steps))
+                    rate = limit.velocity / self.placed.timing.rate
+                    most.append(rate - sign * speeds[:, i])
+        if not parts:
+            size = self.n_joints * self.n_splines
+            return Inequalities(csr_array((0, size)), np.zeros(0))
+        return Inequalities(vstack(parts, format="csr"), np.concatenate(most))
+
+
+def joint_offsets(
+    case: Case, i_robot: int, n_intervals: int, kept: tuple[tuple[float, float], ...]
+) -> JointOffsets:
+    """Offsets of a robot's joints, 0 in some windows of its table's times [s].
+
+    Raises:
+        BadInput: it has no table, or one that it goes through again and again.
+    """
+    placed = case.robots[i_robot]
+    if placed.trajectory is None or placed.trajectory.n_steps < 2:
+        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+    if placed.timing.after == "loop":
+        raise BadInput(
+            f"robot {placed.robot.name!r} goes through its path again and again",
+            valid="a path that ends",
+        )
+    return JointOffsets(case, i_robot, Basis(placed.asked.times, n_intervals, kept))
+
+
+def columns_of(case: Case, i_robot: int) -> list[int]:
+    """The column of the case's forest of each joint of a robot's table."""
+    before = sum(len(one.robot.moving_joints) for one in case.robots[:i_robot])
+    names = [joint.name for joint in case.robots[i_robot].robot.moving_joints]
+    return [before + names.index(name) for name in case.robots[i_robot].asked.joint_names]

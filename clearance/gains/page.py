@@ -1,0 +1,156 @@
+"""A gain as a page: both curves, what moved by how much, both worst moments, what is proven. No script is in it.
+
+Not for: the sentences (`told`), nor the replays, which are in the reports beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from markupsafe import Markup
+
+from clearance.gains.answer import Gain
+from clearance.gains.moved import Moved, moved_parts
+from clearance.gains.told import amount_text, lines_of, size_text
+from clearance.report.comparison_chart import chart
+from clearance.report.comparison_page import curve_of
+from clearance.report.markup import element, section, table
+from clearance.report.plain_page import plain_page
+from clearance.report.wording import limit_mm, mm, moment_text, seconds
+from clearance.run import Run
+
+NAMES = ("before", "after")
+
+
+def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str:
+    """The whole page.
+
+    Args:
+        notes: on how the case was written. with_reports: those of before and after lie beside it.
+    """
+    content = [
+        _curves(gain),
+        _moved(gain),
+        _worst_moments(gain),
+        _reports(gain) if with_reports else _no_reports(),
+        _notes(gain, notes),
+    ]
+    return plain_page(f"{gain.case.name}: {_badge(gain)}", _header(gain), Markup("").join(content))
+
+
+def _header(gain: Gain) -> Markup:
+    kicker = element("p", f"Clearance gained: {gain.asked.kind}", class_="kicker")
+    title = element("div", kicker, element("h1", gain.case.name))
+    badge = element("p", _badge(gain), class_=f"verdict {'clear' if gain.kept else 'violated'}")
+    lines = [
+        element("li", f"{label[0].upper()}{label[1:]}: {line}")
+        for label, line in lines_of(gain)
+        if label not in ("before", "after", "reached")
+    ]
+    return element("div", title, badge, class_="title") + element("ul", *lines, class_="beside")
+
+
+def _badge(gain: Gain) -> str:
+    if not gain.kept:
+        return "not kept"
+    return f"kept, by {size_text(gain)}" if gain.size else "kept as it is"
+
+
+def _curves(gain: Gain) -> Markup:
+    letters = ("a", "b")
+    runs = (gain.before, gain.after)
+    curves = [curve_of(name, run.record.steps) for name, run in zip(NAMES, runs, strict=True)]
+    key = [
+        element("span", element("i"), name, class_=letter)
+        for letter, name in zip(letters, NAMES, strict=True)
+    ]
+    fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
+    picture = element("div", chart(curves, fail + gain.asked.margin), class_="scroll")
+    what = element(
+        "p",
+        "The least clearance of each step"
+        + (f"; the line is the limit with the margin of {limit_mm(gain.asked.margin)} mm."
+           if gain.asked.margin else "; the line is the limit."),
+        class_="faint",
+    )  # fmt: skip
+    return section("Clearance over time", picture, element("div", *key, class_="key"), what)
+
+
+def _moved(gain: Gain) -> Markup:
+    parts = moved_parts(gain)
+    if not parts or gain.size == 0.0:
+        return section("What is changed", element("p", "Nothing is changed."))
+    if gain.asked.kind == "waypoints":
+        heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
+        return section("What is changed", table(heads, [_joint(part) for part in parts]))
+    rows = [
+        element("tr", element("td", _what(gain, part)), _number(_with_sign(part))) for part in parts
+    ]
+    if gain.asked.kind != "timing":
+        rows.append(element("tr", element("td", "length"), _number(size_text(gain))))
+    return section("What is changed", table((f"{gain.who}", ">By"), rows))
+
+
+def _what(gain: Gain, part: Moved) -> str:
+    return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
+
+
+def _joint(part: Moved) -> Markup:
+    times = [part.time, part.start, part.end]
+    cells = [_number(seconds(time)) for time in times if time is not None]
+    return element("tr", element("td", part.name), _number(_with_sign(part)), *cells)
+
+
+def _with_sign(part: Moved) -> str:
+    text = amount_text(part)
+    return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
+
+
+def _number(text: str) -> Markup:
+    return element("td", text, class_="number")
+
+
+def _worst_moments(gain: Gain) -> Markup:
+    rows = [_worst(name, run) for name, run in zip(NAMES, (gain.before, gain.after), strict=True)]
+    heads = ("", ">Clearance, mm", ">Fail below, mm", "Between", "When", "Verdict", ">Proven, mm")
+    return section("Worst moments", table(heads, rows))
+
+
+def _worst(name: str, run: Run) -> Markup:
+    worst, certificate = run.record.worst, run.certificate
+    fail = run.record.rule(worst.rule).limits.fail
+    proven = "" if certificate is None else mm(float(certificate.lower_bound.min()))
+    return element(
+        "tr",
+        element("td", name),
+        _number(mm(worst.clearance)),
+        _number(limit_mm(fail)),
+        element("td", f"{worst.link} and {worst.obstacle}"),
+        element("td", moment_text(worst)),
+        element("td", element("span", run.status, class_=f"tag {run.status}")),
+        _number(proven),
+    )
+
+
+def _reports(gain: Gain) -> Markup:
+    links = [
+        element(
+            "li", element("a", f"the report {name}, with its replay", href=f"{name}/report.html")
+        )
+        for name in NAMES
+    ]
+    return section("Both motions", element("ul", *links, class_="beside"))
+
+
+def _no_reports() -> Markup:
+    told = "The reports with the replays are left out: what draws them is not installed here."
+    return section("Both motions", element("p", told))
+
+
+def _notes(gain: Gain, notes: Sequence[str]) -> Markup:
+    told = [
+        "The bound is proven. The search is local: smaller changes, down to the bound, are not excluded.",
+        "case.yaml is the changed case, with the limits of the one that it is from; gain.json has all figures.",
+        *notes,
+    ]  # fmt: skip
+    return section("What this rests on", *(element("p", line, class_="faint") for line in told))

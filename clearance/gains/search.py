@@ -1,0 +1,175 @@
+"""The search for the least change: linear programmes, each step measured anew, proven at the end.
+
+A step is taken where the linear rows have a least solution within the trust region, else to where they are missed
+by least. What is measured decides: a step that makes it worse halves the region. Not for: what may be changed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from clearance.gains.programme import Box, Inequalities, least_missing
+from clearance.gains.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
+from clearance.simulate.approaches import Approach
+from clearance.simulate.record import Record
+from clearance.world.case import Case
+
+MOST_STEPS = 40
+"""Of one search; most need 4 to 10."""
+
+PATIENCE, LESS = 6, 0.9
+"""A search ends where so many steps have left more than this share of what was missing."""
+
+MOST_PROOFS = 6
+"""Times that the motion between the steps may ask for more."""
+
+FINE = 2e-7
+"""[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
+
+SMALLER = 1e-5
+"""[-] A change that is smaller by less than this share is no better."""
+
+LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
+"""[-] Of what is foretold: with less a step is not taken, with more the next goes farther."""
+
+WIDER, NARROWER = 2.0, 0.4
+"""[-] What the trust region is multiplied by then."""
+
+
+class Change(Protocol):
+    """What may be changed, by m variables that are 0 for no change."""
+
+    @property
+    def price(self) -> float:
+        """What a metre of clearance that is missing weighs against the size; more than any metre can cost."""
+
+    @property
+    def box(self) -> Box:
+        """What the variables may be."""
+
+    @property
+    def kept(self) -> Inequalities | None:
+        """What the variables keep beside the box."""
+
+    @property
+    def first_reach(self) -> np.ndarray:
+        """(m,) how far a first step may go."""
+
+    def case_of(self, x: np.ndarray) -> Case:
+        """The changed case."""
+
+    def gradient(self, approach: Approach) -> np.ndarray | None:
+        """(k, m) what clearances grow by; None where nothing of it changes them."""
+
+    def size(self, x: np.ndarray) -> float:
+        """How large a change is, in its unit."""
+
+    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
+        """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
+
+    def swing(self, reach: np.ndarray) -> float:
+        """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where a search ended.
+
+    Attributes:
+        state: the least change that keeps what is wanted, else the one that misses it by least.
+        record: the proof; None where the steps do not keep it.
+        n_measured: how many cases were measured.
+    """
+
+    state: State
+    record: Record | None
+    n_measured: int
+
+    @property
+    def kept(self) -> bool:
+        """True if every rule is proven to hold."""
+        return self.record is not None and keeps(self.record)
+
+
+class Search:
+    """One search for a change.
+
+    Args:
+        margin: [m] above the fail limits.
+    """
+
+    def __init__(self, change: Change, margin: float) -> None:
+        self.change, self.margin = change, margin
+        self.wanted = Wanted(margin, 2.0 * FINE, np.zeros(0))
+        self.n_measured = 0
+
+    def state_at(self, x: np.ndarray) -> State:
+        """The case of some variables (m,), measured."""
+        return self._state(x, self.change.first_reach)
+
+    def from_state(self, state: State, below: float = np.inf) -> Found:
+        """The search from a case that is measured; what is not smaller than `below` is not proven."""
+        record = None
+        for _ in range(MOST_PROOFS):
+            state = self._improved(state)
+            if state.worst > FINE or self.change.size(state.x) >= below:
+                break
+            record = proven(state.case, self.margin)
+            if keeps(record):
+                break
+            extra, record = with_extra(self.wanted.extra, record), None
+            self.wanted = replace(self.wanted, extra=extra)
+            state = self._state(state.x, self.change.first_reach)
+        return Found(state, record, self.n_measured)
+
+    def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
+        self.n_measured += 1
+        return measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+
+    def _improved(self, state: State) -> State:
+        """The best state that steps from one lead to."""
+        reach, missing = self.change.first_reach, [state.worst]
+        for _ in range(MOST_STEPS):
+            if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
+                return state
+            x = self._aim(state, reach)
+            foretold = self._merit(x, self._missing_at(state, x))
+            gain = self._merit(state.x, state.worst) - foretold
+            if gain <= SMALLER * self.change.size(state.x):
+                return state
+            tried = self._state(x, reach)
+            done = self._merit(state.x, state.worst) - self._merit(x, tried.worst)
+            if done < LEAST_SHARE * gain:
+                reach = NARROWER * np.minimum(reach, np.abs(x - state.x).max())
+                if (reach < 1e-6 * self.change.first_reach).all():
+                    return state
+                continue
+            if done > GOOD_SHARE * gain:
+                reach = np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
+            state = tried
+            missing.append(state.worst)
+        return state
+
+    def _aim(self, state: State, reach: np.ndarray) -> np.ndarray:
+        """Where the next step goes: the least change that keeps all rows, or misses them by least."""
+        rows = state.rows(self.change.gradient)
+        box = self.change.box.about(state.x, reach)
+        x = self.change.least(rows, state.x, box)
+        if x is None:
+            nearest, left = least_missing(rows, state.x, box, self.change.kept)
+            relaxed = rows._replace(missing=rows.missing - left * (1.0 + 1e-6) - FINE)
+            x = self.change.least(relaxed, state.x, box)
+            x = nearest if x is None else x
+        return np.clip(x, box.low, box.high)
+
+    def _missing_at(self, state: State, x: np.ndarray) -> float:
+        """[m] What the rows foretell to be missing."""
+        rows = state.rows(self.change.gradient)
+        return max(0.0, float((rows.missing - rows.gradients @ (x - state.x)).max(initial=0.0)))
+
+    def _merit(self, x: np.ndarray, missing: float) -> float:
+        """What a step is to lower: the size of the change, and what is missing at its price."""
+        return self.change.size(x) + self.change.price * max(0.0, missing - FINE)

@@ -1,0 +1,160 @@
+"""A gain in plain lines, and no more than is proven: the terminal and the page say it in these words.
+
+Lengths in millimetres, angles in degrees. Clearances and bounds are rounded down. Not for: the layout of the page.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from decimal import ROUND_FLOOR, Decimal
+
+from clearance.gains.answer import Gain
+from clearance.gains.blocked import KEPT_STILL, NOT_MOVED
+from clearance.gains.moved import Moved, moved_parts, size_unit, sliding, turning
+from clearance.gains.offsets import SLIDE
+from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
+from clearance.run import Run
+
+Line = tuple[str, str]
+"""A label and what it says."""
+
+TIGHT = 1e-3
+"""[-] A change that is within this of what no change can beat is told as the least."""
+
+
+def lines_of(gain: Gain) -> Iterator[Line]:
+    """What was, what is changed by how much, what that comes to, and what no change of this kind can do."""
+    yield "before", _worst(gain.before)
+    if gain.kept and gain.size == 0.0:
+        yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
+        return
+    yield from _kept(gain) if gain.kept else _not_kept(gain)
+    if not _is_hopeless(gain):
+        yield "bound", bound_text(gain)
+    if gain.asked.margin:
+        yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _kept(gain: Gain) -> Iterator[Line]:
+    """A change with which every rule holds, and what else the verdict of the changed case says."""
+    yield from (("changed", line) for line in changed_lines(gain))
+    yield "after", _worst(gain.after)
+    yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
+    if not gain.after.passed:
+        yield "but", f"the changed case is not passed: {gain.after.verdict.text()}"
+
+
+def _not_kept(gain: Gain) -> Iterator[Line]:
+    """The best that was reached, and what it is up against."""
+    yield "not kept", _not_kept_text(gain)
+    if gain.size > 0.0:
+        yield from (("best", line) for line in changed_lines(gain))
+        yield "reached", _worst(gain.after)
+    if gain.blocked is not None:
+        yield "blocked", str(gain.blocked)
+    yield from (("binding", line) for line in gain.binding)
+
+
+def _is_hopeless(gain: Gain) -> bool:
+    """True if no change of the kind, however large, can make every rule hold."""
+    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL)
+
+
+def changed_lines(gain: Gain) -> list[str]:
+    """What is moved by how much."""
+    parts = moved_parts(gain)
+    if gain.asked.kind == "waypoints":
+        return [_joint(part) for part in parts] or ["no joint moves"]
+    if gain.asked.kind == "timing":
+        return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
+    who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
+    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts)
+    joints = (
+        "; its joints as they are, so its tool moves along" if gain.asked.kind == "base" else ""
+    )
+    return [f"{who} moved {size_text(gain)}: {axes}{joints}"]
+
+
+def amount_text(part: Moved) -> str:
+    """How far a part moves, without a sign."""
+    factor, unit = {"rad": (math.degrees(1.0), "deg"), "m": (1e3, "mm"), "s": (1.0, "s")}[part.unit]
+    return f"{_figure(abs(part.amount) * factor)} {unit}"
+
+
+def size_text(gain: Gain) -> str:
+    """The size of the change."""
+    factor, unit = size_unit(gain)
+    return f"{_figure(gain.size * factor)} {unit}"
+
+
+def bound_text(gain: Gain) -> str:
+    """What no change of the kind can beat."""
+    if gain.lower_bound <= 0.0:
+        return f"not known how little would be enough{f'; {_LOCAL}' if gain.kept else ''}"
+    factor, unit = size_unit(gain)
+    bound = f"{_down(gain.lower_bound * factor)} {unit}{_counted(gain)}"
+    if not gain.kept:
+        return f"whatever is enough, less than {bound} cannot do"
+    if gain.lower_bound >= gain.size * (1.0 - TIGHT):
+        return f"less than {bound} cannot do: no change of this kind is smaller by 0.1 %"
+    return f"less than {bound} cannot do; {_LOCAL}"
+
+
+_LOCAL = "this is the smallest found, by a search that is local"
+
+
+def _counted(gain: Gain) -> str:
+    """How slides and turns are held against each other."""
+    if gain.asked.kind != "waypoints":
+        return ""
+    if turning(gain) and sliding(gain):
+        return f" at a joint, where {1e3 * math.radians(1.0) / SLIDE:.1f} mm of a slide count as 1 deg,"
+    return " at a joint"
+
+
+def _not_kept_text(gain: Gain) -> str:
+    if _is_hopeless(gain):
+        return "no change of this kind can make every rule hold"
+    if gain.asked.kind == "timing":
+        return f"no delay up to {gain.asked.most_delay:g} s was found with which every rule holds"
+    return "no change of this kind was found with which every rule is proven to hold"
+
+
+def _by_margin(gain: Gain) -> str:
+    return f", by {limit_mm(gain.asked.margin)} mm more than its limit" if gain.asked.margin else ""
+
+
+def _worst(run: Run) -> str:
+    """The moment that stands worst, its limit, and the verdict."""
+    worst = run.record.worst
+    fail = run.record.rule(worst.rule).limits.fail
+    far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"
+    if not worst.touches and worst.clearance < 0.0:
+        far = f"{depth_mm(-worst.clearance)} mm too near for their padding"
+    told = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(worst)}"
+    return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.text()}"
+
+
+def _joint(part: Moved) -> str:
+    told = f"joint {part.name} by up to {amount_text(part)}"
+    return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
+
+
+def _signed(part: Moved) -> str:
+    figure = _figure(part.amount * 1e3)
+    return f"+{figure}" if part.amount > 0.0 and figure != "0" else figure
+
+
+def _figure(value: float) -> str:
+    """Four digits, at most three places."""
+    if abs(value) < 5e-4:
+        return "0"
+    return f"{value:.{max(0, min(3, 3 - math.floor(math.log10(abs(value)))))}f}"
+
+
+def _down(value: float) -> str:
+    """The same rounded down."""
+    exact = Decimal(repr(value))
+    places = max(0, min(3, 3 - exact.adjusted()))
+    return str(exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))

@@ -1,0 +1,248 @@
+"""A changed case as files that anyone can check: the case file that it is from, what changed put in its place.
+
+The limits stay those of that file; a margin is not written. Nothing is handed over before it is read once more and
+comes to the same clearances, bit for bit. Not for: pages and figures (`folder`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.gains.answer import Gain
+from clearance.load import schema
+from clearance.load.case_file import read_case
+from clearance.load.case_schema import ScenePlace, read_schema
+from clearance.load.input_files import InputFiles, resolved
+from clearance.load.obstacle_schema import Obstacle as ObstacleRow
+from clearance.load.pose_formats import read_samples
+from clearance.load.pose_table_request import PoseRequest
+from clearance.load.pose_writer import written_poses
+from clearance.load.rewritten_case import Node, rewritten_case, robot_node, robots_of
+from clearance.load.scene_request import SceneRequest
+from clearance.load.scene_writer import rows_of, written_scene
+from clearance.load.trajectory_writer import written
+from clearance.run import Question, Run, answer
+from clearance.world.case import index_of_robot
+from clearance.world.notice import Severity
+
+CASE, SCENE, MOVES = "case.yaml", "scene.yaml", "moves.csv"
+TRAJECTORY, MESSAGE = "trajectory.csv", "trajectory.yaml"
+
+OWN = (CASE, SCENE, MOVES, TRAJECTORY, MESSAGE)
+"""All files that a changed case can have, but for meshes that are written out in its scene's file."""
+
+WHEN = ("start", "rate", "after")
+"""Keys that say when a table is followed, which stay; how another file was to be read goes."""
+
+
+class WrittenCase(NamedTuple):
+    """Files by name, and a line each on what is not as it was."""
+
+    files: Mapping[str, bytes]
+    notes: tuple[str, ...]
+
+
+def written_case(gain: Gain, folder: Path) -> WrittenCase:
+    """The changed case as files in `folder`, which need not be there.
+
+    Raises:
+        BadInput: the case was not read from a file, or what its file says cannot be said there.
+    """
+    if gain.case_file is None:
+        raise BadInput(
+            "the case is from no file that could be changed",
+            valid="gain of the path of a case file",
+        )
+    made = _Files(gain, folder)
+    ways = {
+        "waypoints": made.path,
+        "timing": made.delay,
+        "base": made.base,
+        "obstacle": made.obstacle,
+    }
+    ways[gain.asked.kind]()
+    files = {CASE: made.case(), **made.contents}
+    _require_same(gain, files, folder)
+    return WrittenCase(files, tuple(made.notes))
+
+
+class _Files:
+    """The files of one changed case, as they come together."""
+
+    def __init__(self, gain: Gain, folder: Path) -> None:
+        assert gain.case_file is not None
+        self.gain, self.folder, self.file = gain, folder, gain.case_file
+        self.read = InputFiles(self.file.parent)
+        self.given, self.scene_at = read_schema(self.file, self.read)
+        self.contents: dict[str, bytes] = {}
+        self.notes: list[str] = []
+        self._changes: list[Any] = []
+
+    def case(self) -> bytes:
+        """The content of the case file."""
+
+        def change(node: Node) -> None:
+            if "name" not in node:
+                node["name"] = self.gain.case.name
+            for one in self._changes:
+                one(node)
+
+        return rewritten_case(self.read.read(self.file), self.file, self.folder, change)
+
+    def path(self) -> None:
+        """A table of joints, which the case names, and the same as a message."""
+        placed = self.gain.case.robots[self._i_robot]
+        for name in (TRAJECTORY, MESSAGE):
+            text, notes = written(placed.asked, name)
+            self.contents[name] = text
+            self.notes += [f"{name}: {note}" for note in notes]
+        self._table({"file": TRAJECTORY})
+
+    def delay(self) -> None:
+        """A start in place of another."""
+        self._table({"start": self.gain.case.robots[self._i_robot].timing.start})
+
+    def base(self) -> None:
+        """A place of a robot's base."""
+        i_robot = self._i_robot
+        xyz = self.gain.case.robots[i_robot].world_from_base[:3, 3].tolist()
+
+        def change(node: Node) -> None:
+            robot = robots_of(node)[i_robot]
+            robot["base"] = {**robot.get("base", {}), "xyz": xyz}
+
+        self._changes.append(change)
+
+    def obstacle(self) -> None:
+        """A place of an obstacle, in the case file or in a scene's file of ours."""
+        if self.scene_at.field == "scene.":
+            self._changes.append(lambda node: self._move(node["scene"]["obstacles"]))
+            return
+        content, asked = self.scene_at.content, self._scene_request
+        if any(one.severity is Severity.SUSPECT for one in content.notices):
+            raise BadInput(
+                "its file brings suspect input, of which a scene made from it would say nothing",
+                where=asked.shown,
+                valid="a scene in YAML, as clearance convert makes one",
+            )
+        rows = [dict(row) for row in rows_of(content)]
+        self._move(rows, written_out=True)
+        made = written_scene(
+            replace(content, scene={"obstacles": rows}), asked, self.folder, "clearance gain"
+        )
+        self.contents |= {SCENE: made.content, **made.meshes}
+        self._changes.append(self._with_scene)
+
+    @property
+    def _i_robot(self) -> int:
+        return index_of_robot(self.gain.case.robots, self.gain.who)
+
+    def _table(self, told: Node) -> None:
+        """What is said of the robot's table."""
+        i_robot = self._i_robot
+
+        def change(node: Node) -> None:
+            _, holder = robot_node(node, i_robot)
+            old = holder["trajectory"]
+            old = {"file": old} if isinstance(old, str) else dict(old)
+            if "file" in told:
+                old = {key: value for key, value in old.items() if key in WHEN}
+            made = {**told, **old} if "file" in told else {**old, **told}
+            holder["trajectory"] = made["file"] if [*made] == ["file"] else made
+
+        self._changes.append(change)
+
+    def _move(self, rows: list[Node], *, written_out: bool = False) -> None:
+        """Moves the obstacle among the rows of a scene.
+
+        Args:
+            written_out: the rows are those of a scene's file, paths as seen from there.
+        """
+        name = self.gain.who
+        row = next(row for row in rows if row["name"] == name)
+        made = next(one for one in self.gain.case.obstacles if one.name == name)
+        if made.moves is None:
+            row["pose"] = {**row.get("pose", {}), "xyz": made.world_from_body[:3, 3].tolist()}
+            return
+        self.contents[MOVES] = self._poses(made.moves.positions)
+        old = row["moves"]
+        kept = {} if isinstance(old, str) else {key: old[key] for key in WHEN if key in old}
+        file = MOVES if not written_out else str(self.folder.absolute() / MOVES)
+        row["moves"] = {"file": file, **kept}
+
+    def _poses(self, positions: np.ndarray) -> bytes:
+        """The obstacle's table with other places; turns as they stand in its file."""
+        given: ObstacleRow = next(
+            one for one in self.given.scene.obstacles if one.name == self.gain.who
+        )
+        assert given.moves is not None
+        path = resolved(given.moves.file, self.scene_at.folder)
+        opened, n_bytes = self.read.unread(path)
+        asked = PoseRequest(opened, n_bytes, given.moves.length)
+        samples = read_samples(asked, self.read.shown(path)).samples
+        plain = replace(samples, positions=positions, frame="", child="", stamp=0)
+        text, notes = written_poses(plain, MOVES)
+        self.notes += [f"{MOVES}: {note}" for note in notes]
+        return text
+
+    @property
+    def _scene_request(self) -> SceneRequest:
+        from clearance.load.yaml_file import parse_yaml
+
+        raw = parse_yaml(self.read.read(self.file), self.file.name)
+        assert isinstance(raw, dict)
+        return SceneRequest(resolved(str(raw["scene"]), self.file.parent), self.read)
+
+    def _with_scene(self, node: Node) -> None:
+        """Names the scene's new file, and says what the old one said of robots and of what may touch."""
+        node["scene"] = SCENE
+        for key, rows in _of_scene(self.gain, self.given, self.scene_at):
+            node[key] = [*node.get(key, ()), *rows]
+        for robot, given, placed in zip(
+            robots_of(node), self.given.entries(), self.gain.case.robots, strict=True
+        ):
+            if placed.padding != given.robot.padding:
+                robot["padding"] = {link: float(level) for link, level in placed.padding.items()}
+
+
+def _of_scene(
+    gain: Gain, given: schema.Case, scene_at: ScenePlace
+) -> Iterator[tuple[str, list[Any]]]:
+    """Rows of a case that stand in the file of its scene, by key."""
+    allow = [list(row.between) for row in gain.case.allow[len(given.allow) :]]
+    if allow:
+        yield "allow", allow
+    carries = [
+        {
+            "part": one.part,
+            "by": one.by,
+            "from": one.window.start,
+            **({"touch": list(one.touch)} if one.touch else {}),
+        }
+        for one in gain.case.carries[len(given.carry) :]
+    ]
+    if carries:
+        yield "carry", carries
+
+
+def _require_same(gain: Gain, files: Mapping[str, bytes], folder: Path) -> None:
+    """Nothing, if the files are read as the case that was measured; a fault of this program otherwise."""
+    back = InputFiles(folder)
+    for name, content in files.items():
+        back.hold(folder / name, content)
+    found = answer(Question(read_case(folder / CASE, back)))
+    if _figures(found) != _figures(gain.after):
+        raise AssertionError("the changed case as it is written is not the one that was measured")
+
+
+def _figures(run: Run) -> tuple[str, bytes, bytes]:
+    """What a run came to, bit for bit."""
+    steps = run.record.steps
+    columns = [steps[name].to_numpy().tobytes() for name in ("clearance", "lower_bound")]
+    return run.status, columns[0], columns[1]

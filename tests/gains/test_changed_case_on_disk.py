@@ -1,0 +1,115 @@
+"""A changed case as files: what is read back is what was claimed, and nothing else is touched."""
+
+import json
+
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, Unwritable
+from clearance.gains.folder import save_gain
+from tests.gains.making_gain import CROSSING, MOVING, SLOT, write_cell
+
+
+def with_scene_file(folder):
+    """The slot with its walls in a file of their own."""
+    before, _, rest = SLOT.partition("scene:\n")
+    rows, _, after = rest.partition("trajectory:")
+    path = write_cell(folder, f"{before}scene: scene/walls.yaml\ntrajectory:{after}")
+    (folder / "scene").mkdir()
+    (folder / "scene" / "walls.yaml").write_text(
+        "\n".join(line.removeprefix("  ") for line in rows.splitlines()) + "\n"
+    )
+    return path
+
+
+CASES = {
+    "waypoints": (lambda folder: write_cell(folder, SLOT), "waypoints", {}),
+    "base": (lambda folder: write_cell(folder, SLOT), "base", {}),
+    "obstacle": (lambda folder: write_cell(folder, SLOT), "obstacle", {"obstacle": "left"}),
+    "scene file": (with_scene_file, "obstacle", {"obstacle": "left"}),
+    "base beside a scene file": (with_scene_file, "base", {}),
+    "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
+    "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def saved(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cell")
+    make, kind, how = CASES[request.param]
+    path = make(folder)
+    before = {file: file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+    found = cl.gain(path, kind, **how)
+    out = save_gain(found, folder / "deep" / "out")
+    assert {file: file.read_bytes() for file in before} == before
+    return found, out
+
+
+def test_what_is_written_is_read_as_what_was_claimed(saved):
+    found, out = saved
+    assert found.kept and not found.before.passed
+    run = cl.check(out / "case.yaml")
+    assert run.passed
+    for column in ("clearance", "lower_bound"):
+        back, told = (one.steps[column].to_numpy() for one in (run, found.after))
+        assert back.tobytes() == told.tobytes()
+
+
+def test_the_figures_are_those_of_the_gain(saved):
+    found, out = saved
+    told = json.loads((out / "gain.json").read_text())
+    assert told["kept"] and told["size"] == found.size and told["before"]["verdict"] != "clear"
+    assert told["after"]["passed"] and told["lower_bound"] == found.lower_bound
+
+
+def test_the_page_stands_beside_both_reports(saved):
+    _, out = saved
+    page = (out / "gain.html").read_text()
+    for name in ("before", "after"):
+        assert f'href="{name}/report.html"' in page and (out / name / "report.html").is_file()
+
+
+def test_the_same_again_is_the_same_bytes_and_needs_force(tmp_path):
+    path = write_cell(tmp_path, SLOT)
+    found = cl.gain(path, "base")
+    one, two = (save_gain(found, tmp_path / name) for name in ("one", "two"))
+    files = [file.relative_to(one) for file in sorted(one.rglob("*")) if file.is_file()]
+    assert [(one / file).read_bytes() == (two / file).read_bytes() for file in files].count(
+        False
+    ) == 0
+    with pytest.raises(Unwritable, match="force"):
+        save_gain(found, one)
+    save_gain(found, one, force=True)
+    (one / "before" / "mine.txt").write_text("mine")
+    with pytest.raises(Unwritable, match=r"mine\.txt"):
+        save_gain(found, one, force=True)
+    assert (one / "before" / "mine.txt").read_text() == "mine"
+
+
+def test_comments_stay_and_paths_lead_to_the_same_files(tmp_path):
+    path = write_cell(tmp_path / "cell", SLOT)
+    out = save_gain(cl.gain(path, "obstacle", obstacle="left"), tmp_path / "out")
+    text = (out / "case.yaml").read_text()
+    assert "# A bar through a slot." in text and "# fixed by two screws" in text
+    assert "urdf: ../cell/robots/bar.urdf # of the shop" in text
+    assert "limits: {fail: 0.04, warn: 0.04}  # agreed" in text
+
+
+def test_parts_that_a_file_shares_are_written_apart(tmp_path):
+    text = SLOT.replace("box: {size: [0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
+                        "box: &wall {size: [0.5, 0.4, 2.0]}\n    pose: &at {xyz: [0.0, 0.3, 0.0]}")  # fmt: skip
+    text = text.replace("base: {xyz: [0.0, 0.0, 0.0], rpy: [0.0, 0.0, 0.0]}", "base: {}")
+    text = text.replace("trajectory:", "  - {name: far, box: *wall, pose: *at}\ntrajectory:")
+    path = write_cell(tmp_path, text)
+    (tmp_path / "case.yaml").write_text(text)
+    found = cl.gain(path, "base")
+    assert cl.check(save_gain(found, tmp_path / "out") / "case.yaml").passed
+
+
+def test_a_case_of_no_file_and_an_input_are_refused(tmp_path):
+    path = write_cell(tmp_path, SLOT)
+    with pytest.raises(BadInput, match="no file"):
+        save_gain(cl.gain(cl.load_case(path), "base"), tmp_path / "out")
+    with pytest.raises(Unwritable, match="which this run reads"):
+        save_gain(cl.gain(path, "base"), tmp_path, force=True)
+    assert path.read_text() == SLOT

@@ -1,0 +1,131 @@
+"""Changes whose least size is known by hand; what cannot be reached; what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
+from clearance.gains.answer import gain
+from tests.gains.gantries import along_x, crossing, gantry, slot, standing
+
+FINE = 1e-6
+
+
+@pytest.mark.parametrize("kind, who", [("base", {}), ("obstacle", {"obstacle": "left"})])
+def test_a_bar_through_a_slot_is_moved_by_what_is_missing(kind, who):
+    found = gain(slot(fail=0.04, off=0.03), kind, **who)
+    assert found.kept and found.after.passed and not found.before.passed
+    assert found.size == pytest.approx(0.02, abs=FINE)
+    away = 0.02 if kind == "obstacle" else -0.02
+    assert found.change == pytest.approx([0.0, away, 0.0], abs=FINE)
+    assert 0.02 - FINE < found.lower_bound <= found.size
+
+
+def test_a_path_through_a_slot_bends_by_what_is_missing():
+    found = gain(slot(fail=0.04, off=0.03), "waypoints")
+    assert found.kept and found.after.passed
+    assert np.abs(found.change[:, 1]).max() == pytest.approx(0.02, abs=FINE)
+    assert found.change[[0, -1]] == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+    assert 0.0 < found.lower_bound <= found.size == pytest.approx(2.0 * 0.02, abs=2 * FINE)
+
+
+def test_a_block_past_two_balls_goes_between_them():
+    balls = (
+        standing("left", cl.PointCloud([[0.0, 0.0, 0.0]], 0.1), (0.0, 0.3, 0.0)),
+        standing("right", cl.PointCloud([[0.0, 0.0, 0.0]], 0.1), (0.5, -0.25, 0.0)),
+    )
+    case = cl.Case("balls", (along_x(gantry()),), balls, cl.Limits(fail=0.12))
+    found = gain(case, "base")
+    assert found.kept and found.change == pytest.approx([0.0, 0.02, 0.0], abs=FINE)
+    assert found.lower_bound == pytest.approx(0.02, rel=1e-4)
+
+
+def test_an_overlap_is_parted_by_its_depth_and_the_limit():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.0, 0.07, 0.0))
+    case = cl.Case("post", (along_x(gantry()),), (post,), cl.Limits(fail=0.01))
+    found = gain(case, "obstacle")
+    assert found.kept and found.size == pytest.approx(0.04, abs=FINE)
+    assert found.change[1] == pytest.approx(0.04, abs=FINE)
+    assert found.lower_bound == pytest.approx(0.04, rel=1e-4)
+
+
+@pytest.mark.parametrize("fail", [0.02, 0.1])
+def test_the_least_delay_of_two_that_cross(fail):
+    found = gain(crossing(fail), "timing", robot="one")
+    least = 2.0 * 0.5 * (0.1 + fail / np.sqrt(2.0))  # at 2 m/s
+    assert found.kept and found.after.passed
+    assert found.lower_bound <= least * (1.0 + 1e-9) and least <= found.size <= least + 2e-3
+
+
+def test_a_margin_is_kept_and_costs_more():
+    sizes = []
+    for margin in (0.0, 0.003, 0.006):
+        found = gain(slot(), "base", margin=margin)
+        assert found.kept
+        nearest = min(pair.clearance for pair in found.after.record.pair_minima)
+        assert nearest >= 0.04 + margin
+        sizes.append(found.size)
+    assert sizes == pytest.approx([0.02, 0.023, 0.026], abs=FINE)
+
+
+@pytest.mark.parametrize("kind", ["waypoints", "base", "obstacle", "timing"])
+def test_what_is_kept_already_is_not_changed(kind):
+    case = crossing(0.1) if kind == "timing" else slot(fail=0.01)
+    if kind == "timing":
+        case = replace(case, robots=(along_x(gantry("one"), y=5.0), case.robots[1]))
+    who = {"obstacle": {"obstacle": "left"}, "timing": {"robot": "one"}}.get(kind, {})
+    found = gain(case, kind, **who)
+    assert found.kept and found.size == 0.0 and not found.change.any()
+
+
+@pytest.mark.parametrize("kind", ["waypoints", "base"])
+def test_where_the_world_is_makes_no_difference(kind):
+    here, there = (gain(slot(shift=shift), kind) for shift in ((0, 0, 0), (3.0, -2.0, 1.0)))
+    assert there.change == pytest.approx(here.change, abs=1e-6)
+
+
+def test_a_gap_that_is_too_narrow_is_no_gap():
+    found = gain(slot(fail=0.06, off=0.0), "waypoints")
+    assert not found.kept and {found.blocked.body_a, found.blocked.body_b} & {"left", "right"}
+
+
+def test_what_nothing_moves_is_said_at_once():
+    found = gain(slot(fail=0.04, off=0.03), "obstacle", obstacle="right")
+    assert not found.kept and found.n_measured == 1
+    assert "left" in str(found.blocked) and "nothing of this change moves them" in str(
+        found.blocked
+    )
+
+
+def test_a_moment_that_is_kept_and_violated_is_said_at_once():
+    found = gain(slot(), "waypoints", keep=((0.4, 0.6),))
+    assert not found.kept and found.n_measured == 1
+    assert 0.4 <= found.blocked.time <= 0.6 and "is to be kept" in str(found.blocked)
+
+
+def test_limits_of_joints_are_kept():
+    bar = gantry(size=(0.4, 0.1, 0.1), y_range=(0.015, 1.0))
+    case = slot(off=0.03)
+    held = replace(case, robots=(replace(along_x(bar, y=0.03)),))
+    found = gain(held, "waypoints")
+    assert not found.kept
+    assert (found.case.robots[0].asked.positions[:, 1] >= 0.015 - 1e-9).all()
+
+
+@pytest.mark.parametrize(
+    "fault, kind, how",
+    [
+        (BadInput, "shape", {}),
+        (BadInput, "obstacle", {}),
+        (UnknownObstacle, "obstacle", {"obstacle": "lift"}),
+        (UnknownRobot, "base", {"robot": "gentry"}),
+        (BadInput, "timing", {}),
+        (BadInput, "base", {"margin": -1.0}),
+        (BadInput, "waypoints", {"keep": ((1.0, 0.0),)}),
+    ],
+)
+def test_what_is_refused(fault, kind, how):
+    with pytest.raises(fault):
+        gain(slot(), kind, **how)
