@@ -13,7 +13,7 @@ from pathlib import Path
 from clearance.findings.finding import Finding
 from clearance.report.finding_text import finding_line
 from clearance.report.trajectory_row import row_of
-from clearance.report.verdict import SAMPLES, Verdict
+from clearance.report.verdict import ACCEPTED, SAMPLES, Verdict
 from clearance.simulate.record import Record
 
 MOST = 10
@@ -48,6 +48,8 @@ def _of_verdict(verdict: Verdict) -> list[str]:
 def _beside(verdict: Verdict) -> list[str]:
     """What bears on a verdict and fails nothing."""
     told = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
+    if verdict.tolerances == ACCEPTED:
+        told += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
     if verdict.basis == SAMPLES:
         told.append(f"{verdict.text()}: nothing is said about the motion between the samples")
     return told

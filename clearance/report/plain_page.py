@@ -17,13 +17,13 @@ from clearance.report.markup import element
 _HERE = Path(__file__).parent
 
 
-def plain_page(title: str, header: Markup, content: Markup) -> str:
-    """The whole page."""
+def plain_page(title: str, header: Markup, content: Markup, own_style: str = "") -> str:
+    """The whole page; `own_style` is of this one alone."""
     page, style = (
         (_HERE / name).read_text(encoding="utf-8") for name in ("plain_page.html", "plain_page.css")
     )
     return Template(page).substitute(
-        head=head_of(title, style),
+        head=head_of(title, style + own_style),
         header=header,
         content=content,
         footer=element("p", f"clearance {__version__}"),

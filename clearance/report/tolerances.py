@@ -59,9 +59,11 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
 
 
 def least_expected(one: RuleBudget) -> float | None:
-    """[m] The least expected clearance of all steps; None where it is not worked out."""
+    """[m] The least expected clearance of all steps, never told below what is proven: three deviations of a single
+    uniform error are more than its worst. None where it is not worked out.
+    """
     known = one.expected[np.isfinite(one.expected)]
-    return float(known.min()) if len(known) else None
+    return max(float(known.min()), one.least) if len(known) else None
 
 
 def worst_of(record: Record) -> tuple[RuleBudget, BudgetMoment] | None:
@@ -187,7 +189,7 @@ def _moment(record: Record, worst: BudgetMoment) -> dict[str, Any]:
         "point_b": list(moment.point_obstacle),
         "clearance": moment.clearance,
         "proven": worst.proven,
-        "expected": worst.expected if math.isfinite(worst.expected) else None,
+        "expected": max(worst.expected, worst.proven) if math.isfinite(worst.expected) else None,
         "sources": [asdict(source) | _shown(record, source) for source in worst.sources],
     }
 

@@ -13,6 +13,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from clearance.run.as_asked import as_asked
 from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.budget_answer import RuleBudget
@@ -36,7 +37,7 @@ from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, worst_first
@@ -353,18 +354,9 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
 
 def _asked(question: Question) -> AskedCourse:
     """What the case comes to at the steps of what was asked, where its robots have done something else."""
-    robots = tuple(_as_asked(placed) for placed in question.case.robots)
-    case = replace(question.case, robots=robots, tolerance=None)
-    asked = Question(case, certify=False, contact="none", today=question.today)
+    asked = Question(as_asked(question.case), certify=False, contact="none", today=question.today)
     record = answered(asked, DEFAULT_RESOURCES)
     return AskedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
-
-
-def _as_asked(placed: PlacedRobot) -> PlacedRobot:
-    found = placed.recording
-    if found is None:
-        return placed
-    return replace(placed, trajectory=found.asked, timing=found.timing, recording=None)
 
 
 def _of_pairs(
