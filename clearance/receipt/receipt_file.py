@@ -19,6 +19,9 @@ from clearance.errors import BadSyntax, MissingFile, at, unwritable
 from clearance.receipt.proof.proving import SIZES, BadEvidence
 
 FILE_NAME = "receipt.bin"
+REPORT = ("findings.json", "steps.csv", "summary.json")
+"""Files of the report whose bytes a receipt is of."""
+
 MAGIC = b"clearance receipt 1\n"
 
 MOST_ITEMS = 2**23
@@ -137,6 +140,8 @@ def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
         raise ValueError("nominal")
     if not all(isinstance(text, str) for text in texts) or head["kind"] not in ("full", "sampled"):
         raise ValueError("head")
+    if sorted(head["report"]) != list(REPORT):
+        raise ValueError("report")
     if claims.shape[0] != len(head["rules"]):
         raise ValueError("rules")
 

@@ -6,6 +6,7 @@ Nothing that measured or certified takes part: `receipt.proof` does all that dec
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -21,6 +22,11 @@ from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, GoneThrough, Receipt, read_receipt
 from clearance.world.case import Case, Omission
+
+SUMMARY = "summary.json"
+
+ROUNDED = 3
+"""Units by which a claim may be below what was certified (`writing.claims_of`)."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +103,7 @@ def verify(
     _require_inputs(given, receipt)
     data = case_data(given)
     _require_data(data, receipt)
-    failure = _failure(data, receipt)
+    failure = _failure(data, receipt) or _overstated(place, receipt)
     claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
     return Verification(
         data.name,
@@ -132,6 +138,25 @@ def _failure(data: CaseData, receipt: Receipt) -> str:
     if found is not None:
         return _failure_text(data, receipt, found)
     return "" if evidence.at_end else "the evidence is not of this case: some is left over"
+
+
+def _overstated(place: Path, receipt: Receipt) -> str:
+    """What the report says beyond what the receipt claims, if it does.
+
+    Raises:
+        BadSyntax: a summary that is none.
+    """
+    try:
+        told = float(json.loads((place / SUMMARY).read_bytes())["certified"]["lower_bound"])
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise BadSyntax(
+            "there is no certified bound in it", where=str(place / SUMMARY), valid="the report"
+        ) from None
+    claimed = receipt.claims[receipt.claims != NOT_CLAIMED]
+    least = float(claimed.min()) * UNIT if len(claimed) else 0.0
+    if told <= least + ROUNDED * UNIT:
+        return ""
+    return f"{SUMMARY} tells of {told * 1e3:.6f} mm, the receipt of {least * 1e3:.6f} mm"
 
 
 def _failure_text(data: CaseData, receipt: Receipt, failure: Failure) -> str:

@@ -15,16 +15,19 @@ from clearance.receipt.case_data import CaseData, case_data, require_covered
 from clearance.receipt.claims import with_samples_only
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
-from clearance.receipt.receipt_file import FILE_NAME, Receipt, receipt_bytes, write_file
+from clearance.receipt.receipt_file import (
+    FILE_NAME,
+    REPORT,
+    Receipt,
+    receipt_bytes,
+    write_file,
+)
 from clearance.receipt.search import evidence_for
 
 if TYPE_CHECKING:
     from clearance.run import Run
     from clearance.simulate.record import Record
     from clearance.world.case import Case
-
-REPORT = ("summary.json", "steps.csv", "findings.json")
-"""Files of the report whose bytes the receipt is of."""
 
 
 def write_receipt(

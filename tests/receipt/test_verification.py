@@ -66,6 +66,12 @@ def test_no_raised_bound_is_proven(folder):
         assert not found.proven and f"interval {interval} " in found.headline
 
 
+def test_a_receipt_of_less_than_the_report_tells_of_proves_no_report(folder):
+    receipt = read_receipt(folder / FILE_NAME)
+    rewritten(folder, claims=receipt.claims - 100)
+    assert "summary.json tells of" in verified(folder).failure
+
+
 def test_no_item_can_be_left_out(folder):
     receipt = read_receipt(folder / FILE_NAME)
     for i in np.random.default_rng(0).integers(0, len(receipt.deeds), 12):

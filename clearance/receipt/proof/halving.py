@@ -52,7 +52,9 @@ def halves_of(shapes: Sequence[Shape], depths: np.ndarray | None = None) -> Halv
     parts = [_halved(_widened(s.corners, width), n) for s, n in zip(shapes, most, strict=True)]
     nodes = np.cumsum([0, *(len(part[0]) for part in parts)])
     faces = np.cumsum([0, *(len(shape.faces) for shape in shapes)])
-    low, high, corners = (np.concatenate([part[k] for part in parts], -1) for k in (2, 3, 4))
+    low, high, corners = (
+        np.ascontiguousarray(np.concatenate([part[k] for part in parts], -1)) for k in (2, 3, 4)
+    )
     return Halves(
         nodes[:-1],
         np.concatenate([part[0] + at for part, at in zip(parts, faces[:-1], strict=True)]),
@@ -140,7 +142,7 @@ def farthest(
             found[t, rows] = (x * gx + y * gy + z * gz).max(axis=0)
     rows = np.flatnonzero(size > FEW)
     eighths = halves.first_node[bodies[rows]] + _eighths(nodes[rows])
-    low, high = halves.low[:, eighths], halves.high[:, eighths]
+    low, high = (np.take(part, eighths, axis=1) for part in (halves.low, halves.high))
     for t, g in enumerate(np.moveaxis(along[:, :, rows], 1, 0)):
         reach = [np.maximum(g[k] * low[k], g[k] * high[k]) for k in range(3)]
         found[t, rows] = (reach[0] + reach[1] + reach[2]).max(axis=0)
@@ -150,7 +152,9 @@ def farthest(
 def _points(halves: Halves, at: np.ndarray, most: int) -> np.ndarray:
     """(3, corners, k) [m] those of nodes with no more than so many faces; some are there several times."""
     faces = np.minimum(halves.start[at] + np.arange(most)[:, None], halves.stop[at] - 1)
-    return halves.corners[:, :, faces].reshape(3, most * halves.corners.shape[1], len(at))
+    return np.take(halves.corners, faces, axis=2).reshape(
+        3, most * halves.corners.shape[1], len(at)
+    )
 
 
 def _eighths(nodes: np.ndarray) -> np.ndarray:

@@ -13,8 +13,8 @@ import numpy as np
 BALLS, BYTE_DIRECTION, SHORT_DIRECTION, LONG_DIRECTION, CUT_TIME, CUT_A, CUT_B = range(7)
 """What is done with an item: proven as balls or along a direction of 1, 2 or 4 bytes a coordinate; or cut."""
 
-DEEPEST = 40
-"""Halvings of an interval at most: its pieces begin and end at floats."""
+DEEPEST = 36
+"""Halvings of an interval at most: pieces begin and end at floats, and their numbers are 64 bits long."""
 
 
 class Items(NamedTuple):
@@ -34,7 +34,7 @@ class Items(NamedTuple):
     part: np.ndarray
     depth: np.ndarray
 
-    def of(self, rows: np.ndarray) -> Items:
+    def of(self, rows: np.ndarray | slice) -> Items:
         """Some of the items."""
         return Items(*(column[rows] for column in self))
 

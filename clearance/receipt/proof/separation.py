@@ -52,9 +52,8 @@ def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> 
 
 def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
     """(2, k) the greatest u . (x + t v(x)) over each part, for t = -1 and 1."""
-    turn, at = placed.turn[:, :, side.place], placed.at[:, side.place]
-    bent = across(u, placed.omega[:, side.place])
-    shift = dot(u, placed.v0[:, side.place])
+    turn, at, omega, v0 = (np.take(part, side.place, axis=-1) for part in placed[:4])
+    bent, shift = across(u, omega), dot(u, v0)
     g = np.stack([u - bent, u + bent], axis=1)
     own = np.stack([dot(g, turn[:, k, None]) for k in range(3)])
     moved = dot(g, at[:, None]) + np.stack([-shift, shift])

@@ -111,17 +111,16 @@ class Stage:
 
     def _part_blocks(self, items: Items, item: np.ndarray, rows: np.ndarray):
         own = items.of(item[rows])
-        keys, which = np.unique(
-            np.stack([own.start, own.depth, own.part], axis=1), axis=0, return_inverse=True
-        )
-        which = which.reshape(-1)
+        number = (2**own.depth + own.part) * self.stretch.n_intervals + own.start
+        _, first_of, which = np.unique(number, return_index=True, return_inverse=True)
+        parts = own.of(first_of)
         order = np.argsort(which, kind="stable")
-        for start in range(0, len(keys), PIECES):
+        for start in range(0, len(first_of), PIECES):
             first, last = np.searchsorted(which[order], (start, start + PIECES))
             chosen = order[first:last]
-            low = keys[start : start + PIECES, 2] * 0.5 ** keys[start : start + PIECES, 1]
-            high = (keys[start : start + PIECES, 2] + 1) * 0.5 ** keys[start : start + PIECES, 1]
-            pieces = Pieces(keys[start : start + PIECES, 0], low, high)
+            here = parts.of(slice(start, start + PIECES))
+            size = 0.5**here.depth
+            pieces = Pieces(here.start, here.part * size, (here.part + 1) * size)
             seen = self._seen(own.pair[chosen])
             yield rows[chosen], which[chosen] - start, self._placed(pieces, seen)
 
