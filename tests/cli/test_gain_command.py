@@ -60,7 +60,7 @@ def test_all_kinds_stand_in_a_table_and_in_folders(slot, tmp_path, capsys):
 def test_a_delay_is_told(tmp_path, capsys):
     path = write_cell(tmp_path, CROSSING)
     code, text, _ = said(capsys, path, "--kind", "timing", "--robot", "other")
-    assert code == 0 and "robot other begins 0.135" in text
+    assert code == 0 and "robot other begins 0.13" in text
     code, text, _ = said(
         capsys, path, "--kind", "timing", "--robot", "other", "--most-delay", "0.01"
     )
