@@ -47,10 +47,15 @@ def _row(rate: dict[str, Any], several_robots: bool) -> Markup:
     name = f"{rate['kind']} {rate['of']}, {rate['name']}"
     if rate["kind"] == "joint":
         name = f"{rate['of']} / {rate['name']}" if several_robots else rate["name"]
-    figures = [f"{rate[way] * factor:+.3f}" for way in ("more", "less")]
+    figures = [_signed(rate[way] * factor) for way in ("more", "less")]
     cells = [element("td", text, class_="number") for text in (step, *figures)]
     one_way = "" if rate["both_ways"] else "each holds one way only"
     return element("tr", element("td", name), *cells, element("td", one_way, class_="faint"))
+
+
+def _signed(value: float) -> str:
+    text = f"{value:+.3f}"
+    return "0" if float(text) == 0.0 else text
 
 
 def _note(given: dict[str, Any]) -> str:

@@ -8,7 +8,7 @@ rows for a search, one pair at many steps (`approaches`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -22,7 +22,7 @@ from clearance.simulate.record import Record
 from clearance.simulate.sections import Section
 from clearance.world.case import Case
 from clearance.world.forest import forest_of, joined_positions, positions_between
-from clearance.world.pairs import Pair
+from clearance.world.pairs import BodyIndex, Pair
 
 STEP = 1e-7
 """[rad] or [m] Slopes are off by at most STEP x lever² / (2 x distance), where they change; rounding adds 1e-8."""
@@ -211,7 +211,7 @@ def _rates(near: list[_Near]) -> Iterator[Rate]:
 
 def _of_places(near: list[_Near], case: Case) -> Iterator[Rate]:
     """Of bases and obstacles that stand or move by themselves."""
-    things = [
+    things: list[tuple[str, str, Callable[[Case, BodyIndex, int], bool], int]] = [
         ("base", placed.robot.name, moves_with_robot, i)
         for i, placed in enumerate(case.robots)
         if placed.mount is None
