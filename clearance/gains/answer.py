@@ -160,7 +160,13 @@ def gain(
 
 
 def gained(case: Case, asked: Asked) -> Gain:
-    """The gain of what is asked."""
+    """The gain of what is asked.
+
+    Raises:
+        BadInput: as `gain`; clocks that are not tied, where no pair has one time that could be looked at.
+    """
+    if case.clock.slack:
+        raise BadInput("the clocks of the case are not tied", valid="clock: common")
     ways = {"timing": _by_delay, "waypoints": _by_path, "obstacle": _by_shift, "base": _by_shift}
     return ways[asked.kind](case, asked)
 

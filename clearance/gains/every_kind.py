@@ -70,7 +70,9 @@ def table_lines(tried: Sequence[Tried]) -> list[str]:
         if one.gain is None:
             rows.append((one.name, "-", "-", f"does not apply: {one.why}"))
             continue
-        if one.kept:
+        if one.kept and one.gain.size == 0.0:
+            told = ("yes", "none", f"{one.gain.who}; nothing had to be changed")
+        elif one.kept:
             told = ("yes", size_text(one.gain), f"{one.gain.who}; {bound_text(one.gain)}")
         else:
             told = ("no", "-", f"{one.gain.who}; {one.gain.blocked}")

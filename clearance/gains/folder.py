@@ -12,7 +12,7 @@ from typing import Any
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
-from clearance.gains.moved import moved_parts
+from clearance.gains.moved import moved_parts, proven_after, proven_bound
 from clearance.gains.page import page_of
 from clearance.gains.written import OWN as OF_CASE
 from clearance.gains.written import written_case
@@ -106,8 +106,8 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
         "parts": [part._asdict() for part in moved_parts(gain)],
-        "before": _of_run(gain.before),
-        "after": _of_run(gain.after),
+        "before": _of_run(gain.before, proven_bound(gain.before)),
+        "after": _of_run(gain.after, proven_after(gain)),
         "blocked": None if blocked is None else vars(blocked) | {"text": str(blocked)},
         "binding": list(gain.binding),
         "n_measured": gain.n_measured,
@@ -115,15 +115,14 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
     }
 
 
-def _of_run(run: Run) -> dict[str, Any]:
-    certificate, limits = run.certificate, run.record.case.limits
+def _of_run(run: Run, proven: float | None) -> dict[str, Any]:
     return {
         "verdict": run.status,
         "verdict_text": run.verdict.text(),
         "passed": run.passed,
-        "fail": limits.fail,
+        "fail": run.record.rule(run.record.worst.rule).limits.fail,
         "worst": _moment(run.record.worst),
-        "proven": None if certificate is None else float(certificate.lower_bound.min()),
+        "proven": proven,
     }
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.gains.answer import Gain
+from clearance.run import Run
 from clearance.world.case import index_of_robot
 
 STILL = 1e-9
@@ -80,3 +81,17 @@ def sliding(gain: Gain) -> bool:
     placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     return any(kinds[name] == "prismatic" for name in gain.joint_names)
+
+
+def proven_bound(run: Run) -> float | None:
+    """[m] What no clearance of a run is below at any moment; None where nothing is proven."""
+    certificate = run.certificate
+    return None if certificate is None else float(certificate.lower_bound.min())
+
+
+def proven_after(gain: Gain) -> float | None:
+    """The same of the changed case, which is proven once more against its limits and the margin."""
+    found, limits = proven_bound(gain.after), gain.case.limits
+    if found is None or not gain.kept or limits.rules:
+        return found
+    return max(found, limits.fail + gain.asked.margin)

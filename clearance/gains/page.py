@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
-from clearance.gains.moved import Moved, moved_parts
+from clearance.gains.moved import Moved, moved_parts, proven_after, proven_bound
 from clearance.gains.told import amount_text, lines_of, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
@@ -111,24 +111,33 @@ def _number(text: str) -> Markup:
 
 
 def _worst_moments(gain: Gain) -> Markup:
-    rows = [_worst(name, run) for name, run in zip(NAMES, (gain.before, gain.after), strict=True)]
-    heads = ("", ">Clearance, mm", ">Fail below, mm", "Between", "When", "Verdict", ">Proven, mm")
+    proven = (proven_bound(gain.before), proven_after(gain))
+    runs = (gain.before, gain.after)
+    rows = [_worst(*one) for one in zip(NAMES, runs, proven, strict=True)]
+    heads = (
+        "Run",
+        ">Clearance, mm",
+        ">Fail below, mm",
+        "Between",
+        "When",
+        "Verdict",
+        ">Proven, mm",
+    )
     return section("Worst moments", table(heads, rows))
 
 
-def _worst(name: str, run: Run) -> Markup:
-    worst, certificate = run.record.worst, run.certificate
+def _worst(name: str, run: Run, proven: float | None) -> Markup:
+    worst = run.record.worst
     fail = run.record.rule(worst.rule).limits.fail
-    proven = "" if certificate is None else mm(float(certificate.lower_bound.min()))
     return element(
         "tr",
-        element("td", name),
+        element("td", name, style="white-space: nowrap"),
         _number(mm(worst.clearance)),
         _number(limit_mm(fail)),
         element("td", f"{worst.link} and {worst.obstacle}"),
         element("td", moment_text(worst)),
         element("td", element("span", run.status, class_=f"tag {run.status}")),
-        _number(proven),
+        _number("" if proven is None else mm(proven)),
     )
 
 

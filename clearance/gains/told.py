@@ -147,14 +147,14 @@ def _signed(part: Moved) -> str:
 
 
 def _figure(value: float) -> str:
-    """Four digits, at most three places."""
-    if abs(value) < 5e-4:
+    """Four digits, at most four places."""
+    if abs(value) < 5e-5:
         return "0"
-    return f"{value:.{max(0, min(3, 3 - math.floor(math.log10(abs(value)))))}f}"
+    return f"{value:.{max(0, min(4, 3 - math.floor(math.log10(abs(value)))))}f}"
 
 
 def _down(value: float) -> str:
     """The same rounded down."""
     exact = Decimal(repr(value))
-    places = max(0, min(3, 3 - exact.adjusted()))
+    places = max(0, min(4, 3 - exact.adjusted()))
     return str(exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))

@@ -91,6 +91,7 @@ def _round_trip() -> Any:
     made = YAML()
     made.preserve_quotes = True
     made.width = WIDE
+    made.default_flow_style = None  # what is new and holds plain values only is on one line
     made.allow_unicode = True
     return made
 

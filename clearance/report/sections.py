@@ -27,6 +27,7 @@ from clearance.report.matrix import matrix
 from clearance.report.profiles import profiles
 from clearance.report.recordings import recordings
 from clearance.report.rules import name_shown, rules
+from clearance.report.sensitivity import sensitivity_table
 from clearance.report.tolerance_section import tolerances
 from clearance.report.verdict import ACCEPTED, STALE, verdict_text
 from clearance.report.wording import count, joint_value, limits_text, mm, other_time, seconds
@@ -250,6 +251,7 @@ def worst_moment(summary: dict[str, Any]) -> Markup:
         *_worst_sample(summary),
         table(("Joint", ">Position", "In its range"), rows, tall=True) if rows else Markup(""),
         table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
+        sensitivity_table(summary["sensitivity"], several_robots=several),
     )
 
 

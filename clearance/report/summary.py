@@ -20,6 +20,7 @@ from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.recordings import recordings_of
 from clearance.report.rules import rules_of, told_moment
+from clearance.report.sensitivity import sensitivity_data
 from clearance.report.tolerances import tolerances_of
 from clearance.report.verdict import Verdict, verdict_of
 from clearance.report.wording import count
@@ -62,6 +63,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "worst": _worst(record, record.worst),
         "worst_sample": _worst(record, record.worst_sample),
         "nearest": told_moment(record, record.nearest),
+        "sensitivity": sensitivity_data(record),
         "status_counts": status_counts(record),
         "intervals": {
             level: [asdict(i) for i in found] for level, found in intervals(record).items()

@@ -1,0 +1,91 @@
+"""`clearance gain` as someone at a terminal meets it: lines, exit codes, files."""
+
+import pytest
+
+import clearance as cl
+from clearance.cli import run
+from tests.gains.making_gain import CROSSING, SLOT, write_cell
+
+
+@pytest.fixture
+def slot(tmp_path):
+    return write_cell(tmp_path / "cell", SLOT)
+
+
+def said(capsys, *arguments):
+    code = run(["gain", *map(str, arguments)])
+    told = capsys.readouterr()
+    return code, told.out, told.err
+
+
+def test_a_change_that_is_enough_is_told_and_written(slot, tmp_path, capsys):
+    out = tmp_path / "out"
+    code, text, _ = said(capsys, slot, "--kind", "obstacle", "--obstacle", "left", "--out", out)
+    assert code == 0
+    assert "before    tool and left: 19.99 mm" in text
+    assert "changed   obstacle left moved 20.00 mm: x 0, y +20.00, z 0" in text
+    assert "bound     less than 19.99 mm cannot do" in text
+    assert run(["check", str(out / "case.yaml")]) == 0
+
+
+def test_a_margin_is_kept_and_said_not_to_be_in_the_case(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "base", "--margin-mm", "3")
+    assert code == 0 and "moved 23.00 mm" in text and "by 3 mm more than its limit" in text
+    assert "not written into the changed case" in text
+
+
+def test_nothing_to_change_is_said(tmp_path, capsys):
+    path = write_cell(tmp_path, SLOT.replace("fail: 0.04", "fail: 0.01"))
+    code, text, _ = said(capsys, path, "--kind", "waypoints")
+    assert code == 0 and "nothing had to be changed" in text
+
+
+def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
+    out = tmp_path / "out"
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep", "0.9:1.1", "--out", out)
+    assert code == 1 and "that moment is to be kept" in text
+    assert "no change of this kind can make every rule hold" in text
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--margin-mm", "20")
+    assert code == 1 and "binding   tool and right have no more to give" in text
+    assert "can make" not in text
+
+
+def test_all_kinds_stand_in_a_table_and_in_folders(slot, tmp_path, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "all", "--out", tmp_path / "out")
+    assert code == 0 and "timing     -     -         does not apply" in text
+    for kind in ("waypoints", "base", "obstacle"):
+        assert cl.check(tmp_path / "out" / kind / "case.yaml").passed
+
+
+def test_a_delay_is_told(tmp_path, capsys):
+    path = write_cell(tmp_path, CROSSING)
+    code, text, _ = said(capsys, path, "--kind", "timing", "--robot", "other")
+    assert code == 0 and "robot other begins 0.13" in text
+    code, text, _ = said(
+        capsys, path, "--kind", "timing", "--robot", "other", "--most-delay", "0.01"
+    )
+    assert code == 1 and "no delay up to 0.01 s" in text
+
+
+@pytest.mark.parametrize(
+    "options, told",
+    [
+        (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
+        (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
+        (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
+        (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
+        (["--kind", "base", "--keep", "2:1"], "is no stretch of time"),
+        (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
+    ],
+)
+def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):
+    code, out, err = said(capsys, slot, *options, "--out", tmp_path / "out")
+    assert code == 2 and out == "" and told in err and len(err.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_path_beyond_its_limits_is_refused(slot, capsys):
+    path = slot.parent / "path.csv"
+    path.write_text("time,x,y\n0,-1,0.03\n1,2.5,0.03\n")
+    code, _, err = said(capsys, slot, "--kind", "waypoints")
+    assert code == 2 and "joint 'x' is 0.5 m beyond its upper limit" in err

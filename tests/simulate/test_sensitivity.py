@@ -1,0 +1,112 @@
+"""What a clearance changes by: known by hand, and held against differences and the rows of nearest points."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.simulate.approaches import approach_at
+from clearance.simulate.sensitivity import n_joint_columns, sensitivity_of
+from clearance.world.robot import Joint, JointKind
+from tests.gains.gantries import along_x, gantry, slot, standing
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def rates_of(case):
+    found = sensitivity_of(cl.check(case).record)
+    assert not found.why_not
+    return found, {(rate.kind, rate.of, rate.name): rate for rate in found.rates}
+
+
+def one_sided(case, changed, h=1e-6):
+    """(more, less) of the clearance of the worst step, by measuring two changed cases."""
+    run = cl.check(case, certify=False)
+    step, before = run.record.worst_step, run.worst_sample["clearance"]
+    after = [
+        cl.check(changed(case, sign * h), certify=False).steps["clearance"][step].as_py()
+        for sign in (1, -1)
+    ]
+    return [(value - before) / h for value in after]
+
+
+def spinner(off=0.3, tilt=0.2):
+    """A bar that turns about z in place of sliding, past a ball."""
+    joint = Joint("turn", JointKind.REVOLUTE, "base", "tool", np.eye(4), Z, -3.0, 3.0)
+    robot = cl.Robot(
+        "spinner", ("base", "tool"), (joint,), (cl.Body("tool", cl.box((0.6, 0.1, 0.1))),)
+    )
+    times = np.array([0.0, 1.0])
+    placed = cl.PlacedRobot(robot, cl.Trajectory(times, ("turn",), np.array([[0.0], [tilt]])))
+    post = standing("post", cl.box((0.05, 0.05, 0.4)), (0.28, off, 0.0))
+    return cl.Case("spinner", (placed,), (post,), cl.Limits(fail=0.01))
+
+
+def turned(case, by):
+    placed = case.robots[0]
+    table = placed.trajectory
+    return replace(
+        case, robots=(replace(placed, trajectory=replace(table, positions=table.positions + by)),)
+    )
+
+
+def test_a_bar_beside_a_wall_gains_what_it_moves():
+    _, rates = rates_of(slot(fail=0.04, off=0.03))
+    assert rates["joint", "gantry", "y"].more == pytest.approx(-1.0, abs=1e-7)
+    assert rates["joint", "gantry", "y"].both_ways
+    assert rates["base", "gantry", "y"].more == pytest.approx(-1.0, abs=1e-7)
+    assert rates["obstacle", "left", "y"].more == pytest.approx(1.0, abs=1e-7)
+    assert rates["obstacle", "left", "x"].more == 0.0
+    assert ("obstacle", "right", "y") not in rates
+
+
+def test_midway_between_two_walls_every_way_costs():
+    found, rates = rates_of(slot(fail=0.04, off=0.0))
+    assert len(found.pairs) == 2
+    y = rates["joint", "gantry", "y"]
+    assert (y.more, y.less) == pytest.approx((-1.0, -1.0), abs=1e-7) and not y.both_ways
+    left = rates["obstacle", "left", "y"]
+    assert (left.more, left.less) == pytest.approx((0.0, -1.0), abs=1e-7)
+
+
+def test_parallel_faces_lose_whichever_way_they_turn():
+    case = spinner(tilt=0.0)
+    _, rates = rates_of(case)
+    turn = rates["joint", "spinner", "turn"]
+    assert turn.more < 0.0 and not turn.both_ways
+    assert (turn.more, turn.less) == pytest.approx(one_sided(case, turned), abs=1e-5)
+    assert turn.more == pytest.approx(-0.3, abs=1e-5) and turn.less == pytest.approx(
+        0.255, abs=1e-5
+    )
+
+
+@pytest.mark.parametrize("tilt", [0.05, 0.2, -0.3])
+def test_a_turn_is_as_differences_say(tilt):
+    case = spinner(tilt=tilt)
+    _, rates = rates_of(case)
+    turn = rates["joint", "spinner", "turn"]
+    assert (turn.more, turn.less) == pytest.approx(one_sided(case, turned), abs=1e-5)
+
+
+def test_rates_are_the_rows_of_the_nearest_points():
+    case = spinner(tilt=0.2)
+    record = cl.check(case, certify=False).record
+    rule = record.rules[0]
+    (section,) = (one.section for one in rule.pairs.answers)
+    pair = next(one for one in section.pairs if one.b.name_in(case) == "post")
+    row = approach_at(rule, section, pair, np.array([record.worst_step])).by_columns()[0]
+    found = sensitivity_of(record)
+    assert found.rates[0].more == pytest.approx(row[0], abs=1e-7)
+    assert n_joint_columns(case) == len(row) == 1
+
+
+def test_two_that_touch_have_none():
+    case = cl.Case("hit", (along_x(gantry()),), (standing("post", cl.box((0.1,) * 3), (0, 0, 0)),))
+    assert "contact" in sensitivity_of(cl.check(case).record).why_not
+
+
+def test_padding_changes_no_slope():
+    case = slot(fail=0.01, off=0.03)
+    padded = replace(case, obstacles=tuple(replace(one, padding=0.002) for one in case.obstacles))
+    assert rates_of(padded)[1] == rates_of(case)[1]
