@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.geometry.pose import inverse
-from clearance.kernels.budget.rows import Errors, Extras
+from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
 from clearance.simulate.layout import IN_WORLD, Layout
 from clearance.world.body import Obstacle

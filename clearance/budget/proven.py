@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.budget.errors_of import errors_of
 from clearance.compile.kernel_table import call
-from clearance.kernels.budget.rows import Errors
+from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
     BudgetIntervals,
     BudgetMoments,

@@ -15,17 +15,10 @@ from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.arithmetic.vec3 import dot, move, move_back, row
+from clearance.kernels.budget.errors import REACH, SURFACE, TURNED, BodyRows
 from clearance.kernels.budget.pieces import Pieces, bound_of_pieces
-from clearance.kernels.budget.rows import (
-    REACH,
-    SURFACE,
-    TURNED,
-    BodyRows,
-    along_of_point,
-    along_of_point_at_rest,
-    reach_of_point,
-)
-from clearance.kernels.budget.view import AlongRows, look_along, moved_of_box
+from clearance.kernels.budget.reach import along_at_rest, reach_of_point
+from clearance.kernels.budget.view import AlongRows, look_along, moved_of_box, moved_of_point
 from clearance.kernels.features.bounds import (
     direction_between,
     lower_bound_boxes,
@@ -47,8 +40,11 @@ from clearance.kernels.search.node_pairs import (
 )
 from clearance.kernels.search.scratch import STACK_DEPTH, Scratch, wait
 
-REFINED = 0.02
-"""The share of what errors take at the nearest points that the bound of a face pair may be below it."""
+REFINED = 0.05
+"""The share of what errors take at the nearest points that a bound may stay below what it could be: that of a face
+pair, and after `EXACT_LOOKS` groups of nodes that of the rest."""
+
+EXACT_LOOKS = 48
 
 FINEST = 1e-9
 """[m] No face pair is cut for less."""
@@ -88,10 +84,11 @@ class Left(NamedTuple):
 
 
 class LeftScratch(NamedTuple):
-    """What a search is made with."""
+    """What a search is made with: rows of errors, how they are seen along two directions, and scratch."""
 
     found: BodyRows
     seen: AlongRows
+    own: AlongRows
     pieces: Pieces
     scratch: Scratch
 
@@ -101,11 +98,13 @@ class _Search(NamedTuple):
 
     Attributes:
         views: along the direction of the nearest points. nearest: [m] their distance.
+        taken: [m] what errors take of that.
         lower_bound, target, least: as in `Left` and `Aim`. face_a, face_b: which decide the bound.
     """
 
     views: Views
     nearest: float
+    taken: float
     lower_bound: float
     target: float
     least: float
@@ -113,7 +112,7 @@ class _Search(NamedTuple):
     face_b: int
 
 
-@inline
+@inline(force=True)
 def _node_bounds(p, q, side, view, seen, reach, slack, target):
     """[m] lower bounds on what is left of the distances of boxes in lanes, p of body `side`."""
     direction = view.direction
@@ -128,7 +127,7 @@ def _node_bounds(p, q, side, view, seen, reach, slack, target):
     return larger(left, apart)
 
 
-@inline
+@inline(force=True)
 def _group_bounds(a, b, nodes, views, seen, reach, slack, target):
     """[m] the same of the nodes of a group and a node of the other body."""
     if nodes.is_of_b:
@@ -139,48 +138,42 @@ def _group_bounds(a, b, nodes, views, seen, reach, slack, target):
 
 
 class _Faces(NamedTuple):
-    """What two faces come to whole: [m] a bound, what occurs at their nearest points, and their distance."""
+    """Two faces whole: [m] a bound on what is left, and their distance, along one direction."""
 
     bound: float
-    value: float
-    motion: float
-    taken: float
     apart: float
 
 
-@inline
-def _whole_faces(a, face_a, b, face_b, direction, near, m, body_a, body_b, found, slack):
-    """What errors leave of two faces as they are."""
+@inline(force=True)
+def _along(a, face_a, b, face_b, direction, seen, slack):
+    """What is left of two faces along a direction, in which the errors are seen."""
     u, v = direction.u, direction.v
     far = beyond = -math.inf
-    reach_a = reach_b = 0.0
     for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
         x = row(a.vertices, a.face_vertices[c])
         height = dot(u, x)
-        far = max(far, height + along_of_point(found, body_a, u, x))
-        beyond = max(beyond, height)
-        reach_a = max(reach_a, reach_of_point(found, body_a, x))
+        far, beyond = max(far, height + moved_of_point(x, 0, u, seen)), max(beyond, height)
     first = before = math.inf
     for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
         x = row(b.vertices, b.face_vertices[c])
         height = dot(v, x)
-        first = min(first, height - along_of_point(found, body_b, v, x))
-        before = min(before, height)
-        reach_b = max(reach_b, reach_of_point(found, body_b, x))
-    apart = before + direction.offset - beyond - slack
-    reach = reach_a + reach_b
-    if apart <= 0.0:
-        return _Faces(-reach, -reach, 0.0, reach, 0.0)
-    bound = max(first + direction.offset - far - slack, apart - reach)
-    length = math.sqrt(near.gap_sq)
-    q = move_back(m, near.q)
-    taken = along_of_point_at_rest(found, body_a, u, near.p)
-    taken += along_of_point_at_rest(found, body_b, v, q)
-    whole = along_of_point(found, body_a, u, near.p) + along_of_point(found, body_b, v, q)
-    return _Faces(bound, length - taken, whole - taken, taken, apart)
+        first, before = min(first, height - moved_of_point(x, 1, v, seen)), min(before, height)
+    return _Faces(
+        first + direction.offset - far - slack, before + direction.offset - beyond - slack
+    )
 
 
-@inline
+@inline(force=True)
+def _reach_of_face(surface, face, found, body):
+    """[m] how far the errors can move any point of a face."""
+    reach = 0.0
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        x = row(surface.vertices, surface.face_vertices[c])
+        reach = max(reach, reach_of_point(found, body, x))
+    return reach
+
+
+@inline(force=True)
 def _turn_to(direction, m, body_a, body_b, work):
     """The views along a direction, and how errors are seen along it."""
     look_along(work.found, body_a, 0, direction.u, work.seen)
@@ -188,49 +181,95 @@ def _turn_to(direction, m, body_a, body_b, work):
     return views_along(direction, m)
 
 
+class _Point(NamedTuple):
+    """The nearest points of two faces: [m] what errors take there, and what motion takes beside them."""
+
+    taken: float
+    motion: float
+
+
+@inline
+def _at_points(near, direction, m, body_a, body_b, aim, work):
+    """What is taken at the nearest points, along their direction."""
+    u, v, q = direction.u, direction.v, move_back(m, near.q)
+    whole = moved_of_point(near.p, 0, u, work.own) + moved_of_point(q, 1, v, work.own)
+    if aim.is_step:
+        return _Point(whole, 0.0)
+    taken = along_at_rest(work.found, body_a, u, near.p) + along_at_rest(work.found, body_b, v, q)
+    return _Point(taken, max(0.0, whole - taken))
+
+
 @inline(one_caller=True)
 def _look_at_faces(a, b, faces, body_a, body_b, bound, slack, search, aim, thin, work, tally):
     """(what a search has come to after two faces, True where it must be given up)."""
-    m = faces.frames.m
+    m, found = faces.frames.m, work.found
     tally[3] += 1
     near = nearest_of_faces(a, faces.a, b, faces.b, m, margin_of(slack), nothing_yet(math.inf)).best
-    own = direction_between(near.p, near.q, m)
-    seen = _whole_faces(a, faces.a, b, faces.b, own, near, m, body_a, body_b, work.found, slack)
-    bound = max(bound, seen.bound)
-    views, nearest, least, target = search.views, search.nearest, search.least, search.target
+    direction = direction_between(near.p, near.q, m)
+    look_along(found, body_a, 0, direction.u, work.own)
+    look_along(found, body_b, 1, direction.v, work.own)
+    whole = _along(a, faces.a, b, faces.b, direction, work.own, slack)
     length = math.sqrt(near.gap_sq)
+    if whole.apart <= 0.0:  # they may touch
+        reach = _reach_of_face(a, faces.a, found, body_a) + _reach_of_face(
+            b, faces.b, found, body_b
+        )
+        search = _with_point(
+            search, search.views, min(length, search.nearest), reach, -reach, aim, thin
+        )
+        return _with_bound(search, max(bound, -reach), faces, aim), False
+    bound = max(bound, whole.bound)
+    point = _at_points(near, direction, m, body_a, body_b, aim, work)
+    value = length - point.taken
+    views, nearest, taken = search.views, search.nearest, search.taken
     if length < nearest:
-        nearest = length
-        if length > 0.0:
-            views = _turn_to(own, m, body_a, body_b, work)
-    allowed = max(FINEST, REFINED * seen.taken)
-    if not aim.is_step:
-        least = min(least, seen.value)
-        allowed = allowed_gap(least - thin, aim.gap, aim.fail)
-        target = min(target, least - allowed)
+        nearest, taken = length, point.taken
+        views = _turn_to(direction, m, body_a, body_b, work)
+    search = _with_point(search, views, nearest, taken, value, aim, thin)
+    near_by = max(FINEST, REFINED * point.taken)
+    wanted = min(search.target, value - near_by) if aim.is_step else search.target
+    if bound < search.target:
+        reach = _reach_of_face(a, faces.a, found, body_a) + _reach_of_face(
+            b, faces.b, found, body_b
+        )
+        bound = max(bound, whole.apart - reach)
     gives_up = False
-    if seen.apart > 0.0 and bound < min(target, seen.value - (allowed if aim.is_step else 0.0)):
-        still = aim.is_step or seen.motion < STILL * allowed
-        if still or seen.value - seen.motion >= target:
+    if bound < wanted:
+        allowed = near_by if aim.is_step else allowed_gap(search.least - thin, aim.gap, aim.fail)
+        still = aim.is_step or point.motion < STILL * allowed
+        if still or value - point.motion >= wanted:
             cut = bound_of_pieces(
-                a, faces.a, b, faces.b, bound, m, body_a, body_b, work.found, slack,
-                target if not aim.is_step else min(target, seen.value - allowed), allowed, work.pieces,
+                a, faces.a, b, faces.b, bound, m, body_a, body_b, found, work.own, slack, wanted,
+                allowed, work.pieces,
             )  # fmt: skip
             bound = max(bound, cut.lower_bound)
-            if not aim.is_step:
-                least = min(least, cut.least)
-                allowed = allowed_gap(least - thin, aim.gap, aim.fail)
-                target = min(target, least - allowed)
-        gives_up = bound < target and not still
-    elif seen.apart <= 0.0 and not aim.is_step:
-        gives_up = bound < target and search.least > bound
-    face_a, face_b, lower_bound = search.face_a, search.face_b, search.lower_bound
-    if bound < lower_bound:
-        lower_bound, face_a, face_b = bound, faces.a, faces.b
-    if aim.is_step:
-        target = min(target, bound)
-    found = _Search(views, nearest, lower_bound, target, least, face_a, face_b)
-    return found, gives_up
+            search = _with_point(search, views, nearest, taken, cut.least, aim, thin)
+        gives_up = bound < search.target and not still
+    return _with_bound(search, bound, faces, aim), gives_up
+
+
+@inline(force=True)
+def _with_point(search, views, nearest, taken, value, aim, thin):
+    """A search that has seen what occurs [m]; over an interval that moves the target."""
+    least, target = search.least, search.target
+    if not aim.is_step and value < least:
+        least = value
+        target = min(target, least - allowed_gap(least - thin, aim.gap, aim.fail))
+    return _Search(
+        views, nearest, taken, search.lower_bound, target, least, search.face_a, search.face_b
+    )
+
+
+@inline(force=True)
+def _with_bound(search, bound, faces, aim):
+    """A search that has a bound [m] on two faces; of a step that moves the target."""
+    face_a, face_b = search.face_a, search.face_b
+    if bound < search.lower_bound:
+        face_a, face_b = faces.a, faces.b
+    return _Search(
+        search.views, search.nearest, search.taken, min(search.lower_bound, bound),
+        min(search.target, bound) if aim.is_step else search.target, search.least, face_a, face_b,
+    )  # fmt: skip
 
 
 @inline
@@ -252,32 +291,40 @@ def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
     cos_turn, sin_turn = math.cos(turn), math.sin(turn)
     centres = direction_between(box_of(a, roots.a).centre, move(m, box_of(b, roots.b).centre), m)
     search = _Search(
-        _turn_to(centres, m, body_a, body_b, work), math.inf, math.inf,
+        _turn_to(centres, m, body_a, body_b, work), math.inf, 0.0, math.inf,
         aim.target + thin, aim.least + thin, -1, -1,
     )  # fmt: skip
     first_a, first_b = witness_faces[0], witness_faces[1]
-    if first_a >= 0:
-        near = parts(bodies, np.int64(first_a), np.int64(first_b))
-        search, gives_up = _look_at_faces(
-            a, b, near, body_a, body_b, -math.inf, slack, search, aim, thin, work, tally
-        )
-        if gives_up:
-            return Left(-math.inf, search.least - thin, False, search.face_a, search.face_b)
     lower_bound = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
     scratch.bounds[0] = -math.inf
-    n_waiting = 1
+    n_waiting, n_looks = 1, 0
+    if first_a >= 0:  # looked at before all nodes
+        scratch.nodes[1, 0] = scratch.nodes[1, 1] = -1
+        scratch.bounds[1] = -math.inf
+        n_waiting = 2
     while n_waiting > 0:
         n_waiting -= 1
+        target = search.target
+        if aim.is_step and n_looks > EXACT_LOOKS:
+            target -= REFINED * search.taken
         node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
         bound = scratch.bounds[n_waiting]
-        if bound >= search.target:
+        if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
-        if is_leaf(a, node_a) and is_leaf(b, node_b):
-            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            if face_a == first_a and face_b == first_b:
-                continue
+        is_first = node_a < 0
+        if is_first or (is_leaf(a, node_a) and is_leaf(b, node_b)):
+            face_a, face_b = np.int64(first_a), np.int64(first_b)
+            if not is_first:
+                face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
+                if face_a == first_a and face_b == first_b:
+                    continue
+                seen = _along(a, face_a, b, face_b, search.views.a.direction, work.seen, slack)
+                bound = max(bound, seen.bound)
+                if bound >= target:
+                    lower_bound = min(lower_bound, bound)
+                    continue
             faces = parts(bodies, face_a, face_b)
             search, gives_up = _look_at_faces(
                 a, b, faces, body_a, body_b, bound, slack, search, aim, thin, work, tally
@@ -286,10 +333,11 @@ def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
                 return Left(-math.inf, search.least - thin, False, face_a, face_b)
             continue
         nodes, count = opened(a, node_a, b, node_b)
-        bounds = _group_bounds(a, b, nodes, search.views, work.seen, reach, slack, search.target)
+        bounds = _group_bounds(a, b, nodes, search.views, work.seen, reach, slack, target)
         tally[2] += count
+        n_looks += 1
         away = 0
-        if turn < MOST_TURNED and marks_within(bounds, search.target):
+        if turn < MOST_TURNED and marks_within(bounds, target):
             away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, reach)
         if n_waiting + WIDTH > STACK_DEPTH:
             raise AssertionError("no room for what waits")
@@ -298,7 +346,7 @@ def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
             if away >> k & 1:
                 continue
             bound = lane(bounds, k)
-            if bound >= search.target:
+            if bound >= target:
                 lower_bound = min(lower_bound, bound)
                 continue
             node_a, node_b = pair_in_group(nodes, k)

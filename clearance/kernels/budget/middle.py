@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, shared
-from clearance.kernels.budget.rows import JointMotion
+from clearance.kernels.budget.errors import JointMotion
 from clearance.kernels.motion.certify import IntervalMiddle, go_to_middle
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
 

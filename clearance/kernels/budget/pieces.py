@@ -21,7 +21,8 @@ from clearance.kernels.arithmetic.vec3 import (
     sub,
     turn_back,
 )
-from clearance.kernels.budget.rows import along_of_point, along_of_point_at_rest, reach_of_point
+from clearance.kernels.budget.reach import along_at_rest
+from clearance.kernels.budget.view import look_along, moved_of_point
 
 MOST_PIECES = 600
 """Pairs of pieces that are looked at of two faces; what is left then is bounded as it is."""
@@ -167,8 +168,8 @@ class _Seen(NamedTuple):
 
 
 @inline
-def _look(p, q, m, body_a, body_b, found, slack):
-    """What is seen of two pieces, `q` in the frame of b."""
+def _look(p, q, m, body_a, body_b, found, own, slack):
+    """What is seen of two pieces, `q` in the frame of b; `own` is overwritten."""
     x, y = _near_points(p, _in_other(q, m))
     d = sub(y, x)
     length = math.sqrt(dot(d, d))
@@ -176,30 +177,22 @@ def _look(p, q, m, body_a, body_b, found, slack):
         return _Seen(-math.inf, -math.inf, math.sqrt(_longest_sq(p)), math.sqrt(_longest_sq(q)))
     u = Vec3(d.x / length, d.y / length, d.z / length)
     v = turn_back(m, u)
+    look_along(found, body_a, 0, u, own)
+    look_along(found, body_b, 1, v, own)
     far, most, fewest = -math.inf, -math.inf, math.inf
-    beyond = -math.inf
     for corner in p:
-        height, moved = dot(u, corner), along_of_point(found, body_a, u, corner)
-        far, beyond = max(far, height + moved), max(beyond, height)
+        moved = moved_of_point(corner, 0, u, own)
+        far = max(far, dot(u, corner) + moved)
         most, fewest = max(most, moved), min(fewest, moved)
     unlike_a = most - fewest
     near, most, fewest = math.inf, -math.inf, math.inf
-    before = math.inf
     for corner in q:
-        height, moved = dot(v, corner), along_of_point(found, body_b, v, corner)
-        near, before = min(near, height - moved), min(before, height)
+        moved = moved_of_point(corner, 1, v, own)
+        near = min(near, dot(v, corner) - moved)
         most, fewest = max(most, moved), min(fewest, moved)
-    offset = dot(u, m.t)
-    bound = near + offset - far - slack
-    apart = before + offset - beyond - slack
-    at_rest = along_of_point_at_rest(found, body_a, u, x)
-    at_rest += along_of_point_at_rest(found, body_b, v, turn_back(m, sub(y, m.t)))
-    reach_a = reach_b = 0.0
-    for corner in p:
-        reach_a = max(reach_a, reach_of_point(found, body_a, corner))
-    for corner in q:
-        reach_b = max(reach_b, reach_of_point(found, body_b, corner))
-    bound = max(bound, apart - reach_a - reach_b)
+    bound = near + dot(u, m.t) - far - slack
+    at_rest = along_at_rest(found, body_a, u, x)
+    at_rest += along_at_rest(found, body_b, v, turn_back(m, sub(y, m.t)))
     return _Seen(bound, length - at_rest, unlike_a, most - fewest)
 
 
@@ -235,13 +228,13 @@ def _fan(surface, first, end, i):
 
 @inline
 def bound_of_pieces(
-    a, face_a, b, face_b, whole, m, body_a, body_b, found, slack, target, near, pieces
+    a, face_a, b, face_b, whole, m, body_a, body_b, found, own, slack, target, near, pieces
 ):
     """What two faces come to in pieces, at most until each stays above the target.
 
     Args:
-        whole: [m] a bound on both faces. m: `a_from_b`. target: [m] what is above it needs no cutting; it falls
-            with what is seen, to `near` [m] below that.
+        whole: [m] a bound on both faces. m: `a_from_b`. own: rows that are overwritten.
+        target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
     """
     n = _begin(a, face_a, b, face_b, pieces)
     least = math.inf
@@ -252,7 +245,7 @@ def bound_of_pieces(
     while n > 0:
         n -= 1
         p, q = _read(pieces.corners[n], 0), _read(pieces.corners[n], 9)
-        seen = _look(p, q, m, body_a, body_b, found, slack)
+        seen = _look(p, q, m, body_a, body_b, found, own, slack)
         looked += 1
         least = min(least, seen.value)
         target = min(target, least - near)

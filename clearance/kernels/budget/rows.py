@@ -8,12 +8,9 @@ leave of a distance (`left`), and which errors there are.
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from clearance.compile.jit import inline, shared
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
-    add,
     cross,
     dot,
     move,
@@ -22,93 +19,28 @@ from clearance.kernels.arithmetic.vec3 import (
     sub,
     turn_back,
 )
+from clearance.kernels.budget.errors import (
+    CHORD,
+    FIRST,
+    FRAME,
+    KIND,
+    OFFSET,
+    OFFSETS,
+    REACH,
+    REST,
+    REST_AT_REST,
+    SLIDE,
+    SURFACE,
+    TOGETHER,
+    TURN,
+    TURNED,
+    WAY,
+)
+from clearance.kernels.budget.reach import Ball, from_axis, reach_of_ball
 from clearance.kernels.features.bounds import LEAN
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_path import OUTWARD
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
-
-TURN, SLIDE, FRAME, TOGETHER = 0.0, 1.0, 2.0, 3.0
-"""Kinds of rows."""
-
-ORIGIN, AXIS, KIND, FIRST, OFFSET, CHORD, WAY = 0, 3, 6, 7, 8, 9, 10
-"""Places in a row: a point of the axis or the frame's origin [m]; the unit axis; the kind; the error [rad] or [m]
-by itself; the offset of a frame [m]; 2 sin(half of all that it can turn); [m] all that it can slide. Of a motion
-together: its velocity in place of the origin, its spin in place of the axis, and in place of the error the share
-of it that is there since a clock may be off."""
-
-N_NUMBERS = 11
-
-
-class Extras(NamedTuple):
-    """Frames on which links hang beside those of their joints, as what is carried by something that is carried.
-
-    Attributes:
-        starts: (n + 1,) of each. origins: (m, 3) [m] in the frame of what hangs there. xyz: (m,) [m]. angle: (m,)
-            [rad].
-    """
-
-    starts: np.ndarray
-    origins: np.ndarray
-    xyz: np.ndarray
-    angle: np.ndarray
-
-
-class Errors(NamedTuple):
-    """How large the errors of a case are, over the links and bodies of its `World`.
-
-    Attributes:
-        joint: (links,) [rad or m] of the joint above each. xyz, angle: (links,) [m], [rad] of the frame that it
-            hangs on, or of where a root stands.
-        delay: (links,) [s] how far the clock of the joint above may be off. owner: (links,) whose clock that is,
-            or -1 where it is not off.
-        of_links, of_bodies: further frames, of links and of bodies that stand.
-        surface: (bodies,) [m] how far the surface of each may stand out.
-        most_rows: of any body.
-    """
-
-    joint: np.ndarray
-    xyz: np.ndarray
-    angle: np.ndarray
-    delay: np.ndarray
-    owner: np.ndarray
-    of_links: Extras
-    of_bodies: Extras
-    surface: np.ndarray
-    most_rows: int
-
-
-class BodyRows(NamedTuple):
-    """The rows of each body, and what is summed up of them.
-
-    Attributes:
-        rows: (bodies, most rows, N_NUMBERS). n_rows: (bodies,).
-        sums: (bodies, 6) [m] offsets of all frames together; the second-order rest; what of it errors make
-            without motion; how far the errors and the motion can move any point of the body; [rad] how far they
-            can turn it; [m] how far the surface may stand out.
-    """
-
-    rows: np.ndarray
-    n_rows: np.ndarray
-    sums: np.ndarray
-
-
-OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE = range(6)
-
-N_SUMS = 6
-
-
-class JointMotion(NamedTuple):
-    """What joints do beside their errors, over half an interval of time and what clocks may be off.
-
-    Attributes:
-        swing, bend: (links,) as in `IntervalMiddle`. turned: (links,) [rad] further turns about any axis.
-        half: [s] half of the interval.
-    """
-
-    swing: np.ndarray
-    bend: np.ndarray
-    turned: np.ndarray
-    half: float
 
 
 class _Chain(NamedTuple):
@@ -124,15 +56,6 @@ class _Chain(NamedTuple):
     above_still: float
     moved_still: float
     rest_still: float
-
-
-@shared
-def new_body_rows(n_bodies, most_rows):
-    """Rows of no errors."""
-    return BodyRows(
-        np.zeros((n_bodies, most_rows, N_NUMBERS)), np.zeros(n_bodies, dtype=np.int64),
-        np.zeros((n_bodies, N_SUMS)),
-    )  # fmt: skip
 
 
 @inline
@@ -185,17 +108,10 @@ def _frame(rows, n, origin, angle, xyz, ball, chain):
     return n, chain
 
 
-class _Ball(NamedTuple):
-    """A ball about a body, in its frame [m]."""
-
-    t: Vec3
-    radius: float
-
-
 @inline
 def _ball_of(surface, root):
     box = box_of(surface, root)
-    return _Ball(box.centre, math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN))
+    return Ball(box.centre, math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN))
 
 
 @inline
@@ -255,13 +171,6 @@ def _world_axis(links, poses, i):
 
 
 @inline
-def _from_axis(ball, origin, axis):
-    """[m] how far any point of a ball is from a line at most."""
-    away = cross(sub(ball.t, origin), axis)
-    return math.sqrt(dot(away, away)) + ball.radius
-
-
-@inline
 def fill_rows(surface, world, body, errors, motion, poses, found):
     """Writes the rows of a body that a link carries, with the links at `poses` (links, 4, 4) [m]."""
     links, link = world.links, world.frames[body]
@@ -290,7 +199,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
             if links.kinds[i] == TURNING:
                 n = _write(rows, n, origin, axis, TURN, joint + bend, 0.0)
                 rows[n - 1, CHORD] = chord(size)
-                chain = _turned(chain, size, still, _from_axis(ball, origin, axis))
+                chain = _turned(chain, size, still, from_axis(ball, origin, axis))
                 spin = Vec3(
                     spin.x + swing * axis.x, spin.y + swing * axis.y, spin.z + swing * axis.z
                 )
@@ -348,64 +257,6 @@ def _sum_up(rows, n, ball, chain, turned, surface, body, found):
         chain.rest * OUTWARD,
         chain.rest_still * OUTWARD,
     )
-    sums[REACH] = _reach_of_ball(rows, n, ball) * OUTWARD
+    sums[REACH] = reach_of_ball(rows, n, ball) * OUTWARD
     sums[TURNED], sums[SURFACE] = turned, surface
     found.n_rows[body] = n
-
-
-@inline
-def _reach_of_ball(rows, n, ball):
-    """[m] how far the errors can move any point of a ball: the recursion from tip to base."""
-    moved = 0.0
-    for k in range(n):
-        r = rows[k]
-        kind = r[KIND]
-        origin = Vec3(r[0], r[1], r[2])
-        if kind == TURN:
-            axis = Vec3(r[3], r[4], r[5])
-            moved += r[CHORD] * (_from_axis(ball, origin, axis) + moved)
-        elif kind == SLIDE:
-            moved += r[WAY]
-        elif kind == FRAME:
-            d = sub(ball.t, origin)
-            moved += r[CHORD] * (math.sqrt(dot(d, d)) + ball.radius + moved) + r[OFFSET]
-    return moved
-
-
-@inline
-def reach_of_point(found, body, x):
-    """[m] how far the errors can move a point of a body (body frame): the recursion from tip to base."""
-    return _reach_of_ball(found.rows[body], found.n_rows[body], _Ball(x, 0.0))
-
-
-@inline
-def along_first(found, body, u, x, with_motion):
-    """[m] how far errors move a point of a body along a unit direction, to the first order, and all offsets."""
-    moved = found.sums[body, OFFSETS]
-    rows = found.rows[body]
-    for k in range(found.n_rows[body]):
-        r = rows[k]
-        kind = r[KIND]
-        o, a = Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5])
-        if kind == TURN:
-            moved += r[FIRST] * abs(dot(cross(u, a), sub(x, o)))
-        elif kind == SLIDE:
-            moved += r[FIRST] * abs(dot(u, a))
-        elif kind == FRAME:
-            c = cross(u, sub(x, o))
-            moved += r[FIRST] * math.sqrt(dot(c, c))
-        else:
-            moved += (1.0 if with_motion else r[FIRST]) * abs(dot(u, add(o, cross(a, x))))
-    return moved
-
-
-@inline
-def along_of_point(found, body, u, x):
-    """[m] how far errors and motion bring a point of a body along a unit direction at most."""
-    return (along_first(found, body, u, x, True) + found.sums[body, REST]) * OUTWARD
-
-
-@inline
-def along_of_point_at_rest(found, body, u, x):
-    """[m] the same of the errors alone."""
-    return along_first(found, body, u, x, False) + found.sums[body, REST_AT_REST]

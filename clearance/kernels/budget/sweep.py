@@ -8,34 +8,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel, shared
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import lend
-from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.budget.left import Aim, LeftScratch, least_left
-from clearance.kernels.budget.middle import Middle, go_to_part, motion_about, new_middle_of
-from clearance.kernels.budget.pieces import new_pieces
-from clearance.kernels.budget.rows import (
-    REACH,
-    SURFACE,
-    fill_rows,
-    fill_rows_of_standing,
-    new_body_rows,
-)
-from clearance.kernels.budget.view import new_along_rows
-from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.motion.body_boxes import (
-    BodyBoxes,
-    bound_of_bodies,
-    new_body_boxes,
-    place_box,
+from clearance.kernels.budget.errors import REACH, JointMotion
+from clearance.kernels.budget.left import Aim
+from clearance.kernels.budget.levers import fill_levers, moved_from_step
+from clearance.kernels.budget.middle import go_to_part, motion_about
+from clearance.kernels.budget.sweep_state import (
+    AHEAD,
+    LITTLE,
+    ask,
+    bound_by_boxes,
+    carried_bound,
+    fill_body,
+    go_on,
+    new_state,
+    note_bound,
+    thin_of,
 )
 from clearance.kernels.motion.certify import DEPTH, WIDER, begin_arcs
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap
-from clearance.kernels.motion.joint_motion_bound import orientation_rounding
-from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.motion.certify_pair import allowed_gap
 
 
 class BudgetMoments(NamedTuple):
@@ -86,92 +78,6 @@ class BudgetRows(NamedTuple):
     share: np.ndarray
 
 
-class SweepState(NamedTuple):
-    """What is carried from step to step, and scratch."""
-
-    middle: Middle
-    boxes: BodyBoxes
-    faces: np.ndarray
-    waiting: np.ndarray
-    work: LeftScratch
-
-
-@shared
-def _new_state(world, errors):
-    n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
-    work = LeftScratch(
-        new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows), new_pieces(),
-        new_scratch(),
-    )  # fmt: skip
-    return SweepState(
-        new_middle_of(n_links), new_body_boxes(n_bodies), np.full((n_pairs, 2), -1),
-        np.empty((DEPTH, 2)), work,
-    )  # fmt: skip
-
-
-@inline
-def _fill_body(surface, world, errors, path, body, motion, state):
-    """Writes the rows of a body about the middle."""
-    found, middle = state.work.found, state.middle.state
-    if world.frames[body] < 0:
-        fill_rows_of_standing(surface, world, body, errors, found)
-        return
-    fill_rows(surface, world, body, errors, motion, middle.poses, found)
-    if len(path.balls.links) > 0:
-        box = box_of(surface, surface.roots[world.solids[body]])
-        rounding = orientation_rounding(box, world.links, world.frames[body], path.balls, middle)
-        for k in range(1, 4):  # both rests and the reach
-            found.sums[body, k] += rounding
-
-
-@inline
-def _pose(world, body, state):
-    frame = world.frames[body]
-    return rigid(state.middle.state.poses[frame] if frame >= 0 else world.standing[body])
-
-
-@inline
-def _go_to(surface, world, errors, path, step, low, high, state):
-    """Brings all links and bodies to the middle of a part."""
-    go_to_part(world.links, path, errors, step, low, high, state.middle)
-    motion = motion_about(path, step, low, high, state.middle)
-    for body in range(len(world.frames)):
-        _fill_body(surface, world, errors, path, body, motion, state)
-
-
-@inline
-def _ask(lent, world, pair, aim, state, tally):
-    """What errors leave of a pair in the state in the middle."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    frames = frames_of(_pose(world, body_a, state), _pose(world, body_b, state))
-    bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
-    tally[1] += 1
-    left = least_left(bodies, body_a, body_b, state.faces[pair], aim, state.work, tally)
-    if left.face_a >= 0:
-        state.faces[pair, 0], state.faces[pair, 1] = left.face_a, left.face_b
-    return left
-
-
-@inline
-def _thin(surface, world, pair, state):
-    """[m] the surfaces and balls of both bodies of a pair."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    sums = state.work.found.sums
-    radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
-    return radii.both + sums[body_a, SURFACE] + sums[body_b, SURFACE]
-
-
-@inline
-def _by_boxes(surface, world, pair, state, enough):
-    """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    sums = state.work.found.sums
-    taken = sums[body_a, REACH] + sums[body_b, REACH] + _thin(surface, world, pair, state)
-    apart = bound_of_bodies(state.boxes, body_a, body_b, enough + taken)
-    slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
-    return apart - CHAIN_SLACK * slacks - taken
-
-
 @kernel
 def budget_moments(surface, world, path, errors, asked, rows, tally, table):
     """Fills `rows` with what errors leave of the nearest pair at each of some moments.
@@ -183,54 +89,70 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
         asked: `BudgetMoments`. tally: (4,) pairs passed over, searches, nodes and faces looked at.
     """
     lent = lend(surface)
-    state = _new_state(world, errors)
+    state = new_state(world, errors)
+    fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     for i in range(len(tally)):
         tally[i] = 0
+    last, before, was_step = np.int64(-1), asked.intervals[0] + np.int64(asked.shares[0]), True
     for place in range(len(asked.intervals)):
         interval, share = asked.intervals[place], asked.shares[place]
+        is_step = share == 0.0 or share == 1.0
         begin_arcs(world.links, path.balls, interval)
-        _go_to(surface, world, errors, path, interval, share, share, state)
-        for body in range(len(world.frames)):
-            place_box(
-                surface,
-                surface.roots[world.solids[body]],
-                body,
-                _pose(world, body, state),
-                state.boxes,
-            )
+        go_to_part(world.links, path, errors, interval, share, share, state.middle)
+        motion = motion_about(path, interval, share, share, state.middle)
+        if not (is_step and was_step):
+            state.lower_bounds[:] = -math.inf
+        was_step = is_step
+        if is_step:
+            go_on(world, path, before, interval + np.int64(share), state)
+            before = interval + np.int64(share)
         order = asked.order[place]
         best, winner = math.inf, np.int64(-1)
-        if asked.known[place] <= 0.0 and order >= 0:
-            sums = state.work.found.sums
-            taken = sums[world.pairs[order, 0], REACH] + sums[world.pairs[order, 1], REACH]
-            best, winner = -taken - _thin(surface, world, order, state), order
-        elif order < 0:
-            order = np.int64(0)
-            for pair in range(n_pairs):
-                bound = _by_boxes(surface, world, pair, state, math.inf)
-                if bound < best:
-                    best, order = bound, np.int64(pair)
-            best = math.inf
-        touches = winner >= 0
+        touches = asked.known[place] <= 0.0 and order >= 0
+        if touches:
+            taken = thin_of(surface, world, order, errors)
+            for side in range(2):
+                body = world.pairs[order, side]
+                fill_body(surface, world, errors, path, body, motion, place, state)
+                taken += state.work.found.sums[body, REACH]
+            best, winner = -taken, order
         lowest = best
-        for turn in range(-1, n_pairs):
-            pair = order if turn < 0 else np.int64(turn)
-            if touches or turn == order:
+        for turn in range(-2, n_pairs):
+            pair = order if turn == -2 else last if turn == -1 else np.int64(turn)
+            if touches or pair < 0 or (turn == -1 and pair == order):
+                continue
+            if turn >= 0 and (turn == order or turn == last):
                 continue
             target = min(best, asked.enough)
-            if turn >= 0:
-                bound = _by_boxes(surface, world, pair, state, target)
-                if bound >= target:
-                    lowest = min(lowest, bound)
-                    tally[0] += 1
-                    continue
-            aim = Aim(target, math.inf, 0.0, 0.0, True)
-            left = _ask(lent, world, pair, aim, state, tally)
+            carried = carried_bound(world, pair, state)
+            if turn >= 0 and carried < target:
+                by_boxes = bound_by_boxes(
+                    surface, world, errors, path, pair, motion, place, target, state
+                )
+                if by_boxes > carried:
+                    carried = by_boxes
+                    note_bound(world, pair, carried, state)
+            if carried >= target:
+                lowest = min(lowest, carried)
+                tally[0] += 1
+                continue
+            ahead = 0.0
+            if turn >= 0 and is_step and not state.late and before > 0:
+                moved = 0.0
+                for side in range(2):
+                    body = world.pairs[pair, side]
+                    if world.frames[body] >= 0:
+                        moved += moved_from_step(world, path, before - 1, body, state.levers)
+                ahead = AHEAD * moved if AHEAD * moved < LITTLE else 0.0
+            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True)
+            left = ask(lent, surface, world, errors, path, pair, motion, place, aim, state, tally)
+            note_bound(world, pair, left.lower_bound, state)
             lowest = min(lowest, left.lower_bound)
             if left.lower_bound < best:
                 best = left.lower_bound
                 winner = pair
+        last = winner
         rows.proven[place] = lowest
         rows.pair[place] = winner
         rows.share[place] = -1.0
@@ -250,13 +172,12 @@ class _Over(NamedTuple):
 
 
 @inline
-def _hold(lent, surface, world, path, errors, step, pair, least, asked, state, tally):
-    """What errors leave of a pair over the interval after `step`, halved until that is proven."""
+def _hold(lent, surface, world, errors, path, step, pair, look, least, asked, state, tally):
+    """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
     waiting = state.waiting
     waiting[0, 0], waiting[0, 1] = 0.0, 1.0
     n_waiting, n_parts = 1, 0
     lower_bound, share, gap = math.inf, -1.0, asked.gap
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     while n_waiting > 0:
         n_waiting -= 1
         n_parts += 1
@@ -264,13 +185,12 @@ def _hold(lent, surface, world, path, errors, step, pair, least, asked, state, t
         if n_parts % asked.most_parts == 0 or n_waiting + 2 > DEPTH:
             gap *= WIDER
         if n_parts > 1:
+            look += 1
             go_to_part(world.links, path, errors, step, low, high, state.middle)
-            motion = motion_about(path, step, low, high, state.middle)
-            _fill_body(surface, world, errors, path, body_a, motion, state)
-            _fill_body(surface, world, errors, path, body_b, motion, state)
+        motion = motion_about(path, step, low, high, state.middle)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False)
-        left = _ask(lent, world, pair, aim, state, tally)
+        left = ask(lent, surface, world, errors, path, pair, motion, look, aim, state, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -282,7 +202,7 @@ def _hold(lent, surface, world, path, errors, step, pair, least, asked, state, t
             waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
             waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
             n_waiting += 2
-    return _Over(lower_bound, least, share), n_parts > 1
+    return _Over(lower_bound, least, share), n_parts > 1, look
 
 
 @kernel
@@ -293,41 +213,49 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
         axes are written for each interval.
     """
     lent = lend(surface)
-    state = _new_state(world, errors)
+    state = new_state(world, errors)
+    fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     for i in range(len(tally)):
         tally[i] = 0
+    look, before = np.int64(0), asked.intervals[0]
     for place in range(len(asked.intervals)):
         step, least = asked.intervals[place], asked.known[place]
         lower_bound, share, winner = least, -1.0, np.int64(-1)
         begin_arcs(world.links, path.balls, step)
-        _go_to(surface, world, errors, path, step, 0.0, 1.0, state)
-        for body in range(len(world.frames)):
-            place_box(
-                surface,
-                surface.roots[world.solids[body]],
-                body,
-                _pose(world, body, state),
-                state.boxes,
-            )
+        go_on(world, path, before, step + 1, state)
+        before = step + 1
         order = asked.order[place]
-        moved = False
+        moved = True
+        motion = JointMotion(
+            state.middle.state.swing, state.middle.state.bend, state.middle.turned, 0.0
+        )
         for turn in range(-1, n_pairs):
             pair = order if turn < 0 else np.int64(turn)
             if turn == order or pair < 0:
                 continue
-            if moved:
-                _go_to(surface, world, errors, path, step, 0.0, 1.0, state)
-                moved = False
             target = min(asked.enough, least - allowed_gap(least, asked.gap, asked.fail))
-            bound = _by_boxes(surface, world, pair, state, target)
-            if bound >= target:
-                lower_bound = min(lower_bound, bound)
+            carried = carried_bound(world, pair, state)
+            if carried < target:
+                if moved:
+                    look += 1
+                    go_to_part(world.links, path, errors, step, 0.0, 1.0, state.middle)
+                    motion = motion_about(path, step, 0.0, 1.0, state.middle)
+                    moved = False
+                by_boxes = bound_by_boxes(
+                    surface, world, errors, path, pair, motion, look, target, state
+                )
+                if by_boxes > carried:
+                    carried = by_boxes
+                    note_bound(world, pair, carried, state)
+            if carried >= target:
+                lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved = _hold(
-                lent, surface, world, path, errors, step, pair, least, asked, state, tally
+            over, moved, look = _hold(
+                lent, surface, world, errors, path, step, pair, look, least, asked, state, tally
             )
+            note_bound(world, pair, over.lower_bound, state)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share
             if over.lower_bound < lower_bound:

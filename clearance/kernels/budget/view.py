@@ -11,7 +11,7 @@ import numpy as np
 from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, sub
-from clearance.kernels.budget.rows import (
+from clearance.kernels.budget.errors import (
     FIRST,
     FRAME,
     KIND,
@@ -82,7 +82,7 @@ def look_along(found, body, side, u, seen):
     seen.numbers[side, 0], seen.numbers[side, 1] = moved * OUTWARD, steep * OUTWARD
 
 
-@inline
+@inline(force=True)
 def moved_of_box(box, side, u, seen):
     """[m] how far errors and motion move any point of a box, or of four in lanes, along the direction seen."""
     radius = square_root(dot(box.half, box.half)) * (1.0 + LEAN)
@@ -95,4 +95,18 @@ def moved_of_box(box, side, u, seen):
         r = seen.frames[side, k]
         d = cross(u, sub(c, Vec3(r[0], r[1], r[2])))
         moved = moved + r[3] * square_root(dot(d, d))
+    return moved * OUTWARD
+
+
+@inline(force=True)
+def moved_of_point(x, side, u, seen):
+    """[m] how far errors and motion move a point along the direction seen at most."""
+    moved = seen.numbers[side, 0]
+    for k in range(seen.n_linear[side]):
+        r = seen.linear[side, k]
+        moved += abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
+    for k in range(seen.n_frames[side]):
+        r = seen.frames[side, k]
+        d = cross(u, sub(x, Vec3(r[0], r[1], r[2])))
+        moved += r[3] * math.sqrt(dot(d, d))
     return moved * OUTWARD

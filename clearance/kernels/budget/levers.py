@@ -1,0 +1,146 @@
+"""How far bodies can move at most, wherever their joints are: what needs no look at a state.
+
+A point of a body is never farther from the frame of a link below its own than the lengths between, the ways of the
+slides and the offsets that errors make; that is its lever about any axis there. Not for: a state (`rows`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.vec3 import Vec3, dot, rigid, sub
+from clearance.kernels.budget.rows import chord
+from clearance.kernels.features.bounds import LEAN
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.joint_path import ANGLE, OUTWARD
+from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
+
+
+class Levers(NamedTuple):
+    """What bodies can do at most.
+
+    Attributes:
+        reach: (bodies,) [m] how far errors can move any point of each.
+        of_links: (bodies, links) [m/rad] or [m/m] how far any point moves at most by the joint above a link.
+        ways: (links,) [m] how far slides get from their frames.
+    """
+
+    reach: np.ndarray
+    of_links: np.ndarray
+    ways: np.ndarray
+
+
+@shared
+def new_levers(n_bodies, n_links):
+    """Levers of nothing."""
+    return Levers(np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros(n_links))
+
+
+@inline
+def fill_levers(surface, world, path, errors, levers):
+    """Writes the levers of all bodies, of joints that move along a path."""
+    for link in range(len(levers.ways)):
+        if world.links.kinds[link] == SLIDING:
+            levers.ways[link] = _way(path, link) + errors.joint[link]
+    for body in range(len(world.frames)):
+        if world.frames[body] < 0:
+            levers.reach[body] = _reach_of_standing(surface, world, body, errors)
+        else:
+            levers.reach[body] = _fill(surface, world, body, errors, levers)
+
+
+@inline
+def _way(path, link):
+    """[m] how far from 0 a joint gets, between steps as well."""
+    way = bow = 0.0
+    for step in range(len(path.times)):
+        way = max(way, abs(path.positions[step, link]))
+    if len(path.velocities) > 0 and path.is_cubic[link]:
+        for step in range(len(path.times) - 1):
+            length = path.times[step + 1] - path.times[step]
+            there = path.positions[step + 1, link] - path.positions[step, link]
+            e0 = abs(length * path.velocities[step, link] - there)
+            e1 = abs(length * path.velocities[step + 1, link] - there)
+            bow = max(bow, 0.25 * max(e0, e1))
+    return (way + bow) * OUTWARD
+
+
+@inline
+def _length(v):
+    return math.sqrt(dot(v, v))
+
+
+@inline
+def _size(surface, world, body):
+    """[m] how far any point of a body is from its origin at most."""
+    box = box_of(surface, surface.roots[world.solids[body]])
+    return _length(box.centre) + _length(box.half) * (1.0 + LEAN)
+
+
+@inline
+def _reach_of_standing(surface, world, body, errors):
+    box = box_of(surface, surface.roots[world.solids[body]])
+    extras = errors.of_bodies
+    reach = 0.0
+    for k in range(extras.starts[body], extras.starts[body + 1]):
+        o = extras.origins[k]
+        far = _length(sub(box.centre, Vec3(o[0], o[1], o[2]))) + _length(box.half) * (1.0 + LEAN)
+        reach += chord(extras.angle[k]) * (far + reach) + extras.xyz[k]
+    return reach * OUTWARD
+
+
+@inline
+def _fill(surface, world, body, errors, levers):
+    """Writes the levers of a body that a link carries; [m] how far errors can move any point of it."""
+    links, i = world.links, world.frames[body]
+    far = _size(surface, world, body)
+    reach = 0.0
+    while i != NO_PARENT:
+        if links.parents[i] != NO_PARENT:
+            if links.kinds[i] == TURNING:
+                levers.of_links[body, i] = far + reach
+                reach += chord(errors.joint[i]) * (far + reach)
+            elif links.kinds[i] == SLIDING:
+                levers.of_links[body, i] = 1.0
+                reach += errors.joint[i]
+                far += levers.ways[i]
+        reach += chord(errors.angle[i]) * (far + reach) + errors.xyz[i]
+        far += errors.xyz[i]
+        extras = errors.of_links
+        for k in range(extras.starts[i], extras.starts[i + 1]):
+            o = extras.origins[k]
+            beside = far + _length(Vec3(o[0], o[1], o[2]))
+            reach += chord(extras.angle[k]) * (beside + reach) + extras.xyz[k]
+            far += extras.xyz[k]
+        far += _length(rigid(links.parent_from_joint[i]).t)
+        i = links.parents[i]
+    return reach * OUTWARD
+
+
+@inline(force=True)
+def moved_from_step(world, path, step, body, levers):
+    """[m] how far any point of a body moves from one step to the next at most, whatever the errors are."""
+    links, i = world.links, world.frames[body]
+    moved = 0.0
+    while i >= 0 and links.parents[i] != NO_PARENT:
+        moved += (
+            abs(path.positions[step + 1, i] - path.positions[step, i]) * levers.of_links[body, i]
+        )
+        i = links.parents[i]
+    for ball in range(len(path.balls.links)):
+        lever = levers.of_links[body, path.balls.links[ball]]
+        moved += path.balls.arcs[step, ball, ANGLE] * lever
+    return moved * (1.0 + 1e-9)
+
+
+@inline(force=True)
+def moved_in_part(world, motion, body, levers):
+    """[m] how far any point of a body gets from the middle of a part of an interval at most."""
+    links, i = world.links, world.frames[body]
+    moved = 0.0
+    while i >= 0 and links.parents[i] != NO_PARENT:
+        moved += (abs(motion.swing[i]) + motion.bend[i]) * levers.of_links[body, i]
+        i = links.parents[i]
+    return moved * (1.0 + 1e-9)

@@ -1,0 +1,79 @@
+"""How far the errors of a body can move points of it. Not for: which errors there are (`rows`)."""
+
+import math
+from typing import NamedTuple
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, sub
+from clearance.kernels.budget.errors import (
+    CHORD,
+    FIRST,
+    FRAME,
+    KIND,
+    OFFSET,
+    OFFSETS,
+    REST_AT_REST,
+    SLIDE,
+    TURN,
+    WAY,
+)
+
+
+class Ball(NamedTuple):
+    """A ball about a body, in its frame [m]."""
+
+    t: Vec3
+    radius: float
+
+
+@inline
+def from_axis(ball, origin, axis):
+    """[m] how far any point of a ball is from a line at most."""
+    away = cross(sub(ball.t, origin), axis)
+    return math.sqrt(dot(away, away)) + ball.radius
+
+
+@inline
+def reach_of_ball(rows, n, ball):
+    """[m] how far the errors can move any point of a ball: the recursion from tip to base."""
+    moved = 0.0
+    for k in range(n):
+        r = rows[k]
+        kind = r[KIND]
+        origin = Vec3(r[0], r[1], r[2])
+        if kind == TURN:
+            axis = Vec3(r[3], r[4], r[5])
+            moved += r[CHORD] * (from_axis(ball, origin, axis) + moved)
+        elif kind == SLIDE:
+            moved += r[WAY]
+        elif kind == FRAME:
+            d = sub(ball.t, origin)
+            moved += r[CHORD] * (math.sqrt(dot(d, d)) + ball.radius + moved) + r[OFFSET]
+    return moved
+
+
+@inline
+def reach_of_point(found, body, x):
+    """[m] how far the errors can move a point of a body (body frame): the recursion from tip to base."""
+    return reach_of_ball(found.rows[body], found.n_rows[body], Ball(x, 0.0))
+
+
+@inline
+def along_at_rest(found, body, u, x):
+    """[m] how far errors alone move a point of a body along a unit direction; clocks are among them."""
+    moved = found.sums[body, OFFSETS] + found.sums[body, REST_AT_REST]
+    rows = found.rows[body]
+    for k in range(found.n_rows[body]):
+        r = rows[k]
+        kind = r[KIND]
+        o, a = Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5])
+        if kind == TURN:
+            moved += r[FIRST] * abs(dot(cross(u, a), sub(x, o)))
+        elif kind == SLIDE:
+            moved += r[FIRST] * abs(dot(u, a))
+        elif kind == FRAME:
+            c = cross(u, sub(x, o))
+            moved += r[FIRST] * math.sqrt(dot(c, c))
+        else:
+            moved += r[FIRST] * abs(dot(u, add(o, cross(a, x))))
+    return moved

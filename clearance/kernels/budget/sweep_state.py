@@ -1,0 +1,199 @@
+"""What is carried from one moment of a sweep to the next, and what is asked of one pair there.
+
+Not for: which moments and intervals are asked (`sweep`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.budget.errors import REACH, new_body_rows
+from clearance.kernels.budget.left import LeftScratch, least_left
+from clearance.kernels.budget.levers import (
+    Levers,
+    moved_from_step,
+    moved_in_part,
+    new_levers,
+)
+from clearance.kernels.budget.middle import Middle, new_middle_of
+from clearance.kernels.budget.pieces import new_pieces
+from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
+from clearance.kernels.budget.view import new_along_rows
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.body_boxes import (
+    BodyBoxes,
+    bound_of_bodies,
+    new_body_boxes,
+    place_box,
+)
+from clearance.kernels.motion.certify import DEPTH
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK
+from clearance.kernels.motion.joint_motion_bound import orientation_rounding
+from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.scratch import new_scratch
+
+
+class SweepState(NamedTuple):
+    """What is carried from moment to moment, and scratch.
+
+    Attributes:
+        middle: where all links are. boxes: of the bodies there.
+        faces: (p, 2) that decided each pair, or -1.
+        levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
+        filled, placed: (bodies,) the look at which the rows and the box of each were made.
+        moved: (bodies,) [m] how far each can have moved in all. lower_bounds: (p,) [m] what was proven of each
+            pair, plus what its bodies had moved by then.
+        waiting: (DEPTH, 2) parts of an interval.
+    """
+
+    middle: Middle
+    boxes: BodyBoxes
+    faces: np.ndarray
+    levers: Levers
+    late: bool
+    filled: np.ndarray
+    placed: np.ndarray
+    moved: np.ndarray
+    lower_bounds: np.ndarray
+    waiting: np.ndarray
+    work: LeftScratch
+
+
+AHEAD, LITTLE = 3.0, 0.02
+"""So many motions beyond the best a pair is still looked into, so that its bound lasts, if that is little [m]."""
+
+
+@shared
+def new_state(world, errors):
+    n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
+    work = LeftScratch(
+        new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
+        new_along_rows(errors.most_rows), new_pieces(), new_scratch(),
+    )  # fmt: skip
+    return SweepState(
+        new_middle_of(n_links), new_body_boxes(n_bodies), np.full((n_pairs, 2), -1),
+        new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
+        np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros(n_bodies), np.full(n_pairs, -np.inf),
+        np.empty((DEPTH, 2)), work,
+    )  # fmt: skip
+
+
+@inline(force=True)
+def _pose(world, body, state):
+    frame = world.frames[body]
+    return rigid(state.middle.state.poses[frame] if frame >= 0 else world.standing[body])
+
+
+@inline
+def fill_body(surface, world, errors, path, body, motion, look, state):
+    """Writes the rows of a body about the middle, if they are not of this look already."""
+    frame = world.frames[body]
+    if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
+        return
+    state.filled[body] = look
+    found, middle = state.work.found, state.middle.state
+    if frame < 0:
+        fill_rows_of_standing(surface, world, body, errors, found)
+        return
+    fill_rows(surface, world, body, errors, motion, middle.poses, found)
+    if len(path.balls.links) > 0:
+        box = box_of(surface, surface.roots[world.solids[body]])
+        rounding = orientation_rounding(box, world.links, frame, path.balls, middle)
+        for k in range(1, 4):  # both rests and the reach
+            found.sums[body, k] += rounding
+
+
+@inline(force=True)
+def _place_body(surface, world, body, look, state):
+    """Places the box of a body where it is now."""
+    if state.placed[body] == look or (world.frames[body] < 0 and state.placed[body] >= 0):
+        return
+    state.placed[body] = look
+    root = surface.roots[world.solids[body]]
+    place_box(surface, root, body, _pose(world, body, state), state.boxes)
+
+
+@inline(force=True)
+def thin_of(surface, world, pair, errors):
+    """[m] the surfaces and balls of both bodies of a pair."""
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
+    return radii.both + errors.surface[body_a] + errors.surface[body_b]
+
+
+@inline(force=True)
+def _reach(surface, world, errors, path, body, motion, look, state):
+    """[m] how far errors and motion can move any point of a body from the middle at most."""
+    if state.late:
+        fill_body(surface, world, errors, path, body, motion, look, state)
+        return state.work.found.sums[body, REACH]
+    moved = 0.0 if motion.half == 0.0 else moved_in_part(world, motion, body, state.levers)
+    return state.levers.reach[body] + moved
+
+
+@inline(force=True)
+def bound_by_boxes(surface, world, errors, path, pair, motion, look, enough, state):
+    """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    taken = thin_of(surface, world, pair, errors)
+    for body in (body_a, body_b):
+        _place_body(surface, world, body, look, state)
+        taken += _reach(surface, world, errors, path, body, motion, look, state)
+    apart = bound_of_bodies(state.boxes, body_a, body_b, enough + taken + LITTLE)
+    slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
+    return apart - CHAIN_SLACK * slacks - taken
+
+
+@inline
+def ask(lent, surface, world, errors, path, pair, motion, look, aim, state, tally):
+    """What errors leave of a pair about the middle."""
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    fill_body(surface, world, errors, path, body_a, motion, look, state)
+    fill_body(surface, world, errors, path, body_b, motion, look, state)
+    frames = frames_of(_pose(world, body_a, state), _pose(world, body_b, state))
+    bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
+    tally[1] += 1
+    left = least_left(bodies, body_a, body_b, state.faces[pair], aim, state.work, tally)
+    if left.face_a >= 0:
+        state.faces[pair, 0], state.faces[pair, 1] = left.face_a, left.face_b
+    return left
+
+
+@inline(force=True)
+def go_on(world, path, before, step, state):
+    """Adds what bodies move from one step to a later one; infinite where that is not known."""
+    for body in range(len(world.frames)):
+        if world.frames[body] < 0:
+            continue
+        if state.late or step < before:
+            state.moved[body] = math.inf
+        else:
+            for between in range(before, step):
+                state.moved[body] += moved_from_step(world, path, between, body, state.levers)
+
+
+@inline(force=True)
+def _moved(world, pair, state):
+    return state.moved[world.pairs[pair, 0]] + state.moved[world.pairs[pair, 1]]
+
+
+@inline(force=True)
+def carried_bound(world, pair, state):
+    """[m] what is left of the bound of a pair after what its bodies have moved."""
+    moved = _moved(world, pair, state)
+    return state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
+
+
+@inline(force=True)
+def note_bound(world, pair, lower_bound, state):
+    """Keeps the bound of a pair for later."""
+    state.lower_bounds[pair] = (lower_bound + _moved(world, pair, state)) - KEPT
+
+
+KEPT = 1e-12
+"""[m] Covers the rounding of a bound that is kept and taken up again."""

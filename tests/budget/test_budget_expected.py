@@ -1,0 +1,174 @@
+"""What is expected, against errors drawn at random and differences."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from clearance.budget.expected import deviations, expected_of_steps, witness_of
+from clearance.budget.sources import slopes, units_of
+from clearance.simulate.measure import measure
+from clearance.world.budget import Budget
+from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
+from tests.oracle.perturbed import Perturbed, Size, sizes
+
+COVERAGE = 3.0
+N_SAMPLES = 4000
+
+
+def nearest_points(case, section, step: int):
+    """(what was measured, the witness of a step's nearest pair)."""
+    found = measure(section.in_motion)
+    pair = section.pairs[int(found.pair[step])]
+    steps = np.array([step])
+    motions = section.phase.motions
+    return found, witness_of(
+        section.phase.case, case.tolerance, motions, pair, steps, found.points[steps]
+    )
+
+
+def drawn(size, normal: bool, rng: np.random.Generator) -> np.ndarray:
+    """One error as the estimate takes it: uniform up to its size, in a ball, or normal."""
+    if normal:
+        return rng.normal(size=size.n) * size.most / 3.0
+    if size.n == 1:
+        return rng.uniform(-size.most, size.most, 1)
+    vector = rng.normal(size=3)
+    return vector / np.linalg.norm(vector) * size.most * rng.random() ** (1.0 / 3.0)
+
+
+@pytest.mark.parametrize(
+    ("seed", "normal"), [(0, False), (2, False), (6, True), (8, False), (10, True)]
+)
+def test_deviation_is_that_of_drawn_errors(seed, normal):
+    """Of points that the bodies carry: the spread of how far they are apart at errors drawn at random."""
+    case = random_case(seed)
+    case = replace(case, tolerance=replace(case.tolerance, is_normal=normal))
+    (section,) = sections_of(case)
+    found, witness = nearest_points(case, section, 2)
+    machine = Perturbed(case, [])
+    names = [_name(case, body) for body in witness.pair]
+    time = section.phase.times[2]
+    poses = machine.poses(time, {})
+    carried = [
+        poses[name][:3, :3].T @ (point - poses[name][:3, 3])
+        for name, point in zip(names, witness.points[0], strict=True)
+    ]
+    rng, wanted = np.random.default_rng(seed), sizes(case)
+    lengths = np.empty(N_SAMPLES)
+    for i in range(N_SAMPLES):
+        errors = {key: drawn(size, normal, rng) for key, size in wanted.items()}
+        errors |= joint_errors(case, normal, rng)
+        moved = machine.poses(time, errors)
+        p, q = (moved[n][:3, :3] @ x + moved[n][:3, 3] for n, x in zip(names, carried, strict=True))
+        lengths[i] = np.linalg.norm(q - p)
+        for name in names:
+            lengths[i] -= _surface(machine.surface(name), normal, rng)
+    deviation = float(deviations(case, case.tolerance, witness)[0])
+    assert lengths.std() == pytest.approx(deviation, rel=0.05)
+    assert found.clearance[2] - COVERAGE * deviation == pytest.approx(
+        lengths.mean() - COVERAGE * lengths.std(), abs=0.1 * COVERAGE * deviation
+    )
+
+
+def joint_errors(case, normal: bool, rng: np.random.Generator) -> dict:
+    """What joints are off: repeatability and tracking, drawn each by itself."""
+    return {
+        (("joint", robot, joint), "q"): sum(
+            drawn(Size(most, 1), normal, rng) for most in (own.position, own.tracking)
+        )
+        for robot, tolerance in case.tolerance.robots.items()
+        for joint, own in tolerance.joints.items()
+    }
+
+
+def _surface(most: float, normal: bool, rng: np.random.Generator) -> float:
+    return float(rng.normal() * most / 3.0 if normal else rng.uniform(-most, most))
+
+
+def _name(case, body) -> str:
+    own = body.own_name_in(case)
+    return own if body.is_obstacle else f"{case.robots[body.i_robot].robot.name}/{own}"
+
+
+def test_slopes_are_differences():
+    """Each slope against the distance of the points with that error alone."""
+    case = random_case(0)
+    (section,) = sections_of(case)
+    _, witness = nearest_points(case, section, 1)
+    machine = Perturbed(case, [])
+    names = [_name(case, body) for body in witness.pair]
+    time, step = section.phase.times[1], 1e-6
+    poses = machine.poses(time, {})
+    carried = [
+        poses[n][:3, :3].T @ (x - poses[n][:3, 3])
+        for n, x in zip(names, witness.points[0], strict=True)
+    ]
+
+    def length(errors) -> float:
+        moved = machine.poses(time, errors)
+        p, q = (moved[n][:3, :3] @ x + moved[n][:3, 3] for n, x in zip(names, carried, strict=True))
+        return float(np.linalg.norm(q - p))
+
+    found = slopes(case, case.tolerance, witness)
+    assert found
+    for slope in found:
+        kind, name = (
+            slope.key.kind,
+            {"position": "joint", "tracking": "joint"}.get(slope.key.kind, slope.key.kind),
+        )
+        if kind == "surface":
+            continue
+        unit = "q" if name == "joint" else ("xyz", "angle")[slope.place]
+        error = ((name, slope.key.owner, slope.key.part), unit)
+        n = slope.along.shape[1]
+        differences = [
+            (length({error: step * axis}) - length({error: -step * axis})) / (2 * step)
+            for axis in np.eye(n)
+        ]
+        assert np.linalg.norm(differences) == pytest.approx(
+            np.linalg.norm(slope.along[0]), abs=1e-6
+        )
+
+
+def test_units_are_told_by_kind_of_joint():
+    case = random_case(0)
+    (section,) = sections_of(case)
+    _, witness = nearest_points(case, section, 1)
+    units = {
+        (s.key.kind, s.key.part): units_of(case, s.key)
+        for s in slopes(case, case.tolerance, witness)
+    }
+    assert all(
+        units[key] == ("m",)
+        for key in units
+        if key[0] == "position" and key[1] in ("wrist", "left")
+    )
+    assert all(
+        value == ("m", "rad")
+        for key, value in units.items()
+        if key[0] in ("frame", "base", "place")
+    )
+
+
+def test_nothing_is_expected_of_contact():
+    case = random_case(3)
+    for section, found, _, _, _ in proven_sections(case):
+        expected = expected_of_steps(
+            section.phase.case, case.tolerance, section.phase.motions, section.pairs, found
+        )
+        assert (np.isnan(expected) == (found.clearance <= 0.0)).all()
+
+
+def test_without_errors_the_clearance_is_expected():
+    case = random_case(0)
+    (section,) = sections_of(case)
+    found = measure(section.in_motion)
+    expected = expected_of_steps(case, Budget(), section.phase.motions, section.pairs, found)
+    assert np.array_equal(expected, found.clearance)
+    loose = random_budget(case, np.random.default_rng(5))
+    assert (
+        expected_of_steps(case, loose, section.phase.motions, section.pairs, found) < expected
+    ).all()
