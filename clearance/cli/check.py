@@ -141,10 +141,7 @@ def check(
     or suspect input, 3 the cross-check disagrees; the greatest that holds. A baseline does not
     change it: `clearance compare` has an exit code of its own.
     """
-    if samples_only and (certify or certify_mm is not None):
-        raise click.UsageError(
-            "--samples-only proves nothing; leave out --certify and --certify-mm"
-        )
+    _require_proof_or_samples(samples_only, certify or certify_mm is not None)
     require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
@@ -155,29 +152,29 @@ def check(
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    case = with_tolerances(case, tolerance)
-    if recorded is not None:
-        case = with_recording(case, recorded, recorded_offset, recorded_robot)
+    case = with_recording(
+        with_tolerances(case, tolerance), recorded, recorded_offset, recorded_robot
+    )
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
+    gap = CERTIFY_GAP if certify_mm is None else certify_mm
     question = Question(
-        case,
-        need=need,
-        method=method,
-        motion=motion,
-        certify=not samples_only,
-        certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
-        cross_check=cross_check,
-        contact=contact,
-        paper_tolerance=paper_tolerance,
-        today=today,
+        case, need=need, method=method, motion=motion, certify=not samples_only, certify_gap=gap,
+        cross_check=cross_check, contact=contact, paper_tolerance=paper_tolerance, today=today,
         body_gaps=body_gaps,
-    )
+    )  # fmt: skip
     require_receipt(receipt, out, question)
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
     write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _require_proof_or_samples(samples_only: bool, certify: bool) -> None:
+    if samples_only and certify:
+        raise click.UsageError(
+            "--samples-only proves nothing; leave out --certify and --certify-mm"
+        )
 
 
 class Terminal(NamedTuple):

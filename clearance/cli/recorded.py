@@ -60,12 +60,14 @@ def require_recorded(
             raise click.UsageError(f"--recorded-{option} says nothing without --motion recorded")
 
 
-def with_recording(case: Case, path: Path, offset: float | None, robot: str | None) -> Case:
-    """The case as it was driven.
+def with_recording(case: Case, path: Path | None, offset: float | None, robot: str | None) -> Case:
+    """The case as it was driven, where a recording is given.
 
     Raises:
         BadInput: with the file.
     """
+    if path is None:
+        return case
     from clearance.load.recorded_run import with_recorded
 
     return with_recorded(case, path, offset or 0.0, robot)

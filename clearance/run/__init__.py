@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, nearest_name
 from clearance.run.answers import answered
 from clearance.run.question import Question, limited
 from clearance.run.result import Run
@@ -21,50 +21,66 @@ from clearance.world.case import Case, Limits
 __all__ = ["Question", "Resources", "Run", "answer", "check"]
 
 
+class Options(TypedDict, total=False):
+    """The options of `check`, as in `Question`; `recorded` and `recorded_offset` are of motion "recorded" alone.
+
+    Attributes:
+        recorded: a bag or a table of what the robot did. recorded_offset: [s] added to its times.
+    """
+
+    need: str
+    certify: bool
+    cross_check: bool
+    contact: str
+    motion: str
+    recorded: str | PathLike[str] | None
+    recorded_offset: float
+
+
 def check(
     case: Case | str | PathLike[str],
     *,
-    need: str = "steps",
     limits: Limits | None = None,
     tolerance: Budget | Mapping[str, Any] | str | PathLike[str] | None = None,
-    certify: bool = True,
-    cross_check: bool = False,
-    contact: str = "events",
-    motion: str = "kinematic",
-    recorded: str | PathLike[str] | None = None,
-    recorded_offset: float = 0.0,
     resources: Resources = DEFAULT_RESOURCES,
+    **options: Unpack[Options],
 ) -> Run:
     """The least clearance of every step of a case, and the proof for the motion between.
 
     Args:
         case: or the path of a case file.
-        need, certify, cross_check, contact, motion: as in `Question`, which has further options for `answer`.
         limits: instead of the case's.
         tolerance: instead of the case's: a budget, the block of a case file as plain data, or a file with it.
-        recorded: with motion "recorded", a bag or a table of what the robot did. recorded_offset: [s] added to its
-            times.
         resources: threads, progress, and where rows are kept; the answer does not depend on them.
+        options: need, certify, cross_check, contact, motion as in `Question`, which has further ones for `answer`;
+            with motion "recorded", recorded and recorded_offset.
 
     Raises:
         BadInput: an unknown motion or need, or some that do not go together; tolerances of what is not there.
-        NothingToMeasure: no pair is left.
+        NothingToMeasure: no pair is left. TypeError: an option that is none.
     """
+    _require_options(options)
     asked = limited(case if isinstance(case, Case) else _loaded(case), limits)
     if tolerance is not None:
         from clearance.load.tolerance_file import with_tolerance
 
         asked = with_tolerance(asked, tolerance)
-    asked = _with_recorded(asked, motion, recorded, recorded_offset)
-    question = Question(
-        asked,
-        need=need,
-        certify=certify,
-        cross_check=cross_check,
-        contact=contact,
-        motion=motion,
-    )
-    return answer(question, resources)
+    given: dict[str, Any] = {**options}
+    path, offset = given.pop("recorded", None), given.pop("recorded_offset", 0.0)
+    asked = _with_recorded(asked, given.get("motion", "kinematic"), path, offset)
+    return answer(Question(asked, **given), resources)
+
+
+def _require_options(options: Options) -> None:
+    """Nothing, if all of them are.
+
+    Raises:
+        TypeError: with the nearest name.
+    """
+    for name in options:
+        if name not in Options.__annotations__:
+            near = nearest_name(name, Options.__annotations__)
+            raise TypeError(f"check() has no option {name!r}; {near}")
 
 
 def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
