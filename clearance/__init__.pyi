@@ -28,6 +28,8 @@ from .query.intersection import Intersection, intersect
 from .query.pair_query import Query
 from .query.penetration import penetration
 from .query.result import Nearest
+from .receipt.verification import Verification, verify
+from .receipt.writing import write_receipt
 from .run import Question, Resources, Run, answer, check
 from .simulate.checker import Checker
 from .simulate.record import CrossCheck, Record
@@ -83,6 +85,7 @@ __all__ = [
     "Timing",
     "Trajectory",
     "Undecided",
+    "Verification",
     "Waiver",
     "Window",
     "Workspace",
@@ -117,7 +120,9 @@ __all__ = [
     "shared_workspace",
     "sphere",
     "swept_profile",
+    "verify",
     "within",
+    "write_receipt",
 ]
 
 __version__: str

@@ -69,9 +69,12 @@ def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
         files: path as shown and sha256 of each file that was read; where a search led is no part of the key, since
             the files that it led to are.
     """
-    given, path = item.trajectory, PurePath(item.file)
-    told: tuple[object, ...] = (path.parent.name, path.name)  # a case without a name takes theirs
-    if given is not None:
+    given = item.trajectory
+    told: tuple[object, ...]
+    if given is None:
+        path = PurePath(item.file)
+        told = (path.parent.name, path.name)  # a case without a name takes theirs
+    else:
         told = (item.name, given.reading, given.robot)
     read = sorted({one for one in files if not one[0].startswith(LOOKUP)})
     asked = (program(), told, item.options, read)

@@ -22,6 +22,7 @@ from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
 from clearance.findings.finding import NOT_PROVEN
+from clearance.report.head import head_of
 from clearance.report.wording import count
 
 _HERE = Path(__file__).parent
@@ -41,10 +42,11 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     Args:
         place: the store's folder; a case whose own page lies in it is linked.
     """
-    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
     return Template(_own("page.html")).substitute(
-        title=escape(f"{place.name}: {_counted(answer)}"),
-        style=style + _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
+        head=head_of(
+            f"{place.name}: {_counted(answer)}",
+            _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
+        ),
         name=escape(place.name),
         verdict=escape(_counted(answer)),
         worst=answer.status.split()[0],

@@ -7,6 +7,7 @@ several places is still found where it was. Not for: measuring the others (`meas
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -83,8 +84,10 @@ class _Look:
         given = item.trajectory
         if given is None:
             return ()
-        folder = str(Path(item.file).parent)
-        files = self._of_folder.setdefault(folder, InputFiles(Path(folder)))
+        folder = os.path.dirname(item.file)
+        files = self._of_folder.get(folder)
+        if files is None:
+            files = self._of_folder[folder] = InputFiles(Path(folder))
         return self._hashed((files.shown(path), str(path)) for path in _paths(given))
 
     def _as_before(self, inputs: str, today: str) -> Files | None:

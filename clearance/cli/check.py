@@ -17,6 +17,7 @@ from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
 from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
+from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
 @recorded_options
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@receipt_option
 @more_files_options
 @ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
@@ -120,6 +122,7 @@ def check(
     recorded_robot: str | None,
     as_json: bool,
     junit: Path | None,
+    receipt: str | None,
     png: Path | None,
     glb: Path | None,
     trajectory: Path | None,
@@ -171,7 +174,9 @@ def check(
         today=today,
         body_gaps=body_gaps,
     )
+    require_receipt(receipt, out, question)
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
+    write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 

@@ -24,6 +24,7 @@ COMMANDS: dict[str, Callable[[], click.Command]] = {
     "profile": lambda: import_module("clearance.cli.profile").profile,
     "schema": lambda: import_module("clearance.cli.schema").schema,
     "srdf": lambda: import_module("clearance.cli.srdf").srdf,
+    "verify": lambda: import_module("clearance.cli.verify").verify,
     "view": lambda: import_module("clearance.cli.view").view,
     "workspace": lambda: import_module("clearance.cli.workspace").workspace,
 }

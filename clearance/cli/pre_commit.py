@@ -6,10 +6,17 @@ What the hook of `.pre-commit-hooks.yaml` calls with the files of a commit. Not 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from clearance.cli import ExitCode
+
+if TYPE_CHECKING:
+    from clearance.run import Run
+
+MOST = 20
+"""Findings that are told of one case."""
 
 _FILES = click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
 
@@ -36,13 +43,23 @@ def pre_commit(files: tuple[Path, ...]) -> int:
 
 
 def _checked(path: Path) -> ExitCode:
-    from clearance.report.finding_text import finding_line
     from clearance.run import check
 
     run = check(path, need="limit")
     if not run.passed:
         click.echo(f"{path}: {run.verdict.text(str.upper)}")
-        told = [finding_line(finding) for finding in run.findings if finding.fails]
-        for line in told or run.verdict.reasons:
+        for line in _why(run):
             click.echo(f"  {line}")
     return ExitCode(run.verdict.exit_code)
+
+
+def _why(run: Run) -> list[str]:
+    """What is broken, the worst first, then what else fails the run: input in doubt, waivers that should go."""
+    from clearance.findings.doubts import doubts_of
+    from clearance.report.comparison_text import doubt_text
+    from clearance.report.finding_text import finding_line
+
+    broken = [finding_line(finding) for finding in run.findings if finding.fails]
+    more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
+    doubts = [doubt_text(doubt) for doubt in doubts_of(run.record) if doubt.fails]
+    return [*broken[:MOST], *more, *doubts]

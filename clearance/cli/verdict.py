@@ -7,7 +7,7 @@ terminal.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -18,12 +18,9 @@ from rich.text import Text
 from clearance.cli.progress import shown_progress
 from clearance.errors import shown
 from clearance.report.actors import carried_of, paddings_of
-from clearance.report.body_gaps import gap_lines
 from clearance.report.contact import HEADS, contact_of
 from clearance.report.intervals import Interval, extent, intervals
-from clearance.report.recordings import recording_lines
 from clearance.report.summary import certified_of, notes_of, tessellation_bound
-from clearance.report.tolerances import source_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
@@ -71,13 +68,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
     lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
     lines += _paddings(record)
-    lines += [_row("recorded", line) for line in recording_lines(record)]
-    if record.budget is not None:
-        lines.append(partial(_tolerances, record))
-    if record.body_gaps:
-        lines += [
-            _row("body gaps" if i == 0 else "", told) for i, told in enumerate(gap_lines(record))
-        ]
+    lines += _where_asked(record)
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
@@ -174,11 +165,33 @@ def _carried(record: Record) -> list[Text]:
     ]
 
 
+def _where_asked(record: Record) -> list[Text | Callable[[], list[Text]]]:
+    """What is told of a recorded run, of tolerances, and of gaps for people, where a case has them."""
+    lines: list[Text | Callable[[], list[Text]]] = []
+    if record.asked is not None:
+        from clearance.report.recordings import recording_lines
+
+        lines += _rows("recorded", recording_lines(record))
+    if record.budget is not None:
+        lines.append(partial(_tolerances, record))
+    if record.body_gaps:
+        from clearance.report.body_gaps import gap_lines
+
+        lines += _rows("body gaps", gap_lines(record))
+    return lines
+
+
 def _tolerances(record: Record) -> list[Text]:
     """Where the tolerances leave least, what takes most of it, and where their numbers come from."""
+    from clearance.report.tolerances import source_lines
+
     assert record.case.tolerance is not None
-    told = [*source_lines(record), *record.case.tolerance.sources]
-    return [_row("tolerances" if i == 0 else "", line) for i, line in enumerate(told)]
+    return _rows("tolerances", [*source_lines(record), *record.case.tolerance.sources])
+
+
+def _rows(label: str, lines: Iterable[str]) -> list[Text]:
+    """Lines under one label."""
+    return [_row(label if i == 0 else "", line) for i, line in enumerate(lines)]
 
 
 def _certified(record: Record) -> list[Text]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -31,10 +32,13 @@ def form_of(arguments: Sequence[object]) -> tuple | None:
         return None
 
 
-def _form(value: object) -> object:
+def _form(value: Any) -> object:
     kind = type(value)
     if kind is np.ndarray:
-        return _array(value)
+        found = _array_of(value.dtype, value.ndim, value.flags.num)
+        if found is None:
+            raise _Unknown
+        return found
     if issubclass(kind, tuple):
         if kind is tuple:
             return ("", *map(_form, value))
@@ -45,13 +49,6 @@ def _form(value: object) -> object:
 @functools.cache
 def _name_of(kind: type) -> str:
     return f"{kind.__module__}.{kind.__qualname__}"
-
-
-def _array(value: np.ndarray) -> tuple:
-    found = _array_of(value.dtype, value.ndim, value.flags.num)
-    if found is None:
-        raise _Unknown
-    return found
 
 
 @functools.lru_cache(maxsize=4096)

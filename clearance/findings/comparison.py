@@ -18,7 +18,7 @@ from clearance.findings.doubts_compared import (
     known_less,
     slack_text,
 )
-from clearance.findings.finding import ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
+from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measured_as import MeasuredAs
 from clearance.simulate.status import Status
@@ -185,7 +185,7 @@ class _Comparing:
         if old.get(finding.rule) != new.get(finding.rule):
             return f"rule {finding.rule!r} is another"
         tolerances = {self.before.measured.tolerances, self.now.measured.tolerances}
-        if finding.kind == TOLERANCES and len(tolerances) > 1:
+        if finding.kind in OF_TOLERANCES and len(tolerances) > 1:
             return "its tolerances are others"
         return ""
 
@@ -209,7 +209,7 @@ class _Comparing:
             return f"{other.not_listed} findings are not listed"
         if self.before.measured.rules != self.now.measured.rules:
             return "other rules may have judged it"
-        has_pair = finding.body_b and finding.kind not in (UNPROVEN, TOLERANCES)
+        has_pair = finding.body_b and finding.kind not in (UNPROVEN, *OF_TOLERANCES)
         if has_pair and not other.measured.has_pair(finding.body_a, finding.body_b):
             return (
                 "the pair was not measured" if other is self.before else "the pair is not measured"
@@ -219,7 +219,7 @@ class _Comparing:
 
 def _level(finding: Finding) -> float | None:
     """[m] What says how it stands: the clearance, or what is proven where nothing nearer is seen."""
-    return finding.proven if finding.kind in (UNPROVEN, TOLERANCES) else finding.clearance
+    return finding.proven if finding.kind in (UNPROVEN, *OF_TOLERANCES) else finding.clearance
 
 
 def _no_number(before: Finding, now: Finding) -> str:

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from clearance.simulate.record import Record
-from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
+
+if TYPE_CHECKING:
+    from clearance.simulate.record import Record
+    from clearance.world.case import Case
 
 SUSPECT, DISPUTED, STALE_WAIVER = "suspect", "disputed", "stale waiver"
 NOT_CHECKED, WARNING, ACCEPTED, NOTE = "not checked", "warning", "accepted", "note"

@@ -20,13 +20,18 @@ UNPROVEN = "unproven"
 TOLERANCES = "tolerances"
 """A limit of a rule that is kept as measured, and that is not proven with the tolerances of the case."""
 
+WAIVED_TOLERANCES = "tolerances of waived"
+"""The level of a waiver that is kept as measured, and that is not proven with the tolerances of the case."""
+
+OF_TOLERANCES = (TOLERANCES, WAIVED_TOLERANCES)
+
 PROFILE = "profile"
 """An outline that what the robot sweeps must keep to."""
 
 JOINT_LIMITS = "joint limits"
 """The joints of a robot and their limits, where the case fails by them."""
 
-KINDS = (CLEARANCE, UNPROVEN, TOLERANCES, PROFILE, JOINT_LIMITS)
+KINDS = (CLEARANCE, UNPROVEN, *OF_TOLERANCES, PROFILE, JOINT_LIMITS)
 
 NOT_PROVEN = "not proven"
 """The status of a limit that is kept as measured, and that is not proven with the tolerances."""
@@ -64,10 +69,10 @@ class Finding:
         body_a, body_b: names; of what no two bodies do they are empty, or the second is.
         occurrence: 0 for the first stretch along the motion in which the pair breaks the rule, then 1 and so on;
             a pair that keeps it has one finding, 0.
-        status: one of `ORDER`; "not proven" of kind `TOLERANCES` alone.
+        status: one of `ORDER`; "not proven" of `OF_TOLERANCES` alone.
         clearance: [m] the least, less padding; of a profile its gap; None where nothing was measured.
         proven: [m] a lower bound for the motion over the stretch, that of all pairs of the rule; None at the
-            samples only. Of kind `TOLERANCES` the least that is proven with all errors.
+            samples only. Of `OF_TOLERANCES` the least that is proven with all errors.
         fail, warn: [m] the limits.
         time: [s] of the least. time_b: [s] when the second body is there, where its clock is another.
         step: of that moment, or before it if it is `between` two.
@@ -117,7 +122,7 @@ class Finding:
     @property
     def standing(self) -> tuple[int, float, str]:
         """What findings are ordered by, the worst first: status, how far it is above the fail limit [m], id."""
-        level = self.proven if self.kind == TOLERANCES else self.clearance
+        level = self.proven if self.kind in OF_TOLERANCES else self.clearance
         margin = 0.0 if level is None else level - self.fail
         return -ORDER.index(self.status), margin, self.id
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 from weakref import WeakKeyDictionary
 
 from clearance.findings.finding import UNPROVEN, Finding, FindingName, WaivedBy
@@ -30,12 +31,14 @@ class WaiverUse:
         answers: what the rules come to of its pairs alone; empty where it has none, or is expired.
         findings: those of its pairs that are not clear, waived where they are broken and it covers them.
         fault: why it fails the run, in one line; empty where it does not.
+        is_of: its pairs; None where it has none.
     """
 
     waiver: Waiver
     answers: tuple[RuleAnswer, ...] = ()
     findings: tuple[Finding, ...] = ()
     fault: str = ""
+    is_of: PairTest | None = None
 
     @property
     def used(self) -> bool:
@@ -55,13 +58,14 @@ class Judgement:
     Attributes:
         findings: of all rules, the worst first. uses: of each waiver that is of this case.
         rest: what the rules come to without the pairs that are waived.
-        n_of_others: waivers that are of other cases.
+        n_of_others: waivers that are of other cases. is_rest: the pairs that are not waived; None where all are.
     """
 
     findings: tuple[Finding, ...]
     rest: tuple[RuleAnswer, ...]
     uses: tuple[WaiverUse, ...] = ()
     n_of_others: int = 0
+    is_rest: PairTest | None = None
 
     @property
     def judging(self) -> tuple[RuleAnswer, ...]:
@@ -127,10 +131,14 @@ class _Waiving:
         used = {i for i, use in enumerate(uses) if use.used}
         if not used:
             return Judgement(self.findings, self.record.rules, uses, n_of_others)
-        rest = self._of_pairs(lambda *pair: self._owner(*pair) not in used)
+
+        def is_rest(*pair: Any) -> bool:
+            return self._owner(*pair) not in used
+
+        rest = self._of_pairs(is_rest)
         findings = [*of_rules(self.record, rest), *(f for use in uses for f in use.findings)]
         findings.sort(key=lambda finding: finding.standing)
-        return Judgement(tuple(findings), rest, uses, n_of_others)
+        return Judgement(tuple(findings), rest, uses, n_of_others, is_rest)
 
     def _of_pairs(self, is_meant: PairTest) -> tuple[RuleAnswer, ...]:
         assert self.record.of_pairs is not None, "the record of a run can be asked again"
@@ -149,14 +157,18 @@ class _Waiving:
         waiver = self.waivers[i]
         if self._expired(i):
             return WaiverUse(waiver, fault=_stale(waiver, f"has expired on {waiver.until}"))
-        answers = self._of_pairs(lambda *pair: self._owner(*pair) == i) if broken else ()
+
+        def is_of(*pair: Any) -> bool:
+            return self._owner(*pair) == i
+
+        answers = self._of_pairs(is_of) if broken else ()
         findings = [f for rule in answers for f in self._covered(waiver, rule)]
         if not any(finding.broken for finding in findings):
             why = f"is not needed: {self._why_not_needed(i)}"
             return WaiverUse(waiver, fault=_stale(waiver, why))
         failing = [finding for finding in findings if finding.fails]
         fault = _fault(waiver, failing[0]) if failing else ""
-        return WaiverUse(waiver, answers, tuple(findings), fault)
+        return WaiverUse(waiver, answers, tuple(findings), fault, is_of)
 
     def _covered(self, waiver: Waiver, rule: RuleAnswer) -> list[Finding]:
         """What of a waiver's pairs is not clear; waived what breaks a rule and stays above the waiver's level."""

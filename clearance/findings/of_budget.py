@@ -1,50 +1,86 @@
 """What tolerances make of rules that are kept as measured: a limit that is not proven with all errors.
 
-A rule that is broken as measured has findings of its own, and none of these. Waivers are of what is measured: no
-finding of these is waived, and pairs that are waived count as all others. Not for: working out what the
-tolerances leave (`clearance.budget`).
+A rule that is broken as measured has findings of its own, and none of these. Pairs that are waived are held
+against their waiver's level, all others against their rule's. Not for: working out what tolerances leave
+(`clearance.budget`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
+from weakref import WeakKeyDictionary
 
-from clearance.findings.finding import NOT_PROVEN, TOLERANCES, Finding, FindingName
+from clearance.findings.finding import (
+    NOT_PROVEN,
+    TOLERANCES,
+    WAIVED_TOLERANCES,
+    Finding,
+    FindingName,
+)
+from clearance.findings.judgement import Judgement, WaiverUse
 from clearance.findings.of_rule import joints_of
 from clearance.findings.standing import code_of
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.record import Record
-from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Limits
 
 NOT_WORKED_OUT = "what the tolerances leave was not worked out"
 
-OF_WHAT_OCCURS = "its waiver is of what is measured, not of what errors can bring"
+_KNOWN: WeakKeyDictionary[Record, tuple[Finding, ...]] = WeakKeyDictionary()
 
 
-def of_budget(record: Record, judging: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
-    """A finding for each rule that is kept as measured, and is not proven to be with the tolerances.
+def of_budget(record: Record, judgement: Judgement | None) -> tuple[Finding, ...]:
+    """A finding for each rule that is kept as measured, and is not proven to be with the tolerances; with waivers,
+    one for each of them too whose level is not.
 
     Args:
-        judging: what decides of each rule, less what is waived.
+        judgement: of the record; None where it has no waivers.
     """
-    return tuple(_of_rules(record, judging))
-
-
-def _of_rules(record: Record, judging: Sequence[RuleAnswer]) -> Iterator[Finding]:
     if record.case.tolerance is None:
-        return
+        return ()
+    if record not in _KNOWN:
+        _KNOWN[record] = (*_of_rules(record, judgement), *_of_waivers(record, judgement))
+    return _KNOWN[record]
+
+
+def _of_rules(record: Record, judgement: Judgement | None) -> Iterator[Finding]:
+    judging = record.rules if judgement is None else judgement.judging
     broken = {one.name for one in judging if code_of(one) >= STATUSES.index(Status.VIOLATED)}
-    known = {one.rule: one for one in record.budget or ()}
-    for rule in record.rules:
+    known = {one.rule: one for one in _not_waived(record, judgement)}
+    rest = record.rules if judgement is None else judgement.rest
+    for rule in rest:
         if rule.name in broken:
             continue
         if rule.name not in known:
             yield replace(_named(record, rule.name, rule.limits), text=NOT_WORKED_OUT)
         elif not known[rule.name].keeps:
-            yield _not_kept(record, known[rule.name])
+            yield _not_kept(record, _named(record, rule.name, rule.limits), known[rule.name])
+
+
+def _not_waived(record: Record, judgement: Judgement | None) -> tuple[RuleBudget, ...]:
+    """What the tolerances leave of the pairs that are not waived."""
+    if judgement is None or judgement.is_rest is None or record.budget_of_pairs is None:
+        return record.budget or ()
+    return record.budget_of_pairs(judgement.is_rest)
+
+
+def _of_waivers(record: Record, judgement: Judgement | None) -> Iterator[Finding]:
+    for use in () if judgement is None else judgement.covering:
+        if record.budget_of_pairs is not None and use.is_of is not None:
+            for one in record.budget_of_pairs(use.is_of):
+                if not (one.least >= use.waiver.at_least and one.least > 0.0):
+                    yield _not_kept(record, _of_waiver(record, use, one), one)
+
+
+def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
+    """A finding of the pairs of a waiver, under the patterns that it is of."""
+    a, b = use.waiver.between
+    named = _named(record, one.rule, one.limits)
+    name = FindingName(record.case.name, WAIVED_TOLERANCES, one.rule, (a, b))
+    told = f"{use.waiver} is of at least {use.waiver.at_least * 1000:g} mm"
+    return replace(named, id=name.id, kind=WAIVED_TOLERANCES, body_a=a, body_b=b, text=told)
 
 
 def _named(record: Record, rule: str, limits: Limits) -> Finding:
@@ -66,16 +102,16 @@ def _named(record: Record, rule: str, limits: Limits) -> Finding:
     )
 
 
-def _not_kept(record: Record, budget: RuleBudget) -> Finding:
-    named = replace(_named(record, budget.rule, budget.limits), proven=budget.least)
+def _not_kept(record: Record, named: Finding, budget: RuleBudget) -> Finding:
+    """A finding with what is proven, and the moment that the errors bring nearest."""
+    named = replace(named, proven=budget.least)
     if not budget.worst:
         return named
     moment = budget.worst[0].moment
-    waived = bool(record.case.waivers) and moment.clearance < budget.limits.fail
     return replace(
         named,
-        body_a=moment.link,
-        body_b=moment.obstacle,
+        body_a=named.body_a or moment.link,
+        body_b=named.body_b or moment.obstacle,
         clearance=float(moment.clearance),
         time=float(moment.time),
         time_b=moment.time_b,
@@ -84,7 +120,6 @@ def _not_kept(record: Record, budget: RuleBudget) -> Finding:
         point_a=_point(moment.point_link),
         point_b=_point(moment.point_obstacle),
         joints=joints_of(record, moment),
-        text=OF_WHAT_OCCURS if waived else "",
     )
 
 

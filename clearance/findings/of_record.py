@@ -21,7 +21,7 @@ def findings_of(record: Record) -> tuple[Finding, ...]:
     What its waivers cover is `waived`, and is there all the same.
     """
     judgement = judgement_of(record)
-    found = [*judgement.findings, *of_budget(record, judgement.judging)]
+    found = [*judgement.findings, *of_budget(record, judgement)]
     found += [_of_profile(record, answer) for answer in record.profiles]
     found += _of_joints(record)
     return tuple(sorted(found, key=lambda finding: finding.standing))

@@ -6,6 +6,7 @@ Not for: poses of a robot's links (`world.kinematics`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -91,6 +92,14 @@ def validated_pose(pose: np.ndarray) -> np.ndarray:
         raise BadShape(f"the pose is {pose!r:.60}", valid="a (4, 4) array of numbers") from None
     if matrix.shape != (4, 4):
         raise BadShape(f"the pose has shape {matrix.shape}", valid="(4, 4) is needed")
+    _require_rigid(matrix.tobytes())
+    return matrix
+
+
+@lru_cache(maxsize=256)  # a robot's base is asked for each of its motions
+def _require_rigid(content: bytes) -> None:
+    """Nothing, if the numbers of a (4, 4) array are a rigid motion."""
+    matrix = np.frombuffer(content).reshape(4, 4)
     if not np.isfinite(matrix).all():
         raise NotFinite("the pose holds NaN or infinity", valid="finite numbers")
     if np.abs(matrix[:3, 3]).max() > LARGEST:
@@ -107,7 +116,6 @@ def validated_pose(pose: np.ndarray) -> np.ndarray:
         )
     if np.linalg.det(rotation) < 0.0:
         raise BadPose("the pose's rotation is a reflection", valid="determinant +1 is needed")
-    return matrix
 
 
 def _pose(rotation: np.ndarray, xyz: Sequence[float]) -> np.ndarray:

@@ -197,10 +197,10 @@ def _run_through(case: Case) -> Timeline:
     require_clocks(case)
     timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
     selections = [selected_pairs(phase) for phase in timeline.phases]
-    pairs = dict.fromkeys(pair for one in selections for pair in one.pairs)
-    if not pairs:
+    if not any(one.pairs for one in selections):
         raise nothing_to_measure()
-    require_rules_used(case, pairs, [out for one in selections for out in one.unmeasured])
+    pairs = (pair for one in selections for pair in one.pairs)
+    require_rules_used(case, pairs, (out for one in selections for out in one.unmeasured))
     return timeline
 
 

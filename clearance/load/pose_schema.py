@@ -145,13 +145,5 @@ class Windowed(StrictModel):
         Raises:
             BadTime: it ends before it begins.
         """
-        return window_of(self.from_, self.until)
-
-
-def window_of(start: float | None, end: float | None) -> Window:
-    """The stretch between two times [s], either of which may be left open.
-
-    Raises:
-        BadTime: it ends before it begins.
-    """
-    return Window(-math.inf if start is None else start, math.inf if end is None else end)
+        start = -math.inf if self.from_ is None else self.from_
+        return Window(start, math.inf if self.until is None else self.until)

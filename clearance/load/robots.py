@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load import schema
@@ -146,15 +147,17 @@ def in_motion(
     """
     asked, trajectory = entry.trajectory, None
     notes: tuple[str, ...] = ()
+    moves: dict[str, Any] = {}
     if asked is not None:
         field = entry.trajectory_field
         trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
         path = str(resolved(asked.file, folder))
-        placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
+        moves = {"trajectory": trajectory, "timing": asked.timing, "trajectory_path": path}
     moved = trajectory.joint_names if trajectory else ()
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
-    return replace(placed, fixed_positions=resting.positions), (*notes, *resting.notes, *on_limits)
+    moves["fixed_positions"] = resting.positions
+    return replace(placed, **moves), (*notes, *resting.notes, *on_limits)
 
 
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:

@@ -17,11 +17,10 @@ from clearance.errors import BadInput, MissingKey, nearest_name
 from clearance.load.joints_schema import Joints
 from clearance.load.limits_schema import Allowed, Limits
 from clearance.load.obstacle_schema import Scene
-from clearance.load.pose_schema import Base, TrajectoryFile, window_of
+from clearance.load.pose_schema import Base, TrajectoryFile, Windowed
 from clearance.load.strict_model import Level, Name, StrictModel
 from clearance.load.tolerance_schema import Tolerance
 from clearance.world.notice import KINDS
-from clearance.world.timing import Window
 
 
 def _without_stroke(name: str) -> str:
@@ -56,7 +55,7 @@ class Robot(StrictModel):
     padding: dict[str, Level] = {}
 
 
-class Carry(StrictModel):
+class Carry(Windowed):
     """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some."""
 
     FILLED = frozenset({"until"})
@@ -64,22 +63,7 @@ class Carry(StrictModel):
     part: Name
     by: Name
     from_: Annotated[float, Field(alias="from")]
-    until: float | None = None
     touch: list[Name] = []
-
-    @model_validator(mode="after")
-    def _in_order(self) -> Carry:
-        _ = self.window
-        return self
-
-    @property
-    def window(self) -> Window:
-        """When it is carried.
-
-        Raises:
-            BadTime: it ends before it begins.
-        """
-        return window_of(self.from_, self.until)
 
 
 CLOCKS = {"common": 0.0, "unsynchronised": math.inf}

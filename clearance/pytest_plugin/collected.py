@@ -127,7 +127,8 @@ class RuleItem(_Item):
         self.rule = rule
 
     def runtest(self) -> None:
-        """Fails with each finding that breaks the rule; is skipped where all that does is waived."""
+        """Fails with each finding that breaks the rule; is skipped where all that does is waived, and where the
+        run is in doubt."""
         from clearance.report.finding_text import finding_line, waived_text
 
         run = self.case_run.run()
@@ -137,6 +138,9 @@ class RuleItem(_Item):
         failing = [one for one in found if one.fails]
         if failing:
             raise self.failure(_told(one) for one in failing)
+        doubts = _in_doubt(run)
+        if doubts:  # kept, as far as such input says anything
+            pytest.skip(f"the test of the verdict fails: {'; '.join(doubts)}")
         if found:
             pytest.skip("; ".join(f"{waived_text(one)} ({finding_line(one)})" for one in found))
 
@@ -150,6 +154,13 @@ class VerdictItem(_Item):
         verdict = run.verdict
         if not verdict.passed:
             raise self.failure([f"{run.record.case.name}: {verdict.text()}", *verdict.reasons])
+
+
+def _in_doubt(run: Run) -> list[str]:
+    """Why nothing that passes in a run counts for much: suspect input, a peer that disagrees."""
+    verdict = run.verdict
+    told = [f"suspect {one.kind}" for one in verdict.suspects]
+    return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]
 
 
 def _told(finding: Finding) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from clearance.findings.finding import Finding
 from clearance.report.finding_text import finding_line
 from clearance.report.trajectory_row import row_of
-from clearance.report.verdict import Verdict
+from clearance.report.verdict import ACCEPTED, SAMPLES, Verdict
 from clearance.simulate.record import Record
 
 MOST = 10
@@ -23,21 +23,36 @@ MOST = 10
 def annotation_lines(
     record: Record, verdict: Verdict, findings: tuple[Finding, ...], root: Path
 ) -> Iterator[str]:
-    """At most `MOST` lines, the worst first: what no pair does, then findings that fail.
+    """At most `MOST` lines, the worst first: what no pair does, findings that fail, then what limits a verdict
+    that passes: warnings, waivers, and that only the samples were looked at.
 
     Args:
         root: the folder that paths are told from, that of the repository.
     """
-    lines = [*_of_verdict(verdict), *_of_findings(record, findings, root)]
+    title = {"title": f"clearance: {record.case.name}"}
+    lines = [
+        *(command("error", title, text) for text in _of_verdict(verdict)),
+        *_of_findings(record, findings, root),
+        *(command("warning", title, text) for text in _beside(verdict)),
+    ]
     yield from lines[:MOST]
 
 
-def _of_verdict(verdict: Verdict) -> Iterator[str]:
+def _of_verdict(verdict: Verdict) -> list[str]:
     told = [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + [*verdict.stale]
     if verdict.disputed_by is not None:
         told.append(f"{verdict.disputed_by} disagrees")
-    for text in told:
-        yield command("error", {"title": "clearance"}, text)
+    return told
+
+
+def _beside(verdict: Verdict) -> list[str]:
+    """What bears on a verdict and fails nothing."""
+    told = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
+    if verdict.tolerances == ACCEPTED:
+        told += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
+    if verdict.basis == SAMPLES:
+        told.append(f"{verdict.text()}: nothing is said about the motion between the samples")
+    return told
 
 
 def _of_findings(record: Record, findings: tuple[Finding, ...], root: Path) -> Iterator[str]:

@@ -68,7 +68,8 @@ def gap_lines(record: Record) -> Iterator[str]:
 
 
 def _parts(gap: dict[str, Any]) -> str:
-    return ", ".join(gap["may_catch"])
+    caught = gap["may_catch"]
+    return "any part" if len(caught) == len(WIDTHS) else ", ".join(caught)
 
 
 def body_gaps(summary: dict[str, Any]) -> Markup:

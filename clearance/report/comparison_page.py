@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from clearance.errors import BadInput
 from clearance.findings.comparison import Change, Compared, Comparison
+from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import Curve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
@@ -48,7 +49,15 @@ def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str])
     """The whole page."""
     text = comparison_text(comparison)
     content = _curves(comparison, curves, names) + _findings(comparison)
-    return plain_page(f"{comparison.now}: compared", _header(comparison, text), content)
+    title = f"{comparison.now}: compared"
+    return plain_page(title, _header(comparison, text), content, _not_proven(comparison))
+
+
+def _not_proven(comparison: Comparison) -> str:
+    """The colour of limits that are not proven with tolerances, where there are some."""
+    found = [one for row in comparison.rows for one in (row.before, row.now) if one is not None]
+    told = any(one.status == NOT_PROVEN for one in found)
+    return ".tag.not { background: var(--violated); }\n" if told else ""
 
 
 def _header(comparison: Comparison, text: str) -> Markup:

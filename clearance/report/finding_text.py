@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from clearance.findings.finding import JOINT_LIMITS, PROFILE, TOLERANCES, UNPROVEN, Finding
+from clearance.findings.finding import (
+    JOINT_LIMITS,
+    OF_TOLERANCES,
+    PROFILE,
+    UNPROVEN,
+    WAIVED_TOLERANCES,
+    Finding,
+)
 from clearance.report.wording import (
     gap_text,
     limit_mm,
@@ -30,7 +37,7 @@ def finding_line(finding: Finding) -> str:
         return f"profile {finding.rule!r} {kept}{gap}, limit {limit_mm(finding.fail)} mm ({finding.text})"
     if finding.kind == UNPROVEN:
         return _unproven(finding)
-    if finding.kind == TOLERANCES:
+    if finding.kind in OF_TOLERANCES:
         return _with_tolerances(finding)
     if finding.clearance is None:
         return (
@@ -66,6 +73,8 @@ def _unproven(finding: Finding) -> str:
 
 def _with_tolerances(finding: Finding) -> str:
     limit = f"the fail limit of {limit_mm(finding.fail)} mm{of_rule(finding.rule)}"
+    if finding.kind == WAIVED_TOLERANCES:
+        limit = "the level of its waiver"
     told = f"not proven to keep {limit} with the tolerances"
     if finding.proven is None:
         return f"{told}: {finding.text}"

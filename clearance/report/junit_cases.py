@@ -8,7 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from clearance.findings.finding import CLEARANCE, TOLERANCES, UNPROVEN, Finding
+from clearance.findings.finding import (
+    CLEARANCE,
+    OF_TOLERANCES,
+    UNPROVEN,
+    WAIVED_TOLERANCES,
+    Finding,
+)
 from clearance.findings.judgement import Judgement, judgement_of
 from clearance.findings.of_budget import of_budget
 from clearance.findings.standing import code_of
@@ -129,7 +135,7 @@ def _of_finding(finding: Finding) -> TestResult:
     group, text = finding.body_a, f"{finding_line(finding)} (finding {finding.id})"
     if finding.kind == UNPROVEN:
         group, name = "unproven", f"{name or 'the motion between the samples'}"
-    if finding.kind == TOLERANCES:
+    if finding.kind in OF_TOLERANCES:
         return _of_tolerances(finding, text)
     if finding.waived is not None:
         return TestResult(group, name, f"{waived_text(finding)}; {text}", skipped=True)
@@ -140,7 +146,7 @@ def _of_finding(finding: Finding) -> TestResult:
 
 def _of_budget(record: Record, judgement: Judgement) -> Iterator[TestResult]:
     """One case for each rule that is kept without tolerances: whether it is proven to be with them."""
-    found = of_budget(record, judgement.judging)
+    found = of_budget(record, judgement)
     yield from map(_of_finding, found)
     broken = {answer.name for answer in judgement.judging if _is_violated(answer)}
     told = broken | {finding.rule for finding in found}
@@ -151,6 +157,8 @@ def _of_budget(record: Record, judgement: Judgement) -> Iterator[TestResult]:
 
 def _of_tolerances(finding: Finding, text: str) -> TestResult:
     group, name = "tolerances", name_shown(finding.rule)
+    if finding.kind == WAIVED_TOLERANCES:
+        name = f"{bodies_text(finding)} [{name}]"
     if finding.accepted:
         return TestResult(group, name, f"{waived_text(finding)}; {text}", skipped=True)
     return TestResult(group, name, text, "NotProven")

@@ -59,7 +59,7 @@ def markdown(
     if len(shown) > MOST_ROWS:
         lines += ["", f"{count(len(shown) - MOST_ROWS, 'more finding')}."]
     if not shown:
-        lines += [f"- {plain(finding_line(finding))}" for finding in findings[:MOST_ROWS]]
+        lines += [f"- kept: {plain(finding_line(finding))}" for finding in findings[:MOST_ROWS]]
     return "\n".join([*lines, ""]) + "\n"
 
 
@@ -91,7 +91,7 @@ def _table(findings: Sequence[Finding], comparison: Comparison | None) -> list[s
     rows = [heads, ["---"] * len(heads)]
     for one in findings:
         cells = [
-            one.status,
+            f"{one.status}, waived" if one.waived else one.status,
             name_shown(one.rule),
             bodies_text(one) or one.text or one.kind,
             _mm(one.clearance),

@@ -46,7 +46,9 @@ def _curves(record: Record) -> Iterator[Curve]:
         proven = least_proven(record.budget)
         proven = proven if between is None else np.minimum(proven, between)
         yield _thinned("proven with tolerances", times, proven)
-        expected = least_expected(record.budget)
+        expected = np.maximum(
+            least_expected(record.budget), proven
+        )  # as `tolerances.least_expected`
         yield _thinned("expected, an estimate", times, expected, "dot", filled=True)
 
 

@@ -39,9 +39,10 @@ OWN = (
     FILE_NAME,
     findings_file.FILE_NAME,
     "report.html",
+    "receipt.bin",
     LAST,
 )
-"""All files that a report can have."""
+"""All files that a report can have; a receipt, which is of one report, goes with it."""
 
 
 def write(

@@ -18,10 +18,11 @@ from string import Template
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
+from clearance.report.head import head_of
 from clearance.report.markup import element
 from clearance.report.more_curves import Curve
 from clearance.report.pair_curves import PairCurves
@@ -59,8 +60,7 @@ def page_of(
     """
     template = Template(_own("page.html"))
     return template.substitute(
-        title=escape(f"{summary['name']}: {badge_text(summary)}"),
-        style=_style(summary),
+        head=head_of(f"{summary['name']}: {badge_text(summary)}", _style(summary)),
         header=header(summary),
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}, findings),
@@ -172,8 +172,8 @@ def _page_script(curves: Sequence[Curve]) -> str:
 
 
 def _style(summary: dict[str, Any]) -> str:
-    """The page's look; with that of tolerances, where there are some."""
-    return _own("page.css") + (_own("tolerances.css") if "tolerances" in summary else "")
+    """What tolerances look like, where there are some."""
+    return _own("tolerances.css") if "tolerances" in summary else ""
 
 
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:

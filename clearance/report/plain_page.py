@@ -8,20 +8,22 @@ from __future__ import annotations
 from pathlib import Path
 from string import Template
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from clearance import __version__
+from clearance.report.head import head_of
 from clearance.report.markup import element
 
 _HERE = Path(__file__).parent
 
 
-def plain_page(title: str, header: Markup, content: Markup) -> str:
-    """The whole page."""
-    template = Template((_HERE / "comparison.html").read_text(encoding="utf-8"))
-    return template.substitute(
-        title=escape(title),
-        style=(_HERE / "page.css").read_text(encoding="utf-8"),
+def plain_page(title: str, header: Markup, content: Markup, own_style: str = "") -> str:
+    """The whole page; `own_style` is of this one alone."""
+    page, style = (
+        (_HERE / name).read_text(encoding="utf-8") for name in ("plain_page.html", "plain_page.css")
+    )
+    return Template(page).substitute(
+        head=head_of(title, style + own_style),
         header=header,
         content=content,
         footer=element("p", f"clearance {__version__}"),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from clearance.simulate.budget_columns import with_budget_columns
+from clearance.simulate.budget_columns import with_proven_between
 from clearance.simulate.contact_columns import with_contact_columns
 from clearance.simulate.contact_sequence import StepContact
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
@@ -85,7 +85,7 @@ def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.
     for block in blocks(record.steps.num_rows):
         rows = record.steps.slice(block.start, block.stop - block.start).combine_chunks()
         rows = with_contact_columns(rows, record.contacts, block.start)
-        yield with_budget_columns(rows, record.budget, block.start)
+        yield with_proven_between(rows, record.budget, block.start)
         kept.let_go()
 
 

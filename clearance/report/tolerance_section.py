@@ -9,10 +9,13 @@ from markupsafe import Markup
 from clearance.findings.of_budget import NOT_WORKED_OUT
 from clearance.report.markup import element, moment_link, section, table
 from clearance.report.rules import name_shown
-from clearance.report.wording import limit_mm, mm, seconds
+from clearance.report.wording import depth_mm, limit_mm, mm, seconds
 
 HUES = 6
 """Colours of a bar; further sources begin again."""
+
+NARROW = 0.05
+"""Share of a bar that has no room for words."""
 
 METHOD = (
     "Proven: every error takes its worst value, in its worst direction, at once with all others; nothing is "
@@ -57,7 +60,7 @@ def _bar(moment: dict[str, Any], fail: float) -> Markup:
     state = "kept" if moment["proven"] >= fail and left > 0.0 else "open"
     pieces = [_piece(f"left {mm(left)} mm", left / whole, state)] if left > 0.0 else []
     pieces += [
-        _piece(f"{name} {mm(value)} mm", value / whole, f"hue{i % HUES}")
+        _piece(f"{name} {depth_mm(value)} mm", value / whole, f"hue{i % HUES}")
         for i, (name, value) in enumerate(taken)
     ]
     mark = element(
@@ -75,7 +78,8 @@ def _bar(moment: dict[str, Any], fail: float) -> Markup:
 
 
 def _piece(text: str, share: float, kind: str) -> Markup:
-    return element("span", text, class_=kind, style=f"width:{100 * share:.2f}%", title=text)
+    shown = text if share > NARROW else ""
+    return element("span", shown, class_=kind, style=f"width:{100 * share:.2f}%", title=text)
 
 
 def _described(moment: dict[str, Any]) -> str:
@@ -99,9 +103,9 @@ def _row(i: int, source: dict[str, Any]) -> Markup:
         "tr",
         element("td", element("span", class_=f"swatch hue{i % HUES}"), name),
         element("td", source["given"]),
-        element("td", mm(source["proven"]), class_="number"),
-        element("td", mm(source["expected"]), class_="number"),
-        element("td", at_most, class_="text-violated" if "none" in at_most else None),
+        element("td", depth_mm(source["proven"]), class_="number"),
+        element("td", depth_mm(source["expected"]), class_="number"),
+        element("td", at_most or "not enough alone", class_=None if at_most else "text-violated"),
     )
 
 

@@ -7,7 +7,7 @@ Lengths are rounded down, angles too. Not for: working it out (`clearance.budget
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from decimal import ROUND_FLOOR, Decimal
 from typing import Any
@@ -45,7 +45,8 @@ def budget_lines(record: Record) -> tuple[str, ...]:
 def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else "the motion"
-    left = f"at least {mm(proven)} mm are left"
+    waived = " (waived pairs among them)" if record.case.waivers else ""
+    left = f"at least {mm(proven)} mm are left{waived}"
     if proven <= 0.0:
         left = "contact is not ruled out" + (
             f" (they could overlap by {depth_mm(-proven)} mm)" if proven < 0.0 else ""
@@ -58,9 +59,11 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
 
 
 def least_expected(one: RuleBudget) -> float | None:
-    """[m] The least expected clearance of all steps; None where it is not worked out."""
+    """[m] The least expected clearance of all steps, never told below what is proven: three deviations of a single
+    uniform error are more than its worst. None where it is not worked out.
+    """
     known = one.expected[np.isfinite(one.expected)]
-    return float(known.min()) if len(known) else None
+    return max(float(known.min()), one.least) if len(known) else None
 
 
 def worst_of(record: Record) -> tuple[RuleBudget, BudgetMoment] | None:
@@ -88,19 +91,16 @@ def value_text(value: float, unit: str) -> str:
 
 
 def given_text(source: ErrorSource) -> str:
-    """What the budget gives: `2 mm, 0.001 rad`."""
-    return ", ".join(value_text(value, unit) for value, unit in source.tolerances)
+    """What the budget gives: `2 mm, 0.001 rad`; of a frame that only one is given of, that."""
+    given = [pair for pair in source.tolerances if pair[0] > 0.0] or source.tolerances[:1]
+    return ", ".join(value_text(value, unit) for value, unit in given)
 
 
 def largest_text(source: ErrorSource) -> str:
-    """What it may be at most, all others as given: `2.31 mm, 0.0019 rad`; `none` where even 0 is too much."""
-    if not source.largest:
-        return ""
+    """What it may be at most, all others as given: `2.31 mm, 0.0019 rad`; empty where even 0 is not enough."""
     units = [unit for _, unit in source.tolerances]
-    return ", ".join(
-        "none" if value is None else _rounded_down(value, unit)
-        for value, unit in zip(source.largest, units, strict=True)
-    )
+    known = zip(source.largest, units, strict=False)
+    return ", ".join(_rounded_down(value, unit) for value, unit in known if value is not None)
 
 
 def _rounded_down(value: float, unit: str) -> str:
@@ -125,20 +125,27 @@ def source_lines(record: Record) -> Iterator[str]:
     where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
     yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
     taken = [
-        f"{source_text(record, source)} {mm(source.proven)} mm ({given_text(source)})"
+        f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
         for source in worst.sources[:MOST_SOURCES]
         if source.proven > 0.0
     ]
     if taken:
         yield f"most is taken by {', '.join(taken)}"
-    largest = [
-        f"{source_text(record, source)} {largest_text(source)}"
-        for source in worst.sources[:MOST_SOURCES]
-        if source.largest
-    ]
-    if largest:
-        limit = f"the fail limit of {limit_mm(one.limits.fail)} mm{of_rule(one.rule)}"
-        yield f"greatest that still keeps {limit}, others as given: {', '.join(largest)}"
+    yield from _largest_lines(record, one, worst.sources[:MOST_SOURCES])
+
+
+def _largest_lines(
+    record: Record, one: RuleBudget, sources: Sequence[ErrorSource]
+) -> Iterator[str]:
+    """What of some errors would keep the limit, and which alone are not enough."""
+    limit = f"the fail limit of {limit_mm(one.limits.fail)} mm{of_rule(one.rule)}"
+    told = [(source_text(record, source), largest_text(source)) for source in sources]
+    enough = [f"{name} {largest}" for name, largest in told if largest]
+    others = [name for name, largest in told if not largest]
+    if enough:
+        yield f"greatest that keeps {limit}, others as given: {', '.join(enough)}"
+    if others:
+        yield f"not enough to keep {limit}, even at 0, alone: {', '.join(others)}"
 
 
 def tolerances_of(record: Record) -> dict[str, Any] | None:
@@ -182,7 +189,7 @@ def _moment(record: Record, worst: BudgetMoment) -> dict[str, Any]:
         "point_b": list(moment.point_obstacle),
         "clearance": moment.clearance,
         "proven": worst.proven,
-        "expected": worst.expected if math.isfinite(worst.expected) else None,
+        "expected": max(worst.expected, worst.proven) if math.isfinite(worst.expected) else None,
         "sources": [asdict(source) | _shown(record, source) for source in worst.sources],
     }
 

@@ -13,9 +13,7 @@ import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
-from clearance.findings.of_budget import of_budget
 from clearance.report.finding_text import finding_line, waived_lines
-from clearance.report.tolerances import budget_lines
 from clearance.report.wording import (
     clock_text,
     count,
@@ -161,7 +159,7 @@ def verdict_of(record: Record) -> Verdict:
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
     unproven = _unproven(record, judging)
-    open_limits = of_budget(record, judging)
+    open_limits, with_tolerances = _of_tolerances(record, judgement)
     reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
     reasons += [finding_line(finding) for finding in open_limits]
     stale = () if judgement is None else judgement.faults
@@ -190,8 +188,20 @@ def verdict_of(record: Record) -> Verdict:
         n_waivers=0 if judgement is None else len(judgement.covering),
         stale=stale,
         tolerances=_tolerances(record.case, measured, open_limits),
-        with_tolerances=budget_lines(record),
+        with_tolerances=with_tolerances,
     )
+
+
+def _of_tolerances(
+    record: Record, judgement: Judgement | None
+) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
+    """The limits that are not proven with the case's tolerances, and what those leave, in words."""
+    if record.case.tolerance is None:
+        return (), ()
+    from clearance.findings.of_budget import of_budget
+    from clearance.report.tolerances import budget_lines
+
+    return of_budget(record, judgement), budget_lines(record)
 
 
 def _less_open(measured: str, open_limits: Sequence[Finding], stale: Sequence[str]) -> str:

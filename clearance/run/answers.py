@@ -13,6 +13,7 @@ from itertools import accumulate
 
 import numpy as np
 
+from clearance.run.as_asked import as_asked
 from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.budget_answer import RuleBudget
@@ -36,7 +37,7 @@ from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, worst_first
@@ -344,6 +345,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         cross_check=answers.cross_check,
         budget=answers.budget,
         of_pairs=partial(_of_pairs, plan),
+        budget_of_pairs=None if answers.budget is None else partial(_budget_of_pairs, plan),
         today=question.today,
         body_gaps=question.body_gaps,
         asked=_asked(question) if question.motion == "recorded" else None,
@@ -352,33 +354,37 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
 
 def _asked(question: Question) -> AskedCourse:
     """What the case comes to at the steps of what was asked, where its robots have done something else."""
-    robots = tuple(_as_asked(placed) for placed in question.case.robots)
-    case = replace(question.case, robots=robots, tolerance=None)
-    asked = Question(case, certify=False, contact="none", today=question.today)
+    asked = Question(as_asked(question.case), certify=False, contact="none", today=question.today)
     record = answered(asked, DEFAULT_RESOURCES)
     return AskedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
-
-
-def _as_asked(placed: PlacedRobot) -> PlacedRobot:
-    found = placed.recording
-    if found is None:
-        return placed
-    return replace(placed, trajectory=found.asked, timing=found.timing, recording=None)
 
 
 def _of_pairs(
     plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
 ) -> tuple[RuleAnswer, ...]:
     """What the rules come to of some pairs alone, as if there were no others."""
+    some, found = _some(plan, is_meant, need)
+    return judged(some, found, plan.question.case, plan.motions).rules if found else ()
+
+
+def _budget_of_pairs(plan: MeasurementPlan, is_meant: PairTest) -> tuple[RuleBudget, ...]:
+    """What the case's tolerances leave of some pairs alone."""
+    from clearance.budget.answer import budget_answers
+
+    some, found = _some(plan, is_meant)
+    return budget_answers(plan.question.case, some, found, DEFAULT_RESOURCES) if found else ()
+
+
+def _some(
+    plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
+) -> tuple[SectionPlan, list[SectionAnswer]]:
+    """The sections of some pairs alone, and what they come to; none where no pair is meant."""
     case = plan.question.case
     question = plan.question if need is None else replace(plan.question, need=need)
     parts = [_part(case, section, is_meant) for section in plan.sections.sections]
     sections = tuple(part for part in parts if part.pairs)
-    if not sections:
-        return ()
     found = [_of_section(question, section, DEFAULT_RESOURCES) for section in sections]
-    some = replace(plan.sections, sections=sections)
-    return judged(some, found, case, plan.motions).rules
+    return replace(plan.sections, sections=sections), found
 
 
 def _part(case: Case, section: Section, is_meant: PairTest) -> Section:

@@ -1,4 +1,4 @@
-"""What tolerances leave, as columns of the steps. Not for: working it out (`clearance.budget`)."""
+"""What tolerances leave of all rules, step by step. Not for: working it out (`clearance.budget`)."""
 
 from __future__ import annotations
 
@@ -26,23 +26,18 @@ def least_expected(budget: Sequence[RuleBudget]) -> np.ndarray:
     return np.fmin.reduce([one.expected for one in budget])
 
 
-def with_budget_columns(
+def with_proven_between(
     table: pa.Table, budget: Sequence[RuleBudget] | None, first: int = 0
 ) -> pa.Table:
-    """Rows of the steps with `proven`, `expected` and, where the motion is certified, `proven_between` [m]; null
-    where nothing is measured or worked out. The rows themselves where there are no tolerances.
+    """Rows of the steps with `proven_between` [m], null where nothing is measured; the rows themselves where no
+    motion is certified with tolerances.
 
     Args:
         first: the step of the first row.
     """
-    if not budget:
+    between = least_between(budget) if budget else None
+    if between is None:
         return table
-    rows = slice(first, first + table.num_rows)
-    columns = {"proven": least_proven(budget), "expected": least_expected(budget)}
-    between = least_between(budget)
-    if between is not None:
-        columns["proven_between"] = between
-    for name, values in columns.items():
-        own = values[rows]
-        table = table.append_column(name, pa.array(own, pa.float64(), mask=~np.isfinite(own)))
-    return table
+    own = between[first : first + table.num_rows]
+    column = pa.array(own, pa.float64(), mask=~np.isfinite(own))
+    return table.append_column("proven_between", column)

@@ -55,8 +55,8 @@ def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
             if step is not None:
                 step += start
                 when = float(section.phase.times[step])
-                names = (body.name_in(case) for body in pairs[place])
-                text = _text(*names, step + section.phase.first, when)
+                one, other = (body.name_in(case) for body in pairs[place])
+                text = _text(one, other, step + section.phase.first, when)
                 yield int(section.places[place]), Notice(Severity.SUSPECT, "inside", text)
                 del waiting[k]
 

@@ -197,6 +197,7 @@ class Record(Samples):
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic", "simulated" or "recorded". asked: of recorded motion, what was asked instead.
+        budget_of_pairs: `budget` of some of the pairs alone; None where no more can be asked.
         body_gaps: whether gaps that people may be caught in are to be told.
     """
 
@@ -220,6 +221,7 @@ class Record(Samples):
     budget: tuple[RuleBudget, ...] | None = None
     asked: AskedCourse | None = None
     body_gaps: bool = False
+    budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
@@ -244,11 +246,11 @@ class Record(Samples):
     @cached_property
     def steps_with_contacts(self) -> pa.Table:
         """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
-        not exact, null at all others; and with what tolerances leave, as `with_budget_columns` adds it."""
-        from clearance.simulate.budget_columns import with_budget_columns
+        not exact, null at all others; with tolerances that of the motion too, as `with_proven_between` adds it."""
+        from clearance.simulate.budget_columns import with_proven_between
         from clearance.simulate.contact_columns import with_contact_columns
 
-        return with_budget_columns(with_contact_columns(self.steps, self.contacts), self.budget)
+        return with_proven_between(with_contact_columns(self.steps, self.contacts), self.budget)
 
     @property
     def worst_step(self) -> int:

@@ -142,9 +142,17 @@ def _add(
         pairs = _of_clocks(phase.case, alike, clocks)
         if not pairs:
             continue
-        own = [places.setdefault(pair, len(places)) for pair in pairs]
         numbered = len(found), phase, rule, padding, pairs
-        found.append(Section(*numbered, np.array(own, dtype=np.int64), other))
+        found.append(Section(*numbered, _places_of(pairs, places), other))
+
+
+def _places_of(pairs: tuple[Pair, ...], places: dict[Pair, int]) -> np.ndarray:
+    """(p,) the place of each of some pairs; those that have none yet get the next ones."""
+    if not places:
+        places.update(zip(pairs, range(len(pairs)), strict=True))
+        return np.arange(len(pairs))
+    own = [places.setdefault(pair, len(places)) for pair in pairs]
+    return np.array(own, dtype=np.int64)
 
 
 def _of_clocks(

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.handling import gap_between, handling_hints
 from clearance.simulate.record import Record
 from clearance.simulate.sections import SectionPlan, section_plan
@@ -69,6 +68,7 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     if not len(rows):
         return []
     from clearance.simulate.contact_phases import ContactsOfPhases
+    from clearance.simulate.contact_rows import ContactRows
 
     if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
         return []

@@ -81,10 +81,12 @@ def ran(
     case: Path, cache: str | None, ends: Sequence[int] = (0, 1), options: Sequence[str] = ()
 ) -> dict[str, float]:
     """Seconds of one command; an end that is none of `ends` is no answer."""
-    threads = {
-        k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")
-    }  # as a user has them
-    environment = threads if cache is None else {**threads, "NUMBA_CACHE_DIR": cache}
+    own = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.endswith("_NUM_THREADS") and name != "PYTHONDONTWRITEBYTECODE"
+    }  # as a user has them: all threads, and modules that Python compiles once
+    environment = own if cache is None else {**own, "NUMBA_CACHE_DIR": cache}
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     command = [sys.executable, "-m", "clearance", "check", str(case), *options]
     done = subprocess.run(

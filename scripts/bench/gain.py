@@ -2,8 +2,8 @@
 
     python scripts/bench/gain.py [--cases N] [--general N] [--seconds S] [--csv FILE]
 
-One process, one thread, compiled code warm; seconds of CPU. `--general` asks scipy's SLSQP for the same shifts, from
-20 starts, for so many of the cases. "known" is the change that takes back what a case was made by.
+One process, one thread, compiled code warm; seconds of CPU. `--general` asks scipy's SLSQP for the same shifts,
+from 20 starts, for so many of the cases. "known" is the change that takes back what a case was made by.
 """
 
 from __future__ import annotations
@@ -67,7 +67,9 @@ def main() -> None:
 
 
 def _print(rows: list[dict[str, object]]) -> None:
-    table = Table("kind", "cases", "kept", "s, median", "s, worst", "size / known", "size / general")
+    table = Table(
+        "kind", "cases", "kept", "s, median", "s, worst", "size / known", "size / general"
+    )
     for kind in ("waypoints", "obstacle", "base"):
         own = [row for row in rows if row["kind"] == kind]
         if not own:

@@ -18,7 +18,14 @@ from clearance.gains.offsets import joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.world.case import Case, Limits
 
-OURS = ("iiwa_pipe_rack", "hot_cell", "box_box", "dual_arm_handover", "turntable_cell", "door_and_arm")
+OURS = (
+    "iiwa_pipe_rack",
+    "hot_cell",
+    "box_box",
+    "dual_arm_handover",
+    "turntable_cell",
+    "door_and_arm",
+)
 SHARED = (
     "fetch_cage_planned",
     "kuka_iiwa_valve_wall",
@@ -88,7 +95,9 @@ def _below(case: Case) -> float:
 
 
 def _bent(name: str, case: Case, rng: np.random.Generator) -> Made | None:
-    moving = [i for i, one in enumerate(case.robots) if one.trajectory and one.trajectory.n_steps > 2]
+    moving = [
+        i for i, one in enumerate(case.robots) if one.trajectory and one.trajectory.n_steps > 2
+    ]
     if not moving:
         return None
     i_robot = int(rng.choice(moving))

@@ -12,11 +12,7 @@ from clearance.batch.manifest import Changes, items_of
 from clearance.batch.output import write_answer
 from clearance.batch.run import Outcome, run_batch
 from clearance.batch.store import open_store
-
-URDF = """<robot name="cart"><link name="ground"/>
-  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
-    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+from tests.cart import URDF
 
 CELL = """name: rail
 robot: {urdf: cart.urdf}

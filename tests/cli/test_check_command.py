@@ -11,12 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.cart import URDF
+
 ROOT = Path(__file__).parents[2]
 
-URDF = """<robot name="cart"><link name="ground"/>
-  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
-    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
 CASE = """name: rail
 robot: {urdf: cart.urdf}
 scene:

@@ -185,3 +185,16 @@ def test_a_run_that_is_stopped_leaves_no_older_junit(place, monkeypatch):
     monkeypatch.undo()
     monkeypatch.chdir(place)
     assert check(*asked) == 0 and (place / "junit.xml").read_bytes() == first
+
+
+def test_the_hook_tells_all_that_fails(place, capsys):
+    text = (place / "broken" / "case.yaml").read_text()
+    text = text.replace("xyz: [0.5,", "xyz: [5000,") + "waivers: [../waivers.yaml]\n"
+    (place / "broken" / "case.yaml").write_text(text)
+    (place / "waivers.yaml").write_text(WAIVER.replace("2027", "2020"))
+    assert run(["pre-commit", "broken/case.yaml"]) == 2
+    first, *lines = capsys.readouterr().out.splitlines()
+    assert first == "broken/case.yaml: SUSPECT (would be VIOLATED)"
+    assert lines[0].startswith("  3.000 mm, below the fail limit of 5 mm: box - gate_a")
+    assert lines[1].startswith("  suspect units: CHECK UNITS: obstacle 'gate_b'")
+    assert lines[2].startswith("  stale waiver: waiver box - gate_a") and len(lines) == 3

@@ -1,6 +1,7 @@
 """What a second process compiles ahead: taken by the first, never waited for in vain.
 
-Two of these take long: what is handed from process to process is five kernels, compiled from nothing.
+The kernels of the search take half a minute to compile. Small ones stand in their places of the table here: how a
+kernel goes from process to process does not depend on what it does.
 """
 
 import json
@@ -14,6 +15,8 @@ from pathlib import Path
 import numba
 import pytest
 
+from clearance.cli import compile_ahead
+from clearance.compile import kernel_table
 from clearance.simulate.parts import usable_cores
 from tests.cli.test_leaving import write_case
 
@@ -21,16 +24,38 @@ ROOT = Path(__file__).parents[2]
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
 
+SMALL_KERNELS = """
+from clearance.cli import compile_ahead
+from clearance.compile.kernel_table import apart
+
+compile_ahead.ALL = compile_ahead.FIRST
+
+def like():
+    return (1.0,)
+"""
+A_SMALL_KERNEL = """
+@apart({place}, like)
+def kernel_{place}(x):
+    return x + {place}
+"""
+PLACES = (*compile_ahead.FIRST, *kernel_table.TOGETHER, kernel_table.WINDING_NUMBER)
+
 FROM_A_SECOND_PROCESS = """
-import json
+import json, subprocess
+import small_kernels
 from clearance.cli import compile_ahead
 from clearance.compile import kernel_table
-from clearance.kernels.search import body_pair, separating_planes
-from clearance.kernels.features import refine
+
+def with_small_kernels(command, really=subprocess.Popen, **settings):
+    *python, script = command
+    assert script.endswith("; main()")
+    return really([*python, script.replace("; main()", "; import small_kernels; main()")], **settings)
+
+subprocess.Popen = with_small_kernels
 told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
 for place in compile_ahead.FIRST:
     kernel_table.compile_kernel(place)
-kernels = (body_pair.search, refine.refine, separating_planes.separate)
+kernels = [getattr(small_kernels, f"kernel_{place}") for place in compile_ahead.FIRST]
 told["taken"] = [sum(f.stats.cache_hits.values()) for f in kernels]
 told["made"] = [sum(f.stats.cache_misses.values()) for f in kernels]
 told["again"] = compile_ahead._start_once.__wrapped__()
@@ -39,42 +64,49 @@ print(json.dumps(told))
 
 FROM_ONE_THAT_ENDS = """
 import json, subprocess, sys
+import small_kernels
 from clearance.compile import kernel_table
-from clearance.kernels.search import containment
 process = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
-print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
+print(json.dumps(sum(small_kernels.kernel_4.stats.cache_misses.values())))
 """
 
 FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
 import json, subprocess, sys
+import small_kernels
 from clearance.compile import kernel_table
-from clearance.kernels.search import body_pair
-from clearance.kernels.search import containment
 process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
 runs = process.poll() is None
 process.kill()
-print(json.dumps([sum(containment.winding_number.stats.cache_misses.values()), runs]))
+print(json.dumps([sum(small_kernels.kernel_4.stats.cache_misses.values()), runs]))
 """
 
 WHAT_GOES_TOGETHER = '''
 import json, subprocess, sys
+import small_kernels
 from clearance.compile import kernel_table
-from clearance.kernels.search import body_pair
-from clearance.kernels.features import common_point
-from clearance.kernels.features import meeting
-do = f"""import sys; sys.path[:] = {sys.path!r}
-from clearance.kernels.search import body_pair
+from clearance.compile.kernel_table import COMMON_POINT, MEETING, OVERLAP
+do = f"""import sys; sys.path[:] = {sys.path!r}; import small_kernels
 from clearance.compile import kernel_table
+sys.stdin.readline()
 kernel_table.compile_kernel(kernel_table.MEETING)"""
-process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
+process = subprocess.Popen([sys.executable, "-c", do], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+here = kernel_table._compile_here
+
+def and_then_the_other(place):
+    here(place)
+    if all(map(kernel_table.is_kept, (COMMON_POINT, OVERLAP))) and not process.stdin.closed:
+        process.stdin.close()
+
+kernel_table._compile_here = and_then_the_other
 kernel_table.await_from(process, kernel_table.TOGETHER)
-kernel_table.compile_kernel(kernel_table.MEETING)
-made = [sum(f.stats.cache_misses.values()) for f in (meeting.meeting, common_point.common_point)]
-print(json.dumps([made, sum(meeting.meeting.stats.cache_hits.values())]))
+kernel_table.compile_kernel(MEETING)
+kernels = [getattr(small_kernels, f"kernel_{place}") for place in (MEETING, COMMON_POINT, OVERLAP)]
+made = [sum(f.stats.cache_misses.values()) for f in kernels]
+print(json.dumps([made, sum(kernels[0].stats.cache_hits.values())]))
 '''
 
 ONE_THAT_TAKES_LONG = """
@@ -134,6 +166,8 @@ def told_by(script, folder, ends=0):
     here = folder / "work"
     here.mkdir()
     (here / "numba.py").write_text("open('trapped', 'w').close()\n")
+    small = [A_SMALL_KERNEL.format(place=place) for place in PLACES]
+    (folder / "small_kernels.py").write_text(SMALL_KERNELS + "".join(small))
     (folder / "script.py").write_text(f"import numba  # so that the compiler counts\n{script}")
     settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run(
@@ -163,7 +197,7 @@ def test_what_another_process_has_not_come_to_is_not_waited_for(tmp_path):
 
 
 def test_while_one_of_two_kernels_is_awaited_the_other_is_compiled(tmp_path):
-    assert told_by(WHAT_GOES_TOGETHER, tmp_path) == [[0, 1], 1]
+    assert told_by(WHAT_GOES_TOGETHER, tmp_path) == [[0, 1, 1], 1]
 
 
 def test_what_takes_long_is_waited_for_until_that_process_has_ended(tmp_path):

@@ -14,7 +14,21 @@ NOTES = sorted((ROOT / "clearance").rglob("*.md"))
 SHOWN = re.compile(r"`([^`\n]+)`")
 FENCED = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
 
-MADE = {"html", "json", "parquet", "csv", "md", "xml", "glb", "stl", "svg", "dxf", "urdf", "yaml"}
+MADE = {
+    "html",
+    "json",
+    "parquet",
+    "csv",
+    "md",
+    "xml",
+    "glb",
+    "stl",
+    "svg",
+    "dxf",
+    "urdf",
+    "yaml",
+    "bin",
+}
 """Endings of what a run writes or a user has: no file of ours needs to be called so."""
 
 FOREIGN = {

@@ -6,7 +6,10 @@ from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_formats import read_scene
 from clearance.load.scene_request import SceneRequest
-from tests.load.making import CUBE, CUBE_TRIANGLES
+from tests.load.making import CASE, CUBE, CUBE_TRIANGLES
+
+NAMED = CASE.partition("scene:")[0] + "scene: cell.yaml\ntrajectory: path.csv\n"
+"""A case whose scene is in a file `cell.yaml` of its own."""
 
 POSES = """
       pose: {position: {x: 1.0, y: 0.0, z: 0.0}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import clearance.load
-from clearance.load.rosbag_file import SUFFIXES
+from clearance.load.bag_files import SUFFIXES
 from clearance.load.xacro_file import SUFFIX
 from scripts.bench.fuzz_outcome import not_finite, outcome
 from scripts.bench.fuzz_seeds import readers

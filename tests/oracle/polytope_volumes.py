@@ -1,4 +1,4 @@
-"""The region shared by convex bodies, exactly: half-space enumeration in fractions.
+"""The region shared by convex bodies, exactly: half-space enumeration in integers.
 
 Every three planes meet in at most one point; the corners of the region are those that satisfy all
 half-spaces. Volumes are sums of exact tetrahedra over fans of the corners in each plane. Slow
@@ -7,40 +7,35 @@ half-spaces. Volumes are sums of exact tetrahedra over fans of the corners in ea
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from fractions import Fraction
 from itertools import combinations
 
-Row = tuple[Fraction, Fraction, Fraction, Fraction]
+from tests.oracle.rationals import Point, cross, dot, exact_points, minus, on_grid
 
-
-def _minus(a, b):
-    return tuple(x - y for x, y in zip(a, b, strict=True))
-
-
-def _dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def _cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+Row = tuple[int, int, int, int]
+"""n and d of n . x <= d, four integers without a common divisor: one for each half-space."""
 
 
 def half_spaces(points: Iterable[Iterable[float]]) -> set[Row]:
     """n.x <= d of every face of the hull of few points, exactly, each plane once."""
-    exact = [tuple(Fraction(float(x)) for x in point) for point in points]
-    found = {}
+    scale, (exact,) = on_grid(exact_points(points))
+    found = set()
     for a, b, c in combinations(exact, 3):
-        n = _cross(_minus(b, a), _minus(c, a))
-        sides = [_dot(n, _minus(p, a)) for p in exact]
+        n = cross(minus(b, a), minus(c, a))
+        sides = [dot(n, minus(p, a)) for p in exact]
         if not any(n) or (min(sides) < 0 < max(sides)):
             continue
         if max(sides) > 0:
-            n = tuple(-x for x in n)
-        unit = sum(abs(x) for x in n)
-        row = tuple(x / unit for x in n)
-        found[row] = _dot(row, a)
-    return {(*n, d) for n, d in found.items()}
+            n = minus((0, 0, 0), n)
+        found.add(_reduced((*(scale * x for x in n), dot(n, a))))
+    return found
+
+
+def _reduced(row: Row) -> Row:
+    shared = math.gcd(*row)
+    return tuple(x // shared for x in row)
 
 
 def corners(rows: Iterable[Row]) -> list[tuple[Fraction, ...]]:
@@ -48,41 +43,43 @@ def corners(rows: Iterable[Row]) -> list[tuple[Fraction, ...]]:
     rows = sorted(set(rows))
     found = set()
     for p, q, r in combinations(rows, 3):
-        pq, qr, rp = _cross(p[:3], q[:3]), _cross(q[:3], r[:3]), _cross(r[:3], p[:3])
-        det = _dot(p[:3], qr)
+        pq, qr, rp = cross(p, q), cross(q, r), cross(r, p)
+        det = dot(p, qr)
         if det == 0:
             continue
-        x = tuple((p[3] * qr[i] + q[3] * rp[i] + r[3] * pq[i]) / det for i in range(3))
-        if all(_dot(row[:3], x) <= row[3] for row in rows):
-            found.add(x)
+        sign = 1 if det > 0 else -1
+        x = tuple(sign * (p[3] * qr[i] + q[3] * rp[i] + r[3] * pq[i]) for i in range(3))
+        if all(dot(row, x) <= row[3] * abs(det) for row in rows):
+            found.add(tuple(Fraction(each, abs(det)) for each in x))
     return sorted(found)
 
 
 def shared_volume(*bodies: Iterable[Iterable[float]]) -> Fraction:
     """The exact volume shared by the hulls of several sets of points; 0 where they only touch."""
     rows = set().union(*(half_spaces(body) for body in bodies))
-    points = corners(rows)
-    if len(points) < 4:
+    found = corners(rows)
+    if len(found) < 4:
         return Fraction(0)
-    middle = tuple(sum(x) / len(points) for x in zip(*points, strict=True))
-    return sum((_cone(row, points, middle) for row in rows), Fraction(0))
+    scale, (grid,) = on_grid(found)
+    six = sum(
+        _cone(row, [p for p in grid if dot(row, p) == row[3] * scale], grid[0]) for row in rows
+    )
+    return Fraction(six, 6 * scale**3)
 
 
-def _cone(row: Row, points, apex) -> Fraction:
-    """The volume of the pyramid from `apex` over the corners that lie in the row's plane."""
-    flat = [p for p in points if _dot(row[:3], p) == row[3]]
+def _cone(row: Row, flat: list[Point], apex: Point) -> int:
+    """Six times the volume of the pyramid from `apex` over the corners `flat` in the row's plane."""
+    if len(flat) < 3:
+        return 0
     edges = [
         (a, b)
         for a, b in combinations(flat, 2)
-        if _one_side([_dot(_cross(row[:3], _minus(b, a)), _minus(p, a)) for p in flat])
+        if _one_side([dot(cross(row[:3], minus(b, a)), minus(p, a)) for p in flat])
     ]
-    if len(flat) < 3:
-        return Fraction(0)
-    six = (
-        abs(_dot(_minus(flat[0], apex), _cross(_minus(a, apex), _minus(b, apex)))) for a, b in edges
+    return sum(
+        abs(dot(minus(flat[0], apex), cross(minus(a, apex), minus(b, apex)))) for a, b in edges
     )
-    return sum(six, Fraction(0)) / 6
 
 
-def _one_side(sides) -> bool:
+def _one_side(sides: list[int]) -> bool:
     return min(sides) >= 0 or max(sides) <= 0

@@ -61,16 +61,16 @@ def test_even_weights_change_no_point_and_keep_parameters(weights):
         fine = (there < 0.9) & (
             there >= 0
         )  # beyond, 1 - t has lost too many digits to compare points by it
-        gap = np.hypot(*(evaluated(rows, u[fine])[0] - evaluated(given, there[fine])[0]).T)
+        gap = np.hypot(*(position(rows, u[fine]) - position(given, there[fine])).T)
         assert not fine.any() or gap.max() <= 1e-14 * curve.size
-    ends = [evaluated(parts[0], u[:1])[0][0], evaluated(parts[-1], u[-1:])[0][0]]
+    ends = [position(parts[0], u[:1])[0], position(parts[-1], u[-1:])[0]]
     assert np.allclose(np.array(ends, float), CUBIC[[0, -1]], atol=1e-14)
     for one, two in joints(parts):
         assert np.hypot(*(one[-1] - two[0])) <= 1e-14 * curve.size
 
 
 def joints(parts):
-    ends = [evaluated(rows, np.array([0, 1], oracle.REAL))[0] for rows in parts]
+    ends = [position(rows, np.array([0, 1], oracle.REAL)) for rows in parts]
     return list(zip(ends[:-1], ends[1:], strict=True))
 
 
@@ -111,27 +111,23 @@ def extended(curve):
     return out
 
 
-def evaluated(rows, t):
-    """Point and first derivative at the parameters `t` (k,), by de Casteljau.
+def position(rows, t):
+    """Points (k, 2) at the parameters `t` (k,), by de Casteljau.
 
     `rows` is one piece (degree + 1, 3), or as many as there are parameters (k, degree + 1, 3).
     """
     row = np.broadcast_to(rows, (len(t), *rows.shape[-2:]))
-    n = rows.shape[-2] - 1
     t = t[:, None, None]
-    for _ in range(n - 1):
+    while row.shape[1] > 1:
         row = row[:, :-1] + t * (row[:, 1:] - row[:, :-1])
-    slope = n * (row[:, 1] - row[:, 0])
-    here = row[:, 0] + t[:, 0] * (row[:, 1] - row[:, 0])
-    point = here[:, :2] / here[:, 2:]
-    return point, (slope[:, :2] - point * slope[:, 2:]) / here[:, 2:]
+    return row[:, 0, :2] / row[:, 0, 2:]
 
 
 def farthest(one, two, n):
     t = (np.arange(max(3, n // len(one) + 1)) / oracle.REAL(max(2, n // len(one)))).astype(
         oracle.REAL
     )
-    points = np.concatenate([evaluated(rows, t)[0] for rows in one])
+    points = np.concatenate([position(rows, t) for rows in one])
     return feet(two, points).max()
 
 
@@ -142,7 +138,7 @@ def feet(parts, points):
     """
     step = max(8, 4000 // len(parts))
     t = np.arange(step + 1) / oracle.REAL(step)
-    gaps = np.stack([_gaps_sq(points, evaluated(rows, t)[0]) for rows in parts])
+    gaps = np.stack([_gaps_sq(points, position(rows, t)) for rows in parts])
     best, n_rows = (
         np.full(len(points), oracle.REAL(np.inf)),
         np.array([len(rows) for rows in parts]),
@@ -150,12 +146,13 @@ def feet(parts, points):
     around = np.pad(gaps, ((0, 0), (0, 0), (1, 1)), constant_values=np.inf)
     dips = np.where((gaps <= around[:, :, :-2]) & (gaps <= around[:, :, 2:]), gaps, np.inf)
     flat = dips.transpose(1, 0, 2).reshape(len(points), -1)
-    for k in np.argsort(flat, axis=1)[:, :4].T:
+    for k in np.argpartition(flat, range(4), axis=1)[:, :4].T:
         part, start = k // (step + 1), t[k % (step + 1)]
+        is_dip = flat[np.arange(len(points)), k] < np.inf
         for degree in set(n_rows):
-            mine = n_rows[part] == degree
-            rows = np.array([parts[i] for i in part[mine]])
-            if len(rows):
+            mine = is_dip & (n_rows[part] == degree)
+            if mine.any():
+                rows = np.array([parts[i] for i in part[mine]])
                 found = slid(rows, points[mine], start[mine], 1.0 / step)
                 best[mine] = np.minimum(best[mine], found)
     return np.sqrt(best)
@@ -165,12 +162,26 @@ def _gaps_sq(points, grid):
     return ((points[:, None] - grid).astype(float) ** 2).sum(-1)
 
 
+GOLDEN = (np.sqrt(oracle.REAL(5)) - 1) / 2
+SHRINKS = 76
+"""How often a bracket of two steps of the grid shrinks: to less than the spacing of extended floats below 1."""
+
+
 def slid(rows, points, t, reach):
     """The least squared distance near `t`: a bracket shrunk by the golden section, ends included."""
+
+    def gap_sq(at):
+        return ((position(rows, at) - points) ** 2).sum(-1)
+
     low, high = np.maximum(t - reach, 0), np.minimum(t + reach, 1)
-    for _ in range(90):
-        one, two = low + (high - low) * 0.382, low + (high - low) * 0.618
-        left = ((evaluated(rows, one)[0] - points) ** 2).sum(-1)
-        right = ((evaluated(rows, two)[0] - points) ** 2).sum(-1)
-        high, low = np.where(left <= right, two, high), np.where(left <= right, low, one)
+    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    left, right = gap_sq(one), gap_sq(two)
+    for _ in range(SHRINKS):
+        is_left = left <= right
+        low, high = np.where(is_left, low, one), np.where(is_left, two, high)
+        width = GOLDEN * (high - low)
+        new = np.where(is_left, high - width, low + width)
+        there = gap_sq(new)
+        one, two = np.where(is_left, new, two), np.where(is_left, one, new)
+        left, right = np.where(is_left, there, right), np.where(is_left, left, there)
     return np.minimum(left, right)

@@ -141,6 +141,16 @@ def test_what_is_waived_is_skipped_and_a_stale_waiver_fails(inside, pytester):
     assert "is not needed" in result.stdout.str()
 
 
+def test_in_a_run_that_is_suspect_no_rule_passes(inside, pytester):
+    path = write_case(pytester.path, CLEAR)
+    path.write_text(path.read_text().replace("xyz: [0.5,", "xyz: [5000,"))
+    result = inside("-rs")
+    result.assert_outcomes(failed=1, skipped=1)
+    assert "the test of the verdict fails: suspect units" in result.stdout.str()
+    path.write_text(path.read_text() + "accept: [units]\n")
+    inside().assert_outcomes(passed=2)
+
+
 TESTS = """
 import pytest
 from clearance.pytest_plugin import assert_clear

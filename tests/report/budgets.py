@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pyarrow as pa
 
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget
 from clearance.simulate.record import Record
@@ -30,7 +31,11 @@ def with_budget(
     budget = Budget(unproven_ok=ok, sources=("preset typical: read somewhere",))
     case = dataclasses.replace(made.case, tolerance=budget)
     budgets = tuple(_of_rule(made, rule, taken, between, changes) for rule in made.rules)
-    return dataclasses.replace(made, case=case, budget=budgets)
+    steps = made.steps
+    for name in ("proven", "expected"):
+        values = getattr(budgets[0], name)
+        steps = steps.append_column(name, pa.array(values, mask=~np.isfinite(values)))
+    return dataclasses.replace(made, case=case, budget=budgets, steps=steps)
 
 
 def _of_rule(made, rule, taken, between, changes) -> RuleBudget:

@@ -24,6 +24,7 @@ from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates, write_gates
 from tests.report.records import arm
 
@@ -160,3 +161,22 @@ def test_a_clear_run_says_what_is_nearest(tmp_path):
     text = markdown(one.record, verdict_of(one.record), one.findings)
     assert "### gates: CLEAR" in text and "100.0 mm: box - gate" in text
     assert write_gates(tmp_path, {"gate": (0.0, 0.1)}).is_file()
+
+
+def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
+    case = load_gates(tmp_path, {"gate": (0.0, 0.1)})
+    lines = lines_of(cl.check(case, certify=False), tmp_path)
+    assert lines == [
+        "::warning title=clearance%3A gates::clear at the samples only: nothing is said about the motion "
+        "between the samples"
+    ]
+    waivers = (
+        Waiver(("box", "gate_a"), at_least=0.002, reason="gives way", by="N. N."),
+        Waiver(("box", "gate_b"), at_least=0.002, reason="gives way", by="N. N."),
+    )
+    waived = cl.check(dataclasses.replace(load_gates(tmp_path, BROKEN), waivers=waivers))
+    lines = lines_of(waived, tmp_path)
+    assert waived.passed and len(lines) == 2
+    assert lines[0].startswith("::warning title=clearance%3A gates::waived: 3.000 mm, below")
+    table = markdown(waived.record, waived.verdict, waived.findings)
+    assert "| violated, waived |" in table and "with 2 waivers" in table

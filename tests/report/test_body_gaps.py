@@ -6,9 +6,10 @@ import pytest
 
 import clearance as cl
 from clearance.cli import run
-from clearance.report import summary_of, verdict_of
 from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from clearance.report.page import page_of
+from clearance.report.summary import summary_of
+from clearance.report.verdict import verdict_of
 from clearance.simulate.replay import replay_of
 from tests.load.making import CASE, write_case
 from tests.report.test_verdict import made

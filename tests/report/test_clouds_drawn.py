@@ -72,6 +72,7 @@ def test_the_live_viewer_draws_points():
         assert page.run(points) == 1
 
 
+@pytest.mark.slow
 def test_stills_show_points_as_solids():
     """In a picture and in a model; of many points some."""
     record = cl.check(scanned()).record

@@ -154,6 +154,7 @@ def test_the_common_region_shines_through():
     assert ((red[..., 0] >= 0) & (red[..., 2] < -3)).any()
 
 
+@pytest.mark.slow
 def test_the_picture_is_a_png_of_its_size_and_the_same_each_time(monkeypatch):
     run = record()
     replay = replay_of(run)

@@ -14,10 +14,14 @@ from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES
 from clearance.findings.findings_file import finding_list_of, findings_text, read_findings
 from clearance.findings.of_record import findings_of
-from clearance.report import summary_of, verdict_of, write, write_junit
 from clearance.report.annotations import annotation_lines
+from clearance.report.comparison_page import page_of as comparison_page
+from clearance.report.junit import write_junit
 from clearance.report.markdown import markdown
+from clearance.report.output import write
+from clearance.report.summary import summary_of
 from clearance.report.tolerances import largest_text
+from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.simulate.budget_answer import ErrorSource
 from clearance.world.budget import Budget, ObstacleTolerance
@@ -84,7 +88,10 @@ def test_what_is_left_is_told_in_words_that_can_be_signed():
 def test_the_terminal_says_what_takes_most_and_what_it_may_be():
     told = "\n".join(printed(KEPT))
     assert "most is taken by position of joint lift 1.200 mm (0.001 rad), base of arm_0" in told
-    assert "others as given: position of joint lift 0.0021 rad, base of arm_0 3.5 mm, none" in told
+    assert (
+        "others as given: position of joint lift 0.0021 rad, base of arm_0 3.5 mm, surface of post 1.23 mm"
+        in told
+    )
     assert "preset typical: read somewhere" in told
 
 
@@ -118,11 +125,12 @@ def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
     write_junit(ACCEPTED, tmp_path / "junit.xml")
     text = (tmp_path / "junit.xml").read_text()
     assert "accepted: what is not proven with the tolerances may pass" in text
-    assert (
-        list(annotation_lines(ACCEPTED, verdict_of(ACCEPTED), findings_of(ACCEPTED), tmp_path))
-        == []
-    )
-    lines = list(annotation_lines(OPEN, verdict_of(OPEN), findings_of(OPEN), tmp_path))
+    told = annotation_lines(ACCEPTED, verdict_of(ACCEPTED), findings_of(ACCEPTED), tmp_path)
+    first, *others = told
+    assert first.startswith("::warning ") and "not proven, which is accepted: With every" in first
+    assert not any(line.startswith("::error") for line in others)
+    lines = annotation_lines(OPEN, verdict_of(OPEN), findings_of(OPEN), tmp_path)
+    lines = [line for line in lines if line.startswith("::error")]
     assert (
         len(lines) == 1
         and "not proven to keep the fail limit of 0 mm with the tolerances" in lines[0]
@@ -157,6 +165,18 @@ def test_findings_are_kept_and_compared(tmp_path):
         and rows[TOLERANCES].why == "its tolerances are others"
     )
     assert rows["clearance"].change == "unchanged"
+
+
+def test_the_comparison_page_shows_it_as_failing():
+    found = compared(finding_list_of(NEAR), finding_list_of(OPEN))
+    assert ".tag.not {" in comparison_page(found, [], ("a", "b"))
+    same = compared(finding_list_of(NEAR), finding_list_of(NEAR))
+    assert ".tag.not {" not in comparison_page(same, [], ("a", "b"))
+
+
+def test_what_is_expected_is_not_told_below_what_is_proven():
+    wide = with_budget(NEAR, 0.0001, expected=np.full(8, -1.0))
+    assert summary_of(wide)["tolerances"]["rules"][0]["expected"] == wide.budget[0].least
 
 
 def test_it_alarms_where_there_were_no_tolerances_before():
@@ -228,7 +248,7 @@ def test_the_same_bytes_twice(tmp_path):
         ((0.001, "m"), 0.00345678, "3.45 mm"),
         ((0.001, "rad"), 0.0012, "0.0012 rad"),
         ((0.02, "s"), 0.0, "0 s"),
-        ((0.02, "s"), None, "none"),
+        ((0.02, "s"), None, ""),
         ((0.02, "s"), np.inf, "any"),
     ],
 )

@@ -29,6 +29,8 @@ from clearance.kernels.motion.world import World
 from clearance.query.pair_query import Query
 from clearance.simulate.certify import joint_path, with_turning_balls
 from clearance.simulate.layout import with_whole_faces
+from clearance.world.kinematics import all_links, floating_links, standing_link
+from tests.made_cases import at, dented, torus
 
 
 class Scene(NamedTuple):
@@ -78,6 +80,25 @@ def orientations(random: np.random.Generator, n: int, turn: float) -> np.ndarray
         found.append(now.as_quat() * random.choice([-1.0, 1.0]))
         now = now * Rotation.from_rotvec(axis)
     return np.array(found)
+
+
+def two_floating(
+    random: np.random.Generator, n_steps: int, turn: float, far: float = 0.75
+) -> Scene:
+    """Two dented bodies that float and tumble past one another, and a ring that stands."""
+    world = standing_link(np.eye(4))
+    links = all_links(
+        world, floating_links(1, 0, 0, np.eye(4)), floating_links(5, 7, 0, at(0.1, -0.2, 0.3))
+    )
+    share = np.linspace(-1.0, 1.0, n_steps)[:, None]
+    places = [
+        far * np.array([side, 0.2, 0.1]) + 0.1 * share * random.normal(size=3)
+        for side in (-1.0, 1.0)
+    ]
+    turned = [orientations(random, n_steps, turn) for _ in range(2)]
+    positions = np.hstack([places[0], turned[0], places[1], turned[1]])
+    shapes = [dented(random, 1, 0.3, 0.4), dented(random, 1, 0.3, 0.35), torus(0.1, 0.04, 9, 5)]
+    return Scene(links, shapes, [4, 8, -1], [(0, 1), (0, 2), (1, 2)], positions)
 
 
 def swept(scene: Scene, within: float = np.inf) -> tuple[StepRows, np.ndarray]:

@@ -1,0 +1,95 @@
+"""`clearance verify`: proves the bound of a certified run again, from its receipt.
+
+Not for: proving (room `receipt`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from clearance.cli import ExitCode
+
+if TYPE_CHECKING:
+    from clearance.run import Question, Run
+
+receipt_option = click.option(
+    "--receipt",
+    type=click.Choice(["full", "sampled"]),
+    is_flag=False,
+    flag_value="full",
+    help="With --out: leave a receipt of the certified bound, which `clearance verify DIR` proves again. "
+    "sampled: of one interval in 16.",
+)
+
+
+def require_receipt(receipt: str | None, out: Path | None, question: Question) -> None:
+    """Refuses, before anything is measured, a receipt that could not be written.
+
+    Raises:
+        UsageError: no folder, or nothing that is proven. BadInput: what no receipt is written of.
+    """
+    if receipt is None:
+        return
+    if out is None or not question.certify:
+        lacks = "--out DIR" if out is None else "a certified run: leave out --samples-only"
+        raise click.UsageError(f"--receipt needs {lacks}")
+    from clearance.receipt.writing import refuse_uncovered
+
+    refuse_uncovered(question.case, question.motion, question.method)
+
+
+def write_receipt_of(
+    run: Run, receipt: str | None, out: Path | None, case_file: Path, *, quiet: bool
+) -> None:
+    """Writes the receipt where one is wanted, and says how long it is."""
+    if receipt is None or out is None:
+        return
+    from clearance.receipt.writing import write_receipt
+
+    path = write_receipt(run, out, case_file, receipt)
+    if not quiet:
+        size = path.stat().st_size / 1e3
+        told = "receipt     " if receipt == "full" else "sampled receipt  "
+        click.echo(f"  {told}{path}, {size:.0f} kB; proven again by: clearance verify {out}")
+
+
+@click.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option(
+    "--case",
+    "case_file",
+    metavar="CASE.yaml",
+    type=click.Path(path_type=Path),
+    help="The case, where it is not where it was.",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+def verify(folder: Path, case_file: Path | None, quiet: bool) -> int:
+    """Proves the certified bound of the report in DIR again, from its receipt and the case's files.
+
+    By arithmetic of its own, which shares no code with what measured. Exit code: 0 proven; 1 not
+    proven, with the first pair and interval that are not; 2 bad input: a receipt that is damaged,
+    or of other files, and which.
+    """
+    from clearance.receipt.verification import verify as verified
+
+    found = verified(folder, case_file)
+    if not quiet:
+        click.echo(found.headline)
+        for path, digest in found.inputs:
+            click.echo(f"  {digest[:16]}  {path}")
+        if found.unmeasured:
+            click.echo(
+                f"  {len(found.unmeasured)} links and pairs are left out, as the report lists them:"
+            )
+            for one in found.unmeasured[:MOST_TOLD]:
+                click.echo(f"    {one.link} - {one.obstacle}: {one.reason}")
+            if len(found.unmeasured) > MOST_TOLD:
+                click.echo(f"    and {len(found.unmeasured) - MOST_TOLD} more")
+    return ExitCode.CLEAR if found.proven else ExitCode.VIOLATED
+
+
+MOST_TOLD = 10
+"""Most of what is left out that is told in a terminal."""

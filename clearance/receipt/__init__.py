@@ -1,0 +1,5 @@
+"""A certified bound that anyone can prove again: a receipt of each run, and its verification by other means.
+
+`proof` holds all that decides; `case_data` takes a case apart for it, `receipt_file` is the format, `search` finds
+the evidence and `verification` asks for it. Not for: measuring and certifying (room `simulate`).
+"""

@@ -1,0 +1,179 @@
+"""A case as plain numbers for a proof: by the readers of the package and its plain data, not by what measures.
+
+What is taken over is in `NOTES.md`: files as they are read, links and joints, samples at the steps, pairs and
+rules. Not for: proving.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.receipt.proof.motion_data import NONE, Joints, Shape, Stretch
+from clearance.world.case import Case, Omission
+from clearance.world.forest import WORLD, forest_of, joined_positions
+from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.pairs import OBSTACLE, BodyIndex, Pair, selected_pairs
+from clearance.world.phase import Phase
+from clearance.world.timeline import timeline_of
+
+
+@dataclass(frozen=True, eq=False)
+class CaseData:
+    """A case as it is proven.
+
+    Attributes:
+        names, shapes: of all bodies, links robot by robot, then obstacles.
+        rules: names of what can judge a pair. times: (n,) [s] of the steps.
+        n_pairs: how many pairs there are in all. unmeasured: what is left out, and why.
+    """
+
+    name: str
+    shapes: tuple[Shape, ...]
+    rules: tuple[str, ...]
+    times: np.ndarray
+    stretches: tuple[Stretch, ...]
+    n_pairs: int
+    unmeasured: tuple[Omission, ...]
+
+    @property
+    def n_intervals(self) -> int:
+        """How many intervals the run has."""
+        return max(1, len(self.times) - 1)
+
+    @cached_property
+    def digest(self) -> str:
+        """sha256 of all numbers and names."""
+        digest = hashlib.sha256()
+        told = (self.name, self.rules, [shape.name for shape in self.shapes])
+        digest.update(repr(told).encode())
+        for array in _arrays(self):
+            digest.update(repr((array.shape, array.dtype.str)).encode())
+            digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
+
+
+def case_data(case: Case) -> CaseData:
+    """The numbers of a case.
+
+    Raises:
+        BadInput: a case that no receipt can be written of, and why.
+    """
+    require_covered(case)
+    timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    bodies = _bodies(case)
+    number = {body: i for i, body in enumerate(bodies)}
+    stretches: list[Stretch] = []
+    pairs: set[Pair] = set()
+    left_out: dict[Omission, None] = {}
+    for phase in timeline.phases:
+        selection = selected_pairs(phase)
+        left_out |= dict.fromkeys(selection.unmeasured)
+        pairs |= set(selection.pairs)
+        if selection.pairs:
+            rows = np.array([(number[a], number[b]) for a, b in selection.pairs])
+            judged = np.array(selection.rules), np.array(selection.paddings)
+            stretches.append(_stretch(phase, bodies, rows, *judged))
+    return CaseData(
+        case.name,
+        tuple(_shape(case, body) for body in bodies),
+        case.limits.rule_names,
+        timeline.times,
+        tuple(stretches),
+        len(pairs),
+        tuple(left_out),
+    )
+
+
+def require_covered(case: Case) -> None:
+    """Nothing, if receipts can be written of a case.
+
+    Raises:
+        BadInput: why they cannot.
+    """
+    if case.clock.slack != 0.0:
+        raise BadInput(
+            "no receipt for cases whose clocks are not tied", where="clock", valid="clock: common"
+        )
+
+
+def _bodies(case: Case) -> list[BodyIndex]:
+    links = [
+        BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
+    ]
+    return links + [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
+
+
+def _shape(case: Case, body: BodyIndex) -> Shape:
+    shape = body.shape_in(case)
+    if body.body_in(case).is_cloud:
+        faces = np.arange(len(shape.vertices))[:, None]
+    else:
+        faces = shape.triangles()
+    return Shape(body.name_in(case), shape.vertices, faces, shape.ball_radius)
+
+
+def _stretch(
+    phase: Phase,
+    bodies: Sequence[BodyIndex],
+    pairs: np.ndarray,
+    rules: np.ndarray,
+    padding: np.ndarray,
+) -> Stretch:
+    case, links = phase.case, forest_of(phase.case).links
+    rows = np.arange(phase.n_steps) if phase.n_steps > 1 else np.zeros(2, dtype=np.int64)
+    positions = joined_positions(case, phase.motions, rows)
+    rates, cubic = np.zeros_like(positions), np.zeros(positions.shape[1], dtype=bool)
+    start = 0
+    for motion in phase.motions:
+        columns = slice(start, start + motion.positions.shape[1])
+        _require_plain(motion)
+        if motion.velocities is not None:
+            rates[:, columns], cubic[columns] = motion.velocities[rows], True
+        start = columns.stop
+    carriers = np.array([body.frame_in(case) for body in bodies])
+    poses = np.array(
+        [
+            case.obstacles[body.i_body].world_from_body if body.is_obstacle else np.eye(4)
+            for body in bodies
+        ]
+    )
+    joints = Joints(
+        links.parents, links.kinds, links.axes, links.parent_from_joint, links.columns,
+        links.factors, links.offsets,
+    )  # fmt: skip
+    times = phase.times if phase.n_steps > 1 else phase.times[[0, 0]]
+    carriers = np.where(carriers == WORLD, NONE, carriers)
+    return Stretch(
+        phase.first, times, positions, rates, cubic, joints, carriers, poses, pairs, rules, padding
+    )
+
+
+def _require_plain(motion: Motion) -> None:
+    """Refuses what a later kind of motion may have: it would go on curves that the proof does not know.
+
+    Raises:
+        BadInput: accelerations are given.
+    """
+    if getattr(motion, "accelerations", None) is not None:
+        raise BadInput(
+            "no receipt for trajectories with accelerations", valid="positions and velocities"
+        )
+
+
+def _arrays(data: CaseData) -> Iterator[np.ndarray]:
+    yield data.times
+    for shape in data.shapes:
+        yield from (shape.points, shape.faces, np.array([shape.radius]))
+    for stretch in data.stretches:
+        yield np.array([stretch.first])
+        for part in stretch:
+            if isinstance(part, Joints):
+                yield from part
+            elif isinstance(part, np.ndarray):
+                yield part

@@ -1,0 +1,100 @@
+"""Whether the motion of two parts of bodies keeps them apart along a direction, or as balls; rounding included.
+
+Along U, of any length, and for |t| <= 1 in a piece, the least of U . (y + t v(y)) over one part less the greatest
+of U . (x + t v(x)) over the other is concave in t, so it is least at t = -1 or 1. What it is there, over |U|, less
+what both may be off straight, is a bound of the distance. Not for: which parts (`items`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.receipt.proof.halving import Halves, farthest
+from clearance.receipt.proof.placing import OUTWARD, Placed
+
+BYTE, SHORT, LONG = 2**7 - 1, 2**15 - 1, 2**31 - 1
+"""The greatest coordinate of directions of one, two and four bytes a coordinate."""
+
+
+class Sides(NamedTuple):
+    """One body of each row: (k,) its place in `Placed`, and its body and node in `Halves`."""
+
+    place: np.ndarray
+    body: np.ndarray
+    node: np.ndarray
+
+
+def directions(codes: np.ndarray, most: int) -> np.ndarray:
+    """(3, k) the vectors of whole numbers that codes (k, 2) from `-most` to `most` stand for.
+
+    |x| + |y| + |z| = most: an octahedron, of which the lower half is folded outward.
+    """
+    x, y = codes.astype(np.int64).T
+    z = most - np.abs(x) - np.abs(y)
+    fold = np.where(z < 0)[0]
+    ux, uy = x.copy(), y.copy()
+    ux[fold] = (most - np.abs(y[fold])) * np.where(x[fold] < 0, -1, 1)
+    uy[fold] = (most - np.abs(x[fold])) * np.where(y[fold] < 0, -1, 1)
+    return np.stack([ux, uy, z]).astype(np.float64)
+
+
+def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
+    """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf where u is 0."""
+    length = np.sqrt(dot(u, u))
+    apart = -(_greatest(halves, placed, b, -u) + _greatest(halves, placed, a, u)).max(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bound = apart / length
+    bound = bound - np.abs(bound) * (OUTWARD - 1.0)
+    return np.where(length > 0.0, bound, -np.inf) - _lost(halves, placed, a, b, placed.rest)
+
+
+def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
+    """(2, k) the greatest u . (x + t v(x)) over each part, for t = -1 and 1."""
+    turn, at, omega, v0 = (np.take(part, side.place, axis=-1) for part in placed[:4])
+    bent, shift = across(u, omega), dot(u, v0)
+    g = np.stack([u - bent, u + bent], axis=1)
+    own = np.stack([dot(g, turn[:, k, None]) for k in range(3)])
+    moved = dot(g, at[:, None]) + np.stack([-shift, shift])
+    return farthest(halves, side.body, side.node, own) + moved
+
+
+def as_balls(halves: Halves, placed: Placed, a: Sides, b: Sides) -> np.ndarray:
+    """(k,) [m] no row's parts come nearer than this, by balls that hold them and as far as they can move."""
+    between = centre_of(halves, placed, b) - centre_of(halves, placed, a)
+    radii = np.zeros(len(a.place))
+    for side in (a, b):
+        node = halves.first_node[side.body] + side.node
+        half = 0.5 * (halves.high[:, node] - halves.low[:, node])
+        radii = radii + np.sqrt(dot(half, half))
+    apart = np.sqrt(dot(between, between)) / OUTWARD - radii * OUTWARD
+    return apart - _lost(halves, placed, a, b, placed.way)
+
+
+def centre_of(halves: Halves, placed: Placed, side: Sides) -> np.ndarray:
+    """(3, k) [m] the middles of the parts' boxes."""
+    node = halves.first_node[side.body] + side.node
+    middle = 0.5 * (halves.low[:, node] + halves.high[:, node])
+    turn = placed.turn[:, :, side.place]
+    turned = np.stack([dot(turn[k], middle) for k in range(3)])
+    return turned + placed.at[:, side.place]
+
+
+def _lost(halves: Halves, placed: Placed, a: Sides, b: Sides, moves: np.ndarray) -> np.ndarray:
+    """(k,) [m] what balls about corners, rounding, and `moves` of both sides take away."""
+    own = halves.radius[a.body] + halves.radius[b.body]
+    sides = sum(moves[s.place] + placed.rounding[s.place] for s in (a, b))
+    return (own + sides) * OUTWARD
+
+
+def dot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Products of vectors whose first axis is x, y, z."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def across(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """Vector products, the same way."""
+    return np.stack(
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    )

@@ -1,0 +1,240 @@
+"""Proves the certified bound of a run again from its receipt and the case's files, by other means.
+
+Nothing that measured or certified takes part: `receipt.proof` does all that decides. Not for: writing receipts.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance.receipt.case_data import CaseData, case_data
+from clearance.receipt.claims import judged, missing
+from clearance.receipt.proof.depths import depths_reached
+from clearance.receipt.proof.halving import halves_of
+from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
+from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
+from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, GoneThrough, Receipt, read_receipt
+from clearance.world.case import Case, Omission
+
+SUMMARY = "summary.json"
+
+ROUNDED = 3
+"""Units by which a claim may be below what was certified (`writing.claims_of`)."""
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What a receipt comes to.
+
+    Attributes:
+        name: of the case. kind: "full" or "sampled".
+        failure: what is not proven, first of all; empty if all is.
+        bounds: [m] proven of each rule that judges something, over all intervals but those of `n_contact`.
+        n_pairs, n_intervals: of the run. n_claimed: intervals of which something is claimed.
+        n_contact: how many of those have a bound of 0 or less by some rule, so that nothing is proven of it there.
+        data: sha256 of the case's numbers. inputs: path and sha256 of the files.
+        unmeasured: links and pairs that are left out, and why.
+        nominal: the case has tolerances, of which the bound takes nothing off.
+    """
+
+    name: str
+    kind: str
+    failure: str
+    bounds: dict[str, float]
+    n_pairs: int
+    n_intervals: int
+    n_claimed: int
+    n_contact: int
+    data: str
+    inputs: tuple[tuple[str, str], ...]
+    unmeasured: tuple[Omission, ...]
+    nominal: bool
+
+    @property
+    def proven(self) -> bool:
+        """True if all that is claimed is."""
+        return not self.failure
+
+    @property
+    def headline(self) -> str:
+        """One line: what is proven, of what."""
+        sampled = "SAMPLED: " if self.kind == "sampled" else ""
+        if self.failure:
+            return f"{sampled}NOT PROVEN: {self.failure}"
+        bounds = ", ".join(
+            f"at least {np.floor(bound * 1e6) / 1e3:.3f} mm ({rule})"
+            for rule, bound in self.bounds.items()
+        )
+        bounds = bounds or "nothing"
+        span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
+        touch = ""
+        if self.n_contact:
+            touch = f", except in {self.n_contact} intervals, in which bodies may touch"
+        nominal = ", nominal: tolerances are not taken off" if self.nominal else ""
+        return (
+            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{touch}"
+            f"{nominal}; {len(self.inputs)} inputs unchanged, data {self.data[:16]}"
+        )
+
+
+def verify(
+    folder: str | PathLike[str], case: Case | str | PathLike[str] | None = None
+) -> Verification:
+    """Whether the receipt in a report's folder proves the bound that was certified, by arithmetic of its own.
+
+    Args:
+        folder: of a report with `receipt.bin`.
+        case: the case or its file, where it is not where it was when the receipt was written.
+
+    Raises:
+        BadInput: no receipt, a damaged one, or one of other inputs or another report: which.
+    """
+    place = Path(folder)
+    receipt = read_receipt(place / FILE_NAME)
+    _require_report(place, receipt)
+    given = case if isinstance(case, Case) else _loaded(place, receipt, case)
+    _require_inputs(given, receipt)
+    data = case_data(given)
+    _require_data(data, receipt)
+    failure = _failure(data, receipt) or _overstated(place, receipt)
+    claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
+    return Verification(
+        data.name,
+        receipt.head["kind"],
+        failure,
+        {
+            data.rules[i]: float(receipt.claims[i, row].min()) * UNIT
+            for i, row in enumerate(claimed & (receipt.claims > 0))
+            if row.any()
+        },
+        data.n_pairs,
+        data.n_intervals,
+        int(claimed.any(axis=0).sum()),
+        int((claimed & (receipt.claims <= 0)).any(axis=0).sum()),
+        data.digest,
+        tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
+        data.unmeasured,
+        receipt.head["nominal"] or given.tolerance is not None,
+    )
+
+
+def _failure(data: CaseData, receipt: Receipt) -> str:
+    for rule, interval in missing(receipt.claims, data, receipt.head["kind"]):
+        return f"nothing is claimed of rule {rule} in interval {interval}"
+    evidence = GoneThrough(receipt)
+    try:
+        depths = depths_reached(data.stretches, len(data.shapes), GoneThrough(receipt).deeds)
+        halves = halves_of(data.shapes, depths)
+        found = failure_in(data.stretches, data.shapes, halves, receipt.claims, evidence)
+    except BadEvidence as error:
+        return f"the evidence is none: {error}"
+    if found is not None:
+        return _failure_text(data, receipt, found)
+    return "" if evidence.at_end else "the evidence is not of this case: some is left over"
+
+
+def _overstated(place: Path, receipt: Receipt) -> str:
+    """What the report says beyond what the receipt claims, if it does.
+
+    Raises:
+        BadSyntax: a summary that is none.
+    """
+    try:
+        told = float(json.loads((place / SUMMARY).read_bytes())["certified"]["lower_bound"])
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise BadSyntax(
+            "there is no certified bound in it", where=str(place / SUMMARY), valid="the report"
+        ) from None
+    claimed = receipt.claims[receipt.claims != NOT_CLAIMED]
+    least = float(claimed.min()) * UNIT if len(claimed) else 0.0
+    if told <= least + ROUNDED * UNIT:
+        return ""
+    return f"{SUMMARY} tells of {told * 1e3:.6f} mm, the receipt of {least * 1e3:.6f} mm"
+
+
+def _failure_text(data: CaseData, receipt: Receipt, failure: Failure) -> str:
+    stretch = data.stretches[failure.stretch]
+    names = " and ".join(data.shapes[body].name for body in stretch.pairs[failure.pair].tolist())
+    claim = receipt.claims[stretch.rules[failure.pair], failure.interval] * UNIT
+    last = min(failure.interval + 1, len(data.times) - 1)
+    start, end = data.times[failure.interval], data.times[last]
+    return (
+        f"{names} in interval {failure.interval} ({start:.3f} to {end:.3f} s), claimed {claim * 1e3:.3f} mm: "
+        f"{failure.reason}"
+    )
+
+
+def _loaded(place: Path, receipt: Receipt, case: str | PathLike[str] | None) -> Case:
+    from clearance.load.case_file import load_case
+
+    if case is None:
+        way = receipt.head["case"]
+        if not way:
+            raise BadInput("the receipt is of a case without a file", valid="give the case")
+        path = place / way
+        if not path.is_file():
+            raise MissingFile(
+                f"there is no {way}", where=str(place / FILE_NAME), valid="--case CASE.yaml"
+            )
+        return load_case(path)
+    return load_case(case)
+
+
+def _require_report(place: Path, receipt: Receipt) -> None:
+    """Nothing, if the report beside the receipt is the one that it was written with.
+
+    Raises:
+        BadSyntax: the first file that is not.
+    """
+    for name, digest in receipt.head["report"].items():
+        path = place / Path(name).name
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise MissingFile(
+                f"cannot be read: {error.strerror or error}", where=str(path), valid="the report"
+            ) from None
+        if hashlib.sha256(content).hexdigest() != digest:
+            raise BadSyntax(
+                "it is not as it was when the receipt was written",
+                where=str(path),
+                valid="the report of the same run",
+            )
+
+
+def _require_inputs(case: Case, receipt: Receipt) -> None:
+    """Nothing, if every file that the case is read from is as it was.
+
+    Raises:
+        BadSyntax: the first that is not, or was none.
+    """
+    known = {one["path"]: one["sha256"] for one in receipt.head["inputs"]}
+    for source in case.sources:
+        if known.get(source.path) != source.sha256:
+            problem = "was no input of the run" if source.path not in known else "has changed"
+            raise BadSyntax(
+                f"it {problem}", where=source.path, valid="the files that the receipt was made of"
+            )
+
+
+def _require_data(data: CaseData, receipt: Receipt) -> None:
+    """Nothing, if the numbers of the case are those of the receipt.
+
+    Raises:
+        BadSyntax: they are not.
+    """
+    with at(FILE_NAME):
+        if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
+            raise BadSyntax(
+                f"it is of other numbers than those of case {data.name!r}",
+                valid="the case that the receipt was made of",
+            )
+        if receipt.claims.shape != (len(data.rules), data.n_intervals):
+            raise BadSyntax(DAMAGED, valid="claims of every rule and interval")

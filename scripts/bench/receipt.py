@@ -1,0 +1,74 @@
+"""Receipts of the scenes and the shared cases: how long they are, and what verifying takes beside a certified run.
+
+    python scripts/bench/receipt.py [NAME ...] > scripts/bench/results/receipt.csv
+
+CPU time of one process, compiled kernels, the least of three: a run is `check` of a case in memory, a verification
+goes from the receipt to the answer with the case in memory. `loaded` are the same two with the case read from its
+files each time.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from inputs import SCENES, SHARED  # first: it sets the number of threads
+
+import clearance as cl
+
+COLUMNS = (
+    "case", "steps", "pairs", "kB", "run_s", "verify_s", "ratio", "loaded_run_s", "loaded_verify_s",
+    "loaded_ratio", "write_s", "proven",
+)  # fmt: skip
+
+
+def least(work: Callable[[], object], times: int = 3) -> float:
+    """[s] of CPU time."""
+    found = []
+    for _ in range(times):
+        begun = time.process_time()
+        work()
+        found.append(time.process_time() - begun)
+    return min(found)
+
+
+def row(path: Path) -> tuple:
+    """The row of a case file."""
+    case = cl.load_case(path)
+    run = cl.check(case)
+    with tempfile.TemporaryDirectory() as place:
+        run.save(place)
+        begun = time.process_time()
+        receipt = cl.write_receipt(run, place, path)
+        written, size = time.process_time() - begun, receipt.stat().st_size
+        found = cl.verify(place)
+        times = [
+            least(lambda: cl.check(case)),
+            least(lambda: cl.verify(place, case)),
+            least(lambda: cl.check(path)),
+            least(lambda: cl.verify(place)),
+        ]
+    return (
+        path.parent.name, len(run.steps), found.n_pairs, f"{size / 1e3:.0f}",
+        f"{times[0]:.4f}", f"{times[1]:.3f}", f"{times[1] / times[0]:.1f}",
+        f"{times[2]:.3f}", f"{times[3]:.3f}", f"{times[3] / times[2]:.1f}", f"{written:.1f}", found.proven,
+    )  # fmt: skip
+
+
+def main(names: list[str]) -> None:
+    """Prints a row a case."""
+    files = [path for place in (SHARED, SCENES) for path in sorted(place.glob("*/case.yaml"))]
+    table = csv.writer(sys.stdout)
+    table.writerow(COLUMNS)
+    for path in files:
+        if not names or path.parent.name in names:
+            table.writerow(row(path))
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,95 @@
+"""`clearance check --receipt` and `clearance verify`, as a person meets them."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from clearance.cli import ExitCode, run
+
+SCENE = Path(__file__).parents[2] / "scenes" / "box_box"
+ROBOT = Path(__file__).parents[2] / "robots" / "gantry_box"
+
+
+@pytest.fixture(scope="module")
+def cell(tmp_path_factory):
+    """A copy of a scene with its robot, and its report with a receipt beside it."""
+    home = tmp_path_factory.mktemp("home")
+    shutil.copytree(SCENE, home / "scenes" / "box_box")
+    shutil.copytree(ROBOT, home / "robots" / "gantry_box")
+    case = home / "scenes" / "box_box" / "case.yaml"
+    assert run(["check", str(case), "--out", str(home / "out"), "--receipt", "--quiet"]) == 0
+    return home
+
+
+@pytest.fixture
+def home(cell, tmp_path):
+    return Path(shutil.copytree(cell, tmp_path / "home"))
+
+
+def test_the_receipt_of_a_run_is_proven(home, capsys):
+    assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
+    told = capsys.readouterr().out
+    assert told.startswith("PROVEN: at least 34.884 mm (default) between all 1 pairs over 300 ")
+    assert "trajectory.csv" in told and "are left out" in told
+
+
+def test_quiet_says_nothing(home, capsys):
+    assert run(["verify", str(home / "out"), "--quiet"]) == ExitCode.CLEAR
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "scenes/box_box/case.yaml",
+        "scenes/box_box/trajectory.csv",
+        "robots/gantry_box/gantry_box.urdf",
+    ],
+)
+def test_an_input_that_was_changed_is_named(home, name, capsys):
+    path = home / name
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert run(["verify", str(home / "out")]) == ExitCode.BAD_INPUT
+    assert Path(name).name in capsys.readouterr().err
+
+
+def test_a_case_that_is_elsewhere_is_given(home, capsys):
+    moved = home.parent / "elsewhere"
+    (home / "out").rename(moved)
+    assert run(["verify", str(moved)]) == ExitCode.BAD_INPUT
+    assert "--case CASE.yaml" in capsys.readouterr().err
+    case = home / "scenes" / "box_box" / "case.yaml"
+    assert run(["verify", str(moved), "--case", str(case)]) == ExitCode.CLEAR
+
+
+def test_a_receipt_that_is_cut_off_and_none_at_all(home, capsys):
+    receipt = home / "out" / "receipt.bin"
+    receipt.write_bytes(receipt.read_bytes()[:-1])
+    assert run(["verify", str(home / "out")]) == ExitCode.BAD_INPUT
+    assert "damaged or cut off" in capsys.readouterr().err
+    receipt.unlink()
+    assert run(["verify", str(home / "out")]) == ExitCode.BAD_INPUT
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "--receipt" in error
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["--receipt"],
+        ["--receipt", "half", "--out", "out"],
+        ["--samples-only", "--out", "out", "--receipt"],
+        ["--method", "paper", "--out", "out", "--receipt"],
+    ],
+)
+def test_a_receipt_of_what_is_not_proven_is_refused_before_anything_is_measured(
+    options, home, monkeypatch, capsys
+):
+    monkeypatch.chdir(home.parent)
+    case = home / "scenes" / "box_box" / "case.yaml"
+    assert run(["check", str(case), *options]) == ExitCode.BAD_INPUT
+    assert "receipt" in capsys.readouterr().err
+    assert not (home.parent / "out").exists()

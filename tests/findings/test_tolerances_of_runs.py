@@ -1,0 +1,88 @@
+"""Tolerances of whole runs: kept, not proven, and with waivers, whose levels their pairs are held against."""
+
+from dataclasses import replace
+from datetime import date
+
+import pytest
+
+import clearance as cl
+from clearance.findings.comparison import compared
+from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
+from clearance.findings.findings_file import finding_list_of
+from clearance.report.junit import write_junit
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
+
+GATES = {"left": (-0.5, 0.003), "right": (0.5, 0.008)}
+WAIVER = Waiver(("*", "left"), at_least=0.002, reason="known", by="J. Doe", until=date(2999, 1, 1))
+
+
+def asked(folder, xyz, *, gates=GATES, waivers=(WAIVER,), **others):
+    case = replace(load_gates(folder, gates), waivers=tuple(waivers))
+    return cl.check(case, tolerance={"base": {"xyz": xyz}, **others})
+
+
+def kinds(run):
+    return [one.kind for one in run.findings if one.status == NOT_PROVEN]
+
+
+@pytest.mark.parametrize(
+    ("xyz", "status", "found"),
+    [
+        (0.0005, "near", []),
+        (0.0015, "not proven", [WAIVED_TOLERANCES]),
+        (0.0035, "not proven", [WAIVED_TOLERANCES, TOLERANCES]),
+    ],
+)
+def test_waived_pairs_are_held_against_their_waiver(tmp_path, xyz, status, found):
+    run = asked(tmp_path, xyz)
+    assert (run.status, sorted(kinds(run)), run.passed) == (status, sorted(found), not found)
+    assert run.verdict.n_waivers == 1
+
+
+def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
+    run = asked(tmp_path, 0.0015)
+    (finding,) = [one for one in run.findings if one.kind == WAIVED_TOLERANCES]
+    assert (finding.body_a, finding.body_b) == ("*", "left")
+    assert finding.proven == pytest.approx(0.0015, abs=1e-4)
+    assert "not proven to keep the level of its waiver with the tolerances" in " ".join(
+        run.verdict.reasons
+    )
+    write_junit(run.record, tmp_path / "junit.xml")
+    assert 'classname="tolerances"' in (tmp_path / "junit.xml").read_text()
+
+
+def test_a_broken_rule_is_told_by_itself(tmp_path):
+    run = asked(tmp_path, 0.0005, waivers=())
+    assert run.status == "violated" and kinds(run) == []
+
+
+def test_kept_with_tolerances(tmp_path):
+    run = asked(tmp_path, 0.0005, gates={"right": (0.5, 0.008)}, waivers=())
+    assert run.passed and run.verdict.text(str.upper) == "NEAR with tolerances"
+    assert run.record.budget[0].least == pytest.approx(0.0075, abs=2e-4)
+    table = run.steps
+    assert {"proven", "expected", "proven_between"} <= set(table.column_names)
+    assert len(set(table.column_names)) == len(table.column_names)
+
+
+def test_at_the_samples_only_the_headline_says_so(tmp_path):
+    case = load_gates(tmp_path, {"right": (0.5, 0.008)})
+    run = cl.check(case, tolerance={"base": {"xyz": 0.0005}}, certify=False)
+    assert run.verdict.text(str.upper) == "NEAR with tolerances at the samples only"
+    assert "proven for the samples only" in run.verdict.with_tolerances[0]
+    assert "proven_between" not in run.steps.column_names
+
+
+def test_a_baseline_tells_the_two_kinds_apart(tmp_path):
+    before, now = (finding_list_of(asked(tmp_path, xyz).record) for xyz in (0.0035, 0.0035))
+    rows = [row for row in compared(before, now).rows if row.finding.status == NOT_PROVEN]
+    assert [row.change for row in rows] == ["unchanged", "unchanged"]
+
+
+def test_the_report_of_a_run(tmp_path):
+    run = asked(tmp_path, 0.0015)
+    folder = run.save(tmp_path / "out")
+    assert (folder / "budget.csv").read_text().count("\n") > 1
+    told = run.summary["tolerances"]
+    assert told["rules"][0]["worst"][0]["sources"][0]["name"] == "base of gantry_box"

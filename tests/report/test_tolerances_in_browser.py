@@ -1,0 +1,35 @@
+"""The page of a case with tolerances in a real browser: the band below the curve, the bar, room on a phone."""
+
+from __future__ import annotations
+
+import pytest
+
+from clearance.report.output import write
+from clearance.world.case import Limits
+from tests.report.browser import chromium, executable
+from tests.report.budgets import with_budget
+from tests.report.test_verdict import made
+
+pytestmark = [
+    pytest.mark.skipif(executable() is None, reason="no Chromium is installed"),
+    pytest.mark.browser,
+    pytest.mark.slow,
+]
+
+NAMES = "document.getElementById('curve').data.map((one) => (one.text || [''])[0].replace(/[-\\d.]+ mm$/, ''))"
+
+
+@pytest.mark.parametrize("width", [420, 1400])
+def test_the_band_and_the_bar(tmp_path, width):
+    write(with_budget(made(Limits(warn=0.02)), 0.0025), tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance", width=width)
+        page.settle()
+        assert page.errors == [] and page.run("document.documentElement.scrollWidth") == width
+        for _ in range(2):  # as drawn, and as drawn again
+            names = page.run(NAMES)
+            assert names[-2:] == ["proven with tolerances ", "expected, an estimate "]
+            assert page.run("document.getElementById('curve').layout.yaxis.range[0]") < -2.0
+            page.run("document.getElementById('zoom-limits').click()")
+            page.settle()
+        assert page.box(".budget-bar")["width"] > 0.8 * min(width, 1240)
