@@ -59,7 +59,7 @@ class _Stretch(click.ParamType):
     metavar="START:END",
     multiple=True,
     type=_Stretch(),
-    help="[s] In which a path stays as it is; may be given again.",
+    help="[s of the run] In which a path stays as it is; may be given again.",
 )
 @click.option(
     "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."
@@ -132,6 +132,8 @@ def _every_kind(
         found.append(tried)
     for line in table_lines(found):
         click.echo(shown(line))
+    if all(one.gain is None for one in found):
+        return ExitCode.BAD_INPUT
     kept = [_code(one.gain) for one in found if one.gain is not None and one.kept]
     return min(kept, default=ExitCode.VIOLATED)
 

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import Gain, gain
 from clearance.gains.told import bound_text, size_text
 from clearance.run import Question, answer
@@ -45,6 +45,9 @@ def every_kind(
 
     Args:
         options: as `gain` takes them. told: around each search, with its kind.
+
+    Raises:
+        UnknownRobot, UnknownObstacle: with the nearest name.
     """
     for kind in SUB_FOLDERS:
         own = dict(options)
@@ -57,6 +60,8 @@ def every_kind(
         try:
             with told(kind):
                 found = gain(case, kind, **own)
+        except (UnknownObstacle, UnknownRobot):
+            raise
         except BadInput as error:
             yield Tried(kind, None, str(error))
             continue

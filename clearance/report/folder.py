@@ -132,8 +132,16 @@ def _exchange_files(fresh: Path, folder: Path, older: Path, own: Collection[str]
             if (older / name).exists():
                 os.replace(older / name, folder / name)
             elif name in names and not (fresh / name).exists():
-                (folder / name).unlink(missing_ok=True)
+                _remove(folder / name)
         raise
+
+
+def _remove(path: Path) -> None:
+    """Takes away a file, or a folder with all that is in it, if it is there."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _umask() -> int:

@@ -73,6 +73,7 @@ def test_a_delay_is_told(tmp_path, capsys):
         (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
         (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
+        (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
         (["--kind", "base", "--keep", "2:1"], "is no stretch of time"),
         (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
@@ -89,3 +90,8 @@ def test_a_path_beyond_its_limits_is_refused(slot, capsys):
     path.write_text("time,x,y\n0,-1,0.03\n1,2.5,0.03\n")
     code, _, err = said(capsys, slot, "--kind", "waypoints")
     assert code == 2 and "joint 'x' is 0.5 m beyond its upper limit" in err
+
+
+def test_where_no_kind_applies_it_is_bad_input(tmp_path, capsys):
+    code, text, _ = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "all")
+    assert code == 2 and text.count("which robot may be changed is not said") == 3

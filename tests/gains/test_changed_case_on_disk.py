@@ -22,11 +22,59 @@ def with_scene_file(folder):
     return path
 
 
+SDF = """<?xml version="1.0"?><sdf version="1.9"><world name="cell">
+{models}</world></sdf>"""
+MODEL = """<model name="{name}"><static>true</static><pose>0 {y} 0 0 0 0</pose><link name="board">
+<collision name="c"><geometry><box><size>0.5 0.4 2.0</size></box></geometry></collision></link></model>
+"""
+
+
+def with_sdf(folder):
+    """The slot with its walls in SDF."""
+    before, _, rest = SLOT.partition("scene:\n")
+    path = write_cell(
+        folder, f"{before}scene: walls.sdf\ntrajectory:{rest.partition('trajectory:')[2]}"
+    )
+    models = "".join(MODEL.format(name=name, y=y) for name, y in (("left", 0.3), ("right", -0.3)))
+    (folder / "walls.sdf").write_text(SDF.format(models=models))
+    return path
+
+
+PLANNING = """\
+world:
+  collision_objects:
+  - {{header: {{frame_id: base}}, id: left, {box}, {left}}}
+  - {{header: {{frame_id: base}}, id: right, {box}, {right}}}
+allowed_collision_matrix:
+  entry_names: [tool, right]
+  entry_values: [{{enabled: [false, true]}}, {{enabled: [true, false]}}]
+link_padding: [{{link_name: tool, padding: 0.002}}]
+"""
+
+
+def with_planning_scene(folder):
+    """The same as MoveIt's planning scene, which lets the bar touch one wall and pads it."""
+    before, _, rest = SLOT.partition("scene:\n")
+    path = write_cell(
+        folder, f"{before}scene: walls.yaml\ntrajectory:{rest.partition('trajectory:')[2]}"
+    )
+    box = "primitives: [{type: 1, dimensions: [0.5, 0.4, 2.0]}]"
+    left, right = (
+        f"primitive_poses: [{{position: {{x: 0.0, y: {y}, z: 0.0}}, "
+        "orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}]"
+        for y in (0.3, -0.3)
+    )
+    (folder / "walls.yaml").write_text(PLANNING.format(box=box, left=left, right=right))
+    return path
+
+
 CASES = {
     "waypoints": (lambda folder: write_cell(folder, SLOT), "waypoints", {}),
     "base": (lambda folder: write_cell(folder, SLOT), "base", {}),
     "obstacle": (lambda folder: write_cell(folder, SLOT), "obstacle", {"obstacle": "left"}),
     "scene file": (with_scene_file, "obstacle", {"obstacle": "left"}),
+    "SDF": (with_sdf, "obstacle", {"obstacle": "left/board/c"}),
+    "planning scene": (with_planning_scene, "obstacle", {"obstacle": "left"}),
     "base beside a scene file": (with_scene_file, "base", {}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
     "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),

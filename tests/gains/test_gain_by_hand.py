@@ -129,3 +129,20 @@ def test_limits_of_joints_are_kept():
 def test_what_is_refused(fault, kind, how):
     with pytest.raises(fault):
         gain(slot(), kind, **how)
+
+
+def test_clocks_that_are_not_tied_are_refused():
+    case = replace(crossing(), clock=cl.Clock(0.1))
+    with pytest.raises(BadInput, match="clocks"):
+        gain(case, "base", robot="one")
+
+
+def test_a_path_beyond_its_limits_is_refused():
+    bar = gantry(size=(0.4, 0.1, 0.1), y_range=(-0.1, 0.02))
+    with pytest.raises(BadInput, match=r"joint 'y' is 0\.01 m beyond its upper limit"):
+        gain(replace(slot(), robots=(along_x(bar, y=0.03),)), "waypoints")
+
+
+def test_the_public_name_is_the_function():
+    found = cl.gain(slot(), "base", margin=0.001)
+    assert isinstance(found, cl.Gain) and found.size == pytest.approx(0.021, abs=FINE)

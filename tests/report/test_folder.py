@@ -189,3 +189,26 @@ def test_one_file_is_whole_or_the_older_one(tmp_path, monkeypatch):
     with pytest.raises(Unwritable, match=r"junit\.xml"):
         write_file(path, b"new")
     assert contents(tmp_path / "deep") == {"junit.xml": b"old"}
+
+
+def test_a_folder_that_cannot_be_moved_in_is_taken_back(tmp_path, monkeypatch):
+    """Folders of a report go as files do: what was there is there again."""
+    place = tmp_path / "out"
+    place.mkdir()
+    (place / "mine.txt").write_text("mine")
+    moves = os.replace
+
+    def fails_on_the_last(source, target):
+        if target == place / "z.txt":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        moves(source, target)
+
+    def fill(fresh):
+        (fresh / "before").mkdir()
+        (fresh / "before" / "a.txt").write_text("a")
+        (fresh / "z.txt").write_text("z")
+
+    monkeypatch.setattr(os, "replace", fails_on_the_last)
+    with pytest.raises(Unwritable):
+        fill_folder(place, fill, ("before", "z.txt"))
+    assert [path.name for path in place.iterdir()] == ["mine.txt"]
