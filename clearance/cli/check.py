@@ -148,7 +148,6 @@ def check(
     outputs.require_writable()
     _require_file(case_file)
     from clearance.run import Question
-    from clearance.tolerance import CERTIFY_GAP
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
@@ -158,9 +157,8 @@ def check(
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
-    gap = CERTIFY_GAP if certify_mm is None else certify_mm
     question = Question(
-        case, need=need, method=method, motion=motion, certify=not samples_only, certify_gap=gap,
+        case, need=need, method=method, motion=motion, certify=not samples_only, certify_gap=_gap(certify_mm),
         cross_check=cross_check, contact=contact, paper_tolerance=paper_tolerance, today=today,
         body_gaps=body_gaps,
     )  # fmt: skip
@@ -168,6 +166,13 @@ def check(
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
     write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _gap(given: float | None) -> float:
+    """[m] How fine the proof is."""
+    from clearance.tolerance import CERTIFY_GAP
+
+    return CERTIFY_GAP if given is None else given
 
 
 def _require_proof_or_samples(samples_only: bool, certify: bool) -> None:

@@ -16,7 +16,7 @@ from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.arithmetic.vec3 import dot, move, move_back, row
 from clearance.kernels.budget.errors import REACH, SURFACE, TURNED, BodyRows
-from clearance.kernels.budget.pieces import Pieces, bound_of_pieces
+from clearance.kernels.budget.pieces import Pieces, TwoFaces, bound_of_pieces
 from clearance.kernels.budget.reach import along_at_rest, reach_of_point
 from clearance.kernels.budget.view import AlongRows, look_along, moved_of_box, moved_of_point
 from clearance.kernels.features.bounds import (
@@ -238,10 +238,8 @@ def _look_at_faces(a, b, faces, body_a, body_b, bound, slack, search, aim, thin,
         allowed = near_by if aim.is_step else allowed_gap(search.least - thin, aim.gap, aim.fail)
         still = aim.is_step or point.motion < STILL * allowed
         if still or value - point.motion >= wanted:
-            cut = bound_of_pieces(
-                a, faces.a, b, faces.b, bound, m, body_a, body_b, found, work.own, slack, wanted,
-                allowed, work.pieces,
-            )  # fmt: skip
+            both = TwoFaces(a, faces.a, b, faces.b, m, body_a, body_b)
+            cut = bound_of_pieces(both, bound, found, work.own, slack, wanted, allowed, work.pieces)
             bound = max(bound, cut.lower_bound)
             search = _with_point(search, views, nearest, taken, cut.least, aim, thin)
         gives_up = bound < search.target and not still
@@ -272,6 +270,47 @@ def _with_bound(search, bound, faces, aim):
     )  # fmt: skip
 
 
+class _Reaches(NamedTuple):
+    """[m] the rounding of distances, and how far errors move and turn [rad] both bodies at most."""
+
+    slack: float
+    reach: float
+    turn: float
+    cos_turn: float
+    sin_turn: float
+
+
+@inline(force=True)
+def _look_at_group(a, b, node_a, node_b, views, reaches, target, n_waiting, work, tally):
+    """Lets those of the pairs below two nodes wait that are not above the target.
+
+    Returns:
+        how many wait, and [m] a bound on those that do not.
+    """
+    nodes, count = opened(a, node_a, b, node_b)
+    slack, reach = reaches.slack, reaches.reach
+    bounds = _group_bounds(a, b, nodes, views, work.seen, reach, slack, target)
+    tally[2] += count
+    away = 0
+    if reaches.turn < MOST_TURNED and marks_within(bounds, target):
+        away = turned_away_while(
+            a, b, views, nodes, slack, reaches.cos_turn, reaches.sin_turn, reach
+        )
+    if n_waiting + WIDTH > STACK_DEPTH:
+        raise AssertionError("no room for what waits")
+    first, lower_bound = n_waiting, math.inf
+    for k in range(count):
+        if away >> k & 1:
+            continue
+        bound = lane(bounds, k)
+        if bound >= target:
+            lower_bound = min(lower_bound, bound)
+            continue
+        node_a, node_b = pair_in_group(nodes, k)
+        n_waiting = wait(work.scratch, n_waiting, node_a, node_b, bound, first)
+    return n_waiting, lower_bound
+
+
 @inline
 def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
     """What errors leave of a pair, where that is below the target.
@@ -286,9 +325,8 @@ def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
     slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
     sums_a, sums_b = found.sums[body_a], found.sums[body_b]
     thin = radii_of(a, bodies.a, b, bodies.b).both + sums_a[SURFACE] + sums_b[SURFACE]
-    reach = sums_a[REACH] + sums_b[REACH]
     turn = max(sums_a[TURNED], sums_b[TURNED])
-    cos_turn, sin_turn = math.cos(turn), math.sin(turn)
+    reaches = _Reaches(slack, sums_a[REACH] + sums_b[REACH], turn, math.cos(turn), math.sin(turn))
     centres = direction_between(box_of(a, roots.a).centre, move(m, box_of(b, roots.b).centre), m)
     search = _Search(
         _turn_to(centres, m, body_a, body_b, work), math.inf, 0.0, math.inf,
@@ -332,24 +370,10 @@ def least_left(bodies, body_a, body_b, witness_faces, aim, work, tally):
             if gives_up:
                 return Left(-math.inf, search.least - thin, False, face_a, face_b)
             continue
-        nodes, count = opened(a, node_a, b, node_b)
-        bounds = _group_bounds(a, b, nodes, search.views, work.seen, reach, slack, target)
-        tally[2] += count
         n_looks += 1
-        away = 0
-        if turn < MOST_TURNED and marks_within(bounds, target):
-            away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, reach)
-        if n_waiting + WIDTH > STACK_DEPTH:
-            raise AssertionError("no room for what waits")
-        first = n_waiting
-        for k in range(count):
-            if away >> k & 1:
-                continue
-            bound = lane(bounds, k)
-            if bound >= target:
-                lower_bound = min(lower_bound, bound)
-                continue
-            node_a, node_b = pair_in_group(nodes, k)
-            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
+        n_waiting, passed = _look_at_group(
+            a, b, node_a, node_b, search.views, reaches, target, n_waiting, work, tally
+        )
+        lower_bound = min(lower_bound, passed)
     lower_bound = min(lower_bound, search.lower_bound)
     return Left(lower_bound - thin, search.least - thin, True, search.face_a, search.face_b)

@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.vec3 import (
+    RigidMotion,
     Vec3,
     along,
     dot,
@@ -23,6 +24,7 @@ from clearance.kernels.arithmetic.vec3 import (
 )
 from clearance.kernels.budget.reach import along_at_rest
 from clearance.kernels.budget.view import look_along, moved_of_point
+from clearance.kernels.mesh.surface import Surface
 
 MOST_PIECES = 600
 """Pairs of pieces that are looked at of two faces; what is left then is bounded as it is."""
@@ -41,6 +43,22 @@ class Pieces(NamedTuple):
 
     corners: np.ndarray
     bounds: np.ndarray
+
+
+class TwoFaces(NamedTuple):
+    """Two faces of two surfaces.
+
+    Attributes:
+        m: `a_from_b`. body_a, body_b: whose errors move them.
+    """
+
+    a: Surface
+    face_a: int
+    b: Surface
+    face_b: int
+    m: RigidMotion
+    body_a: int
+    body_b: int
 
 
 class PieceBound(NamedTuple):
@@ -227,16 +245,15 @@ def _fan(surface, first, end, i):
 
 
 @inline
-def bound_of_pieces(
-    a, face_a, b, face_b, whole, m, body_a, body_b, found, own, slack, target, near, pieces
-):
+def bound_of_pieces(faces, whole, found, own, slack, target, near, pieces):
     """What two faces come to in pieces, at most until each stays above the target.
 
     Args:
-        whole: [m] a bound on both faces. m: `a_from_b`. own: rows that are overwritten.
+        faces: `TwoFaces`. whole: [m] a bound on both. own: rows that are overwritten.
         target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
     """
-    n = _begin(a, face_a, b, face_b, pieces)
+    m, body_a, body_b = faces.m, faces.body_a, faces.body_b
+    n = _begin(faces.a, faces.face_a, faces.b, faces.face_b, pieces)
     least = math.inf
     if n == 0:
         return PieceBound(whole, least)

@@ -17,6 +17,7 @@ from clearance.kernels.budget.middle import go_to_part, motion_about
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
+    BudgetScene,
     ask,
     bound_by_boxes,
     carried_bound,
@@ -78,6 +79,38 @@ class BudgetRows(NamedTuple):
     share: np.ndarray
 
 
+@inline
+def _most_taken(scene, pair, motion, look, state):
+    """[m] what errors can take of a pair at most, whose bodies touch."""
+    taken = thin_of(scene, pair)
+    for side in range(2):
+        body = scene.world.pairs[pair, side]
+        fill_body(scene, body, motion, look, state)
+        taken += state.work.found.sums[body, REACH]
+    return taken
+
+
+@inline(force=True)
+def _with_boxes(scene, pair, motion, look, target, carried, state):
+    """[m] the bound that is carried of a pair, or that of its boxes where it is better; then it is kept."""
+    by_boxes = bound_by_boxes(scene, pair, motion, look, target, state)
+    if by_boxes > carried:
+        note_bound(scene.world, pair, by_boxes, state)
+        return by_boxes
+    return carried
+
+
+@inline(force=True)
+def _ahead(scene, pair, before, state):
+    """[m] how far beyond the best a pair is looked into, so that its bound lasts."""
+    moved = 0.0
+    for side in range(2):
+        body = scene.world.pairs[pair, side]
+        if scene.world.frames[body] >= 0:
+            moved += moved_from_step(scene.world, scene.path, before - 1, body, state.levers)
+    return AHEAD * moved if AHEAD * moved < LITTLE else 0.0
+
+
 @kernel
 def budget_moments(surface, world, path, errors, asked, rows, tally, table):
     """Fills `rows` with what errors leave of the nearest pair at each of some moments.
@@ -89,6 +122,7 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
         asked: `BudgetMoments`. tally: (4,) pairs passed over, searches, nodes and faces looked at.
     """
     lent = lend(surface)
+    scene = BudgetScene(surface, world, path, errors)
     state = new_state(world, errors)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
@@ -111,12 +145,7 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
         best, winner = math.inf, np.int64(-1)
         touches = asked.known[place] <= 0.0 and order >= 0
         if touches:
-            taken = thin_of(surface, world, order, errors)
-            for side in range(2):
-                body = world.pairs[order, side]
-                fill_body(surface, world, errors, path, body, motion, place, state)
-                taken += state.work.found.sums[body, REACH]
-            best, winner = -taken, order
+            best, winner = -_most_taken(scene, order, motion, place, state), order
         lowest = best
         for turn in range(-2, n_pairs):
             pair = order if turn == -2 else last if turn == -1 else np.int64(turn)
@@ -127,26 +156,16 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
             target = min(best, asked.enough)
             carried = carried_bound(world, pair, state)
             if turn >= 0 and carried < target:
-                by_boxes = bound_by_boxes(
-                    surface, world, errors, path, pair, motion, place, target, state
-                )
-                if by_boxes > carried:
-                    carried = by_boxes
-                    note_bound(world, pair, carried, state)
+                carried = _with_boxes(scene, pair, motion, place, target, carried, state)
             if carried >= target:
                 lowest = min(lowest, carried)
                 tally[0] += 1
                 continue
             ahead = 0.0
             if turn >= 0 and is_step and not state.late and before > 0:
-                moved = 0.0
-                for side in range(2):
-                    body = world.pairs[pair, side]
-                    if world.frames[body] >= 0:
-                        moved += moved_from_step(world, path, before - 1, body, state.levers)
-                ahead = AHEAD * moved if AHEAD * moved < LITTLE else 0.0
+                ahead = _ahead(scene, pair, before, state)
             aim = Aim(target + ahead, math.inf, 0.0, 0.0, True)
-            left = ask(lent, surface, world, errors, path, pair, motion, place, aim, state, tally)
+            left = ask(lent, scene, pair, motion, place, aim, state, tally)
             note_bound(world, pair, left.lower_bound, state)
             lowest = min(lowest, left.lower_bound)
             if left.lower_bound < best:
@@ -172,9 +191,9 @@ class _Over(NamedTuple):
 
 
 @inline
-def _hold(lent, surface, world, errors, path, step, pair, look, least, asked, state, tally):
+def _hold(lent, scene, step, pair, look, least, asked, state, tally):
     """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
-    waiting = state.waiting
+    world, path, errors, waiting = scene.world, scene.path, scene.errors, state.waiting
     waiting[0, 0], waiting[0, 1] = 0.0, 1.0
     n_waiting, n_parts = 1, 0
     lower_bound, share, gap = math.inf, -1.0, asked.gap
@@ -190,7 +209,7 @@ def _hold(lent, surface, world, errors, path, step, pair, look, least, asked, st
         motion = motion_about(path, step, low, high, state.middle)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False)
-        left = ask(lent, surface, world, errors, path, pair, motion, look, aim, state, tally)
+        left = ask(lent, scene, pair, motion, look, aim, state, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -213,6 +232,7 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
         axes are written for each interval.
     """
     lent = lend(surface)
+    scene = BudgetScene(surface, world, path, errors)
     state = new_state(world, errors)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
@@ -242,19 +262,12 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
                     go_to_part(world.links, path, errors, step, 0.0, 1.0, state.middle)
                     motion = motion_about(path, step, 0.0, 1.0, state.middle)
                     moved = False
-                by_boxes = bound_by_boxes(
-                    surface, world, errors, path, pair, motion, look, target, state
-                )
-                if by_boxes > carried:
-                    carried = by_boxes
-                    note_bound(world, pair, carried, state)
+                carried = _with_boxes(scene, pair, motion, look, target, carried, state)
             if carried >= target:
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved, look = _hold(
-                lent, surface, world, errors, path, step, pair, look, least, asked, state, tally
-            )
+            over, moved, look = _hold(lent, scene, step, pair, look, least, asked, state, tally)
             note_bound(world, pair, over.lower_bound, state)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share

@@ -11,7 +11,7 @@ import numpy as np
 from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.budget.errors import REACH, new_body_rows
+from clearance.kernels.budget.errors import REACH, Errors, new_body_rows
 from clearance.kernels.budget.left import LeftScratch, least_left
 from clearance.kernels.budget.levers import (
     Levers,
@@ -24,7 +24,7 @@ from clearance.kernels.budget.pieces import new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.body_boxes import (
     BodyBoxes,
     bound_of_bodies,
@@ -34,6 +34,8 @@ from clearance.kernels.motion.body_boxes import (
 from clearance.kernels.motion.certify import DEPTH
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.joint_motion_bound import orientation_rounding
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.scratch import new_scratch
 
@@ -64,6 +66,19 @@ class SweepState(NamedTuple):
     work: LeftScratch
 
 
+class BudgetScene(NamedTuple):
+    """What is asked about.
+
+    Attributes:
+        surface: every face owns all its features. world, path: as of a certificate. errors: `Errors`.
+    """
+
+    surface: Surface
+    world: World
+    path: JointPath
+    errors: Errors
+
+
 AHEAD, LITTLE = 3.0, 0.02
 """So many motions beyond the best a pair is still looked into, so that its bound lasts, if that is little [m]."""
 
@@ -90,8 +105,9 @@ def _pose(world, body, state):
 
 
 @inline
-def fill_body(surface, world, errors, path, body, motion, look, state):
+def fill_body(scene, body, motion, look, state):
     """Writes the rows of a body about the middle, if they are not of this look already."""
+    surface, world, errors, path = scene.surface, scene.world, scene.errors, scene.path
     frame = world.frames[body]
     if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
         return
@@ -119,42 +135,45 @@ def _place_body(surface, world, body, look, state):
 
 
 @inline(force=True)
-def thin_of(surface, world, pair, errors):
+def thin_of(scene, pair):
     """[m] the surfaces and balls of both bodies of a pair."""
+    surface, world, errors = scene.surface, scene.world, scene.errors
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
     return radii.both + errors.surface[body_a] + errors.surface[body_b]
 
 
 @inline(force=True)
-def _reach(surface, world, errors, path, body, motion, look, state):
+def _reach(scene, body, motion, look, state):
     """[m] how far errors and motion can move any point of a body from the middle at most."""
     if state.late:
-        fill_body(surface, world, errors, path, body, motion, look, state)
+        fill_body(scene, body, motion, look, state)
         return state.work.found.sums[body, REACH]
-    moved = 0.0 if motion.half == 0.0 else moved_in_part(world, motion, body, state.levers)
+    moved = 0.0 if motion.half == 0.0 else moved_in_part(scene.world, motion, body, state.levers)
     return state.levers.reach[body] + moved
 
 
 @inline(force=True)
-def bound_by_boxes(surface, world, errors, path, pair, motion, look, enough, state):
+def bound_by_boxes(scene, pair, motion, look, enough, state):
     """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
+    surface, world = scene.surface, scene.world
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    taken = thin_of(surface, world, pair, errors)
+    taken = thin_of(scene, pair)
     for body in (body_a, body_b):
         _place_body(surface, world, body, look, state)
-        taken += _reach(surface, world, errors, path, body, motion, look, state)
+        taken += _reach(scene, body, motion, look, state)
     apart = bound_of_bodies(state.boxes, body_a, body_b, enough + taken + LITTLE)
     slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
     return apart - CHAIN_SLACK * slacks - taken
 
 
 @inline
-def ask(lent, surface, world, errors, path, pair, motion, look, aim, state, tally):
+def ask(lent, scene, pair, motion, look, aim, state, tally):
     """What errors leave of a pair about the middle."""
+    world = scene.world
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    fill_body(surface, world, errors, path, body_a, motion, look, state)
-    fill_body(surface, world, errors, path, body_b, motion, look, state)
+    fill_body(scene, body_a, motion, look, state)
+    fill_body(scene, body_b, motion, look, state)
     frames = frames_of(_pose(world, body_a, state), _pose(world, body_b, state))
     bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
     tally[1] += 1
