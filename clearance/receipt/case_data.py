@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.receipt.proof.joint_paths import arcs_of
 from clearance.receipt.proof.motion_data import NONE, Joints, Shape, Stretch
 from clearance.world.case import Case, Omission
 from clearance.world.forest import WORLD, forest_of, joined_positions
@@ -79,6 +80,7 @@ def case_data(case: Case) -> CaseData:
             rows = np.array([(number[a], number[b]) for a, b in selection.pairs])
             judged = np.array(selection.rules), np.array(selection.paddings)
             stretches.append(_stretch(phase, bodies, rows, *judged))
+            _require_one_way(stretches[-1])
     return CaseData(
         case.name,
         tuple(_shape(case, body) for body in bodies),
@@ -164,6 +166,22 @@ def _require_plain(motion: Motion) -> None:
         raise BadInput(
             "no receipt for trajectories with accelerations", valid="positions and velocities"
         )
+
+
+def _require_one_way(stretch: Stretch) -> None:
+    """Nothing, if each orientation turns from step to step in one way that can be told.
+
+    Raises:
+        BadInput: half a turn between two steps: both ways are equally long.
+    """
+    try:
+        arcs_of(stretch)
+    except ValueError as error:
+        start = stretch.times[int(error.args[0])]
+        raise BadInput(
+            f"no receipt where something turns by half a turn from one step to the next, at {start:g} s",
+            valid="a sample between",
+        ) from None
 
 
 def _arrays(data: CaseData) -> Iterator[np.ndarray]:
