@@ -53,7 +53,7 @@ def _header(gain: Gain) -> Markup:
 def _badge(gain: Gain) -> str:
     if not gain.kept:
         return "not kept"
-    return f"kept, by {size_text(gain)}" if gain.size else "kept as it is"
+    return f"kept, changed by {size_text(gain)}" if gain.size else "kept as it is"
 
 
 def _curves(gain: Gain) -> Markup:
@@ -65,7 +65,11 @@ def _curves(gain: Gain) -> Markup:
         for letter, name in zip(letters, NAMES, strict=True)
     ]
     fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
-    picture = element("div", chart(curves, fail + gain.asked.margin), class_="scroll")
+    picture = element(
+        "div",
+        chart(curves, fail + gain.asked.margin, "with margin" if gain.asked.margin else "fail"),
+        class_="scroll",
+    )
     what = element(
         "p",
         "The least clearance of each step"

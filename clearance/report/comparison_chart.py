@@ -42,15 +42,15 @@ class Curve:
         return Curve(self.name, self.times[least], self.clearances[least])
 
 
-def chart(curves: Sequence[Curve], fail: float) -> Markup:
-    """The curves in one picture, in seconds and millimetres, with a fail limit [m]."""
+def chart(curves: Sequence[Curve], fail: float, called: str = "fail") -> Markup:
+    """The curves in one picture, in seconds and millimetres, with a limit [m] and what it is called."""
     thinned = [curve.thinned for curve in curves]
     axes = _Axes.of(thinned, fail)
     marks: list[Markup] = [*axes.grid()]
     if fail > 0.0:
         y = axes.y(fail)
         marks.append(_line(_LEFT, y, WIDTH - _RIGHT, y, class_="limit"))
-        marks.append(_text(WIDTH - _RIGHT - 4, y - 4, f"fail {fail * 1000:g} mm", "end"))
+        marks.append(_text(WIDTH - _RIGHT - 4, y - 4, f"{called} {fail * 1000:g} mm", "end"))
     for i, curve in enumerate(thinned):
         for part in axes.parts(curve):
             marks.append(element("polyline", points=part, class_=f"curve c{i}"))
