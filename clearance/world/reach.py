@@ -26,6 +26,9 @@ from clearance.world.trajectory import Trajectory
 ROOT_3 = 3.0**0.5
 """How much farther than along an axis a point of a cube is from its middle."""
 
+AT_ONCE = 1024
+"""Samples that are looked at together."""
+
 
 def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
     """[m] no coordinate of any body is larger in magnitude at any moment."""
@@ -119,8 +122,7 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
         BadDimension: the first joint that does, with the times between which it does.
     """
     columns = {name: i for i, name in enumerate(names)}
-    ways = _ways(moves)
-    farthest = ways.max(axis=0, initial=0.0)
+    farthest = _longest_ways(moves)
     for joint, name, factor, offset in followers(robot):
         if joint.kind not in (JointKind.REVOLUTE, JointKind.CONTINUOUS):
             continue
@@ -128,7 +130,7 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
         if name not in columns:
             continue
         if not abs(factor) * farthest[columns[name]] <= TURNS * 2.0 * np.pi:
-            way = abs(factor) * ways[:, columns[name]]
+            way = abs(factor) * _ways(moves, slice(None))[:, columns[name]]
             i = int(np.argmax(way))
             raise BadDimension(
                 f"joint {joint.name!r} turns by {way[i]:g} rad between {moves.times[i]:g} s and "
@@ -137,11 +139,20 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
             )
 
 
-def _ways(moves: Motion | Trajectory) -> np.ndarray:
+def _longest_ways(moves: Motion | Trajectory) -> np.ndarray:
+    """(k,) [rad or m] the longest of each joint's `_ways`, looked at a stretch at a time."""
+    longest = np.zeros(moves.positions.shape[1])
+    for start in range(0, len(moves.times), AT_ONCE):
+        ways = _ways(moves, slice(start, start + AT_ONCE + 1))
+        np.maximum(longest, ways.max(axis=0, initial=0.0), out=longest)
+    return longest
+
+
+def _ways(moves: Motion | Trajectory, samples: slice) -> np.ndarray:
     """(n - 1, k) [rad or m] how far joints go between samples, or would at their speed at one of them."""
-    ways = np.abs(np.diff(moves.positions, axis=0))
+    ways = np.abs(np.diff(moves.positions[samples], axis=0))
     if moves.velocities is not None:
-        speeds, spans = np.abs(moves.velocities), np.diff(moves.times)[:, None]
+        speeds, spans = np.abs(moves.velocities[samples]), np.diff(moves.times[samples])[:, None]
         ways = np.maximum(ways, np.maximum(speeds[1:], speeds[:-1]) * spans)
     return ways
 

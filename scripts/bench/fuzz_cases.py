@@ -59,6 +59,7 @@ def _signed(body: Iterable[int]) -> list[int]:
 
 def findings() -> bytes:
     """`findings.json` of one pair that breaks its rule."""
+    from clearance.findings.doubts import Doubt
     from clearance.findings.finding import Finding, WaivedBy
     from clearance.findings.findings_file import FindingList, findings_text
     from clearance.findings.measured_as import (
@@ -74,14 +75,17 @@ def findings() -> bytes:
         motion="kinematic",
         basis="motion",
         certify_gap=1e-4,
+        clock_slack=0.0,
         robots=(MeasuredRobot("arm", 64 * "0", ("base", "tip")),),
         rules=(MeasuredRule("default", (), "", 0.04, 0.06),),
         pairs=(MeasuredPairs(("tip",), ("post",)),),
+        unmeasured=(MeasuredPairs(("base",), ("*",)),),
     )
+    doubt = Doubt("warning", "meshes", "a mesh is left out")
     waived = WaivedBy(0.002, "soft", "A. Smith", "2027-03-31", 0.003)
     found = Finding(
         16 * "0", "clearance", "default", "tip", "post", 0, "violated", 0.035, 0.034, 0.04, 0.06, 2.5, None, 132,
         True,
         2.0, 3.0, 129, 135, (0.1, 0.2, 0.3), (0.1, 0.2, 0.4), {"shoulder": 0.5}, "", waived,
     )  # fmt: skip
-    return findings_text(FindingList("small", "", 0, measured, (found,))).encode()
+    return findings_text(FindingList("small", "", 0, measured, (doubt,), (found,))).encode()

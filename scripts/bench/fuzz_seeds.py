@@ -116,7 +116,7 @@ def _robots() -> dict[str, Reader]:
     return {
         "URDF": Reader("arm.urdf", texts.URDF, reading.robot, xml_damaged, where, (".xml",)),
         "MJCF": Reader("arm.xml", texts.MJCF, reading.robot, xml_damaged, where, (".mjcf",)),
-        "xacro": Reader("arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.xacro_file"),
+        "xacro": Reader("arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.robot_element"),
         "SRDF": Reader("arm.srdf", texts.SRDF, beside, xml_damaged),
         "joint limits": Reader("limits.yaml", texts.LIMITS, beside, yaml_damaged),
         "controllers": Reader("control.yaml", texts.CONTROL, beside, yaml_damaged),

@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import clearance.load
 from clearance.load.bag_files import SUFFIXES
-from clearance.load.xacro_file import SUFFIX
+from clearance.load.robot_element import XACRO
 from scripts.bench.fuzz_outcome import not_finite, outcome
 from scripts.bench.fuzz_seeds import readers
 from scripts.bench.fuzz_trees import yaml_damaged
@@ -95,7 +95,7 @@ def test_little_memory_is_taken(kind, tmp_path):
 
 def suffixes() -> dict[str, list[str]]:
     """The suffixes in each table of readers, by the module that begins with it."""
-    found = {"load.xacro_file": [SUFFIX], "load.rosbag_file": [*SUFFIXES]}
+    found = {"load.robot_element": [XACRO], "load.rosbag_file": [*SUFFIXES]}
     seen: list[object] = []
     for module in pkgutil.iter_modules(clearance.load.__path__):
         held = vars(importlib.import_module(f"clearance.load.{module.name}"))

@@ -206,7 +206,10 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     state = IntervalMiddle(middle, swing, bend, room)
     path = BallPath(balls, links.parent_from_joint[balls], np.empty((0, len(balls), 8)))
     bound, rounding = bound_about(surface_of(SHAPE), turning, link, path, state)
-    assert 0.0 < rounding < 1e-12
+    slides = np.abs(values[:, links.kinds == SLIDING]).max(axis=0).sum()
+    apart = np.linalg.norm(links.parent_from_joint[:, :3, 3], axis=1).sum()
+    reach = np.linalg.norm(SHAPE.bounds[1]) + apart + slides
+    assert 0.0 < rounding <= 2.0**-45 * len(balls) * reach * (1.0 + 1e-6)
     shares = np.array([0.5, *np.linspace(0.0, 1.0, 41)])
     placed = floating.poses(links, floating.between(links, *ends, shares))[:, link]
     world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
