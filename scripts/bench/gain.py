@@ -63,7 +63,7 @@ def main() -> None:
         )
     _print(rows)
     if asked.csv:
-        write_csv(asked.csv, COLUMNS, rows)
+        write_csv(rows, COLUMNS, asked.csv)
 
 
 def _print(rows: list[dict[str, object]]) -> None:

@@ -14,6 +14,8 @@ import numpy as np
 from inputs import ROOT
 
 import clearance as cl
+from clearance.errors import BadInput
+from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.world.case import Case, Limits
@@ -109,6 +111,10 @@ def _bent(name: str, case: Case, rng: np.random.Generator) -> Made | None:
     )
     found = _scaled(offsets.case_of, way / offsets.size(way), 0.5, rng)
     if found is None:
+        return None
+    try:
+        require_within_limits(offsets.case_of(found).robots[i_robot])
+    except BadInput:
         return None
     who = case.robots[i_robot].robot.name
     return Made(name, offsets.case_of(found), "waypoints", who, offsets.size(found))
