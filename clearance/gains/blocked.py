@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from clearance.gains.handed import Handed
 from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
@@ -46,9 +47,14 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
-    """The worst pair that falls short and that no change moves; None without one."""
-    found = [told for one in state.near if (told := _worst(state, one, gradient)) is not None]
+def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | None:
+    """The worst pair that falls short and that no change moves; None without one.
+
+    Args:
+        handed: parts that the change hands over elsewhere, which it moves though none of it carries them then.
+    """
+    near = [one for one in state.near if not handed.has(one)]
+    found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
+from clearance.gains.handed import Handed
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
@@ -54,6 +55,11 @@ class JointOffsets:
         named = (kinds[name] for name in self.placed.asked.joint_names)
         slides = np.array([SLIDE if kind == "prismatic" else 1.0 for kind in named])
         object.__setattr__(self, "weights", slides)
+
+    @cached_property
+    def handed(self) -> Handed:
+        """The parts that it hands over elsewhere."""
+        return Handed(self.case, (False, self.i_robot))
 
     @property
     def placed(self) -> PlacedRobot:
