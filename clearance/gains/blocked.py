@@ -79,9 +79,12 @@ def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
 
 
 def worst_pair(state: State, why: str) -> Blocked | None:
-    """The pair that falls short by most; None where none does at a step."""
+    """The pair that falls short by most; None where none does at a step.
+
+    What is wanted beyond, for the motion between the steps, does not count.
+    """
     rows = [(float(own.max()), i, int(own.argmax())) for i, one in enumerate(state.near)
-            if len(own := state.missing(one))]  # fmt: skip
+            if len(own := state.margin + one.rule.limits.fail - one.clearances)]  # fmt: skip
     if not rows or max(rows)[0] <= 0.0:
         return None
     _, i, row = max(rows)
