@@ -194,3 +194,13 @@ def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one():
     placed = along_x(gantry(), np.linspace(0.0, 2.0, 5))
     found = gain(cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03)), "waypoints")
     assert not found.kept and "between two steps" in str(found.blocked)
+
+
+@pytest.mark.parametrize("kind", ["obstacle", "base"])
+def test_balls_of_a_cloud_that_overlap_are_parted(kind):
+    cloud = cl.PointCloud([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [-0.5, 0.02, 0.0]], 0.05)
+    scan = standing("scan", cloud, (0.0, 0.08, 0.0))  # 20 mm deep in the block's way
+    case = cl.Case("scan", (along_x(gantry()),), (scan,), cl.Limits(fail=0.01))
+    found = gain(case, kind)
+    assert found.kept and found.size == pytest.approx(0.03, abs=FINE)
+    assert found.lower_bound == pytest.approx(0.03, rel=1e-4)
