@@ -35,6 +35,13 @@ from clearance.world.case import Case
 
 KINDS = ("waypoints", "obstacle", "base", "timing")
 
+OWN = {
+    "robot": ("waypoints", "base", "timing"),
+    "obstacle": ("obstacle",),
+    "keep": ("waypoints",),
+}
+"""Which kinds what is named is of; of others it would be passed over."""
+
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
 
@@ -73,6 +80,12 @@ class Asked:
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+        for name, kinds in OWN.items():
+            if getattr(self, name) and self.kind not in kinds:
+                raise BadInput(
+                    f"{name} is given, of which a change of kind {self.kind} knows nothing",
+                    valid=f"{name} with kind {' or '.join(kinds)}",
+                )
         if not 0.0 <= self.margin < np.inf:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
