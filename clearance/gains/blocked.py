@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.gains.handed import Handed
 from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
 
 NOT_MOVED = "nothing of this change moves them"

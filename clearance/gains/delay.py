@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gains.handed import Handed
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gains.unreachable import INWARD, motion_radii, way_needed
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import BodyIndex

@@ -14,11 +14,11 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
-from clearance.gains.handed import Handed
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.world.case import Case, PlacedRobot
 
 SLIDE = 2.0

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_name
-from clearance.gains.handed import Handed
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.world.body import Obstacle
 from clearance.world.case import Case, PlacedRobot

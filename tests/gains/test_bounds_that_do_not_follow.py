@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.simulate.sensitivity import sensitivity_of
 from clearance.world.carry import Carry
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
@@ -130,3 +131,9 @@ def test_a_stretch_that_is_kept_is_kept_between_samples_too(keep, is_kept):
     before, after = (one.asked for one in (placed, found.case.robots[0]))
     at = [np.interp(keep, one.times, one.positions[:, 1]) for one in (before, after)]
     assert at[1] == pytest.approx(at[0], abs=1e-12)
+
+
+def test_no_report_says_what_a_base_does_to_a_part_in_hand():
+    wall = standing("wall", cl.box((0.1, 0.4, 0.4)), (-1.12, 0.0, 0.0))
+    rates = sensitivity_of(cl.check(part_over_to(wall)).record).rates
+    assert {rate.kind for rate in rates} == {"joint", "obstacle"}

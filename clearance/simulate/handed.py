@@ -15,6 +15,7 @@ from clearance.simulate.point_motion import Thing, owners_of, things_under
 from clearance.world.case import Case
 from clearance.world.forest import owner_of
 from clearance.world.mount import Mount
+from clearance.world.pairs import Pair
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +31,13 @@ class Handed:
 
     def has(self, approach: Approach) -> bool:
         """True if a body of a pair is such a part, or stands on one."""
+        return self.has_of(approach.case, approach.pair)
+
+    def has_of(self, case: Case, pair: Pair) -> bool:
+        """The same of a pair of the plain case of a part of the run."""
         if not self.parts:
             return False
-        owners = {one for body in approach.pair for one in owners_of(approach.case, body)}
+        owners = {one for body in pair for one in owners_of(case, body)}
         return any(
             is_obstacle and self.case.obstacles[i].name in self.parts for is_obstacle, i in owners
         )
