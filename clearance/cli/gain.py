@@ -59,7 +59,7 @@ class _Stretch(click.ParamType):
     metavar="START:END",
     multiple=True,
     type=_Stretch(),
-    help="[s of the run] In which a path stays as it is; may be given again.",
+    help="[s of the run] In which a path stays as it is, with the samples next to it; may be given again.",
 )
 @click.option(
     "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."

@@ -35,6 +35,13 @@ from clearance.world.case import Case
 
 KINDS = ("waypoints", "obstacle", "base", "timing")
 
+OWN = {
+    "robot": ("waypoints", "base", "timing"),
+    "obstacle": ("obstacle",),
+    "keep": ("waypoints",),
+}
+"""Which kinds what is named is of; of others it would be passed over."""
+
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
 
@@ -73,6 +80,12 @@ class Asked:
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+        for name, kinds in OWN.items():
+            if getattr(self, name) and self.kind not in kinds:
+                raise BadInput(
+                    f"{name} is given, of which a change of kind {self.kind} knows nothing",
+                    valid=f"{name} with kind {' or '.join(kinds)}",
+                )
         if not 0.0 <= self.margin < np.inf:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
@@ -176,7 +189,7 @@ def _by_shift(case: Case, asked: Asked) -> Gain:
     search = Search(shift, asked.margin)
     first = search.state_at(np.zeros(3))
     at_least = least_shift(shift, first, asked.margin)
-    blocked = blocked_by(first, shift.gradient)
+    blocked = blocked_by(first, shift.gradient, shift.handed)
     if blocked is not None:
         return _gain(case, asked, Found(first, None, 1), np.zeros(3), shift, at_least, who, blocked)
     found = _least_of_several(search, shift, first, at_least)
@@ -208,7 +221,7 @@ def _by_path(case: Case, asked: Asked) -> Gain:
         search = Search(offsets, asked.margin)
         first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
         at_least = least_offset(offsets, first, asked.margin)
-        blocked = blocked_by(first, offsets.gradient)
+        blocked = blocked_by(first, offsets.gradient, offsets.handed)
         if blocked is not None:
             blocked = kept_still(blocked, _windows(case, i_robot, asked))
         found = Found(first, None, 1) if blocked else search.from_state(first)
@@ -220,21 +233,30 @@ def _by_path(case: Case, asked: Asked) -> Gain:
 
 
 def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
-    """The windows of the robot's table [s] in which its path stays as it is."""
+    """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
+    next to a window draw the path in it."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
-    kept = [tuple((time - timing.start) * timing.rate for time in window) for window in asked.keep]
+    kept = []
+    for window in asked.keep:
+        start, end = ((time - timing.start) * timing.rate for time in window)
+        before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
+        after = min(int(np.searchsorted(times, end)), len(times) - 1)
+        kept.append((times[before], times[after]))
     if asked.keep_ends:
         kept += [(times[0], times[0]), (times[-1], times[-1])]
     return tuple((float(start), float(end)) for start, end in kept)
 
 
 def _windows(case: Case, i_robot: int, asked: Asked) -> list[tuple[float, float]]:
-    """The same in times of the run; before its path begins and after it ends the robot stands at an end that is
-    kept."""
-    placed = case.robots[i_robot]
-    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]].tolist()
-    ends = [(-np.inf, start), (end, np.inf)] if asked.keep_ends else []
-    return [*asked.keep, *ends]
+    """The same in times of the run; before its path begins and after it ends the robot stands at an end that may
+    be kept."""
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
+    found = []
+    for start, end in _kept(case, i_robot, asked):
+        first = -np.inf if start <= times[0] else timing.start + start / timing.rate
+        last = np.inf if end >= times[-1] else timing.start + end / timing.rate
+        found.append((float(first), float(last)))
+    return found
 
 
 def _gain(

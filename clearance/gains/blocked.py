@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
 
 NOT_MOVED = "nothing of this change moves them"
@@ -46,9 +47,14 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient) -> Blocked | None:
-    """The worst pair that falls short and that no change moves; None without one."""
-    found = [told for one in state.near if (told := _worst(state, one, gradient)) is not None]
+def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | None:
+    """The worst pair that falls short and that no change moves; None without one.
+
+    Args:
+        handed: parts that the change hands over elsewhere, which it moves though none of it carries them then.
+    """
+    near = [one for one in state.near if not handed.has(one)]
+    found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 
 
@@ -73,9 +79,12 @@ def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
 
 
 def worst_pair(state: State, why: str) -> Blocked | None:
-    """The pair that falls short by most; None where none does at a step."""
+    """The pair that falls short by most; None where none does at a step.
+
+    What is wanted beyond, for the motion between the steps, does not count.
+    """
     rows = [(float(own.max()), i, int(own.argmax())) for i, one in enumerate(state.near)
-            if len(own := state.missing(one))]  # fmt: skip
+            if len(own := state.margin + one.rule.limits.fail - one.clearances)]  # fmt: skip
     if not rows or max(rows)[0] <= 0.0:
         return None
     _, i, row = max(rows)

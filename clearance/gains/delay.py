@@ -13,9 +13,11 @@ import numpy as np
 from clearance.errors import BadInput
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
-from clearance.gains.unreachable import motion_radii, way_needed
+from clearance.gains.unreachable import INWARD, motion_radii, way_needed
+from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import BodyIndex
 
 FINEST = 1e-3
@@ -73,7 +75,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
             record = proven(state.case, margin)
             if keeps(record):
                 break
-        excluded = delay + _way(state, i_robot, margin) / speed
+        excluded = delay + _excluded(state, i_robot, margin, speed)
         at_least = max(at_least, excluded) if at_least >= delay else at_least
         if max(excluded, delay + FINEST) > most:
             break
@@ -99,17 +101,36 @@ def greatest_speed(case: Case, i_robot: int) -> float:
         BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
     ]
     bodies += [BodyIndex(-1, i) for i in range(len(case.obstacles))]
-    return max(float(motion_radii(case, body)[columns] @ fastest) for body in bodies)
+    moving = fastest > 0.0
+    radii = [motion_radii(case, body, as_they_are=True)[columns] for body in bodies]
+    return max(float(one[moving] @ fastest[moving]) for one in radii)
 
 
-def _way(state: State, i_robot: int, margin: float) -> float:
-    """[m] How far what the robot carries must at least be moved."""
+def _excluded(state: State, i_robot: int, margin: float, speed: float) -> float:
+    """[s] No delay that is longer by less is enough.
+
+    Of a robot that is absent before its path begins a moment tells of no longer delay than brings it to that.
+    """
     columns, most = columns_of(state.case, i_robot), 0.0
+    handed = Handed(state.case, (False, i_robot))
     for approach in state.near:
         radii = [motion_radii(approach.case, body)[columns].any() for body in approach.pair]
-        if any(radii) and not all(radii):
-            most = max(most, float(way_needed(approach, margin).max(initial=0.0)))
-    return most
+        if not any(radii) or all(radii) or handed.has(approach):
+            continue
+        ways = np.maximum(way_needed(approach, margin), 0.0)
+        longer = np.divide(ways, speed, out=np.where(ways > 0.0, np.inf, 0.0), where=speed > 0.0)
+        longer = np.minimum(longer, _since_it_came(state.case.robots[i_robot], approach))
+        most = max(most, float(longer.max(initial=0.0)))
+    return INWARD * most
+
+
+def _since_it_came(placed: PlacedRobot, approach: Approach) -> np.ndarray:
+    """(k,) [s] since when a robot is in the cell at the steps of an approach; infinite if always."""
+    phase = approach.section.phase
+    times = phase.motions[0].times[approach.steps - phase.first]
+    if placed.timing.after != "absent":
+        return np.full(len(times), np.inf)
+    return np.asarray(times - placed.timing.run_times(placed.asked.times)[0])
 
 
 def _require_another(case: Case, i_robot: int) -> None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
-from clearance.gains.answer import Gain, gain
+from clearance.gains.answer import OWN, Gain, gain
 from clearance.gains.told import bound_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case
@@ -50,7 +50,7 @@ def every_kind(
         UnknownRobot, UnknownObstacle: with the nearest name.
     """
     for kind in SUB_FOLDERS:
-        own = dict(options)
+        own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:

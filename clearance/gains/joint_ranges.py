@@ -9,6 +9,9 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
+from clearance.world.joint_positions import JointCourse
+from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
+from clearance.world.joint_speeds import greatest_rates
 
 ROUNDING = 1e-9
 """[rad], [m], or that a second: what is less beyond a limit is at it."""
@@ -21,7 +24,7 @@ class JointRange:
     Attributes:
         joint: its name. what: which limit. times: (n,) [s] of the table.
         room: (n,) [unit] left; negative beyond it.
-        unit: "rad", "m", "rad/s" or "m/s".
+        unit: "rad" or "m", or that a second or a second squared.
     """
 
     joint: str
@@ -32,8 +35,8 @@ class JointRange:
 
 
 def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
-    """What is left of each limit of the joints that a robot's table names: places at its samples, and the mean
-    speeds between them."""
+    """What is left of each limit of the joints that a robot's table names: places at its samples, greatest speeds
+    and accelerations between them."""
     asked, rate = placed.asked, placed.timing.rate
     joints = {joint.name: joint for joint in placed.robot.moving_joints}
     times = asked.times
@@ -45,9 +48,16 @@ def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
         if np.isfinite(joint.lower):
             yield JointRange(name, "lower limit", times, own - joint.lower, unit)
         limit = placed.motion_limits.get(name)
-        if limit is not None and np.isfinite(limit.velocity) and len(times) > 1:
-            speed = np.abs(np.diff(own) / np.diff(times)) * rate
-            yield JointRange(name, "speed limit", times[:-1], limit.velocity - speed, f"{unit}/s")
+        if limit is None or len(times) < 2:
+            continue
+        speed, acceleration = greatest_rates(JointCourse(joint, own, i), asked)
+        for what, most, given, unit_of in (
+            ("speed limit", limit.velocity, speed * rate, f"{unit}/s"),
+            ("acceleration limit", limit.acceleration, acceleration * rate**2, f"{unit}/s²"),
+        ):
+            if np.isfinite(most):
+                room = (1.0 + SIX_DIGITS) * most - given
+                yield JointRange(name, what, times[:-1], room, unit_of)
 
 
 def require_within_limits(placed: PlacedRobot) -> None:

@@ -14,9 +14,11 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
+from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.world.case import Case, PlacedRobot
 
 SLIDE = 2.0
@@ -54,6 +56,11 @@ class JointOffsets:
         named = (kinds[name] for name in self.placed.asked.joint_names)
         slides = np.array([SLIDE if kind == "prismatic" else 1.0 for kind in named])
         object.__setattr__(self, "weights", slides)
+
+    @cached_property
+    def handed(self) -> Handed:
+        """The parts that it hands over elsewhere."""
+        return Handed(self.case, (False, self.i_robot))
 
     @property
     def placed(self) -> PlacedRobot:
@@ -167,32 +174,8 @@ class JointOffsets:
 
     @cached_property
     def kept(self) -> Inequalities:
-        """The limits of joints, which hold at the samples, and of their speeds between them."""
-        from scipy.sparse import csr_array, kron, vstack
-
-        asked = self.placed.asked
-        joints = {joint.name: joint for joint in self.placed.robot.moving_joints}
-        parts, most = [], []
-        samples = csr_array(self._samples)
-        lengths = np.diff(asked.times)[:, None]
-        steps = csr_array(np.diff(self._samples, axis=0) / lengths)
-        speeds = np.diff(asked.positions, axis=0) / lengths
-        for i, name in enumerate(asked.joint_names):
-            joint, one = joints[name], np.zeros((1, self.n_joints))
-            one[0, i] = 1.0
-            limit = self.placed.motion_limits.get(name)
-            for sign, level in ((1.0, joint.upper), (-1.0, -joint.lower)):
-                if np.isfinite(level):
-                    parts.append(kron(csr_array(sign * one), samples))
-                    most.append(level - sign * asked.positions[:, i])
-                if limit is not None and np.isfinite(limit.velocity):
-                    parts.append(kron(csr_array(sign * one), steps))
-                    rate = limit.velocity / self.placed.timing.rate
-                    most.append(rate - sign * speeds[:, i])
-        if not parts:
-            size = self.n_joints * self.n_splines
-            return Inequalities(csr_array((0, size)), np.zeros(0))
-        return Inequalities(vstack(parts, format="csr"), np.concatenate(most))
+        """The limits of joints, of their speeds and of their accelerations, at the samples and between."""
+        return joint_rows(self.placed, self.basis)
 
 
 def joint_offsets(

@@ -14,6 +14,7 @@ from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_na
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.world.body import Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -29,10 +30,11 @@ class Shift:
 
     Attributes:
         moved: whether a body moves with it. place: the case with it moved by (3,) [m].
-        box: [m] how far it may be moved.
+        box: [m] how far it may be moved. handed: the parts that it hands over elsewhere.
     """
 
     case: Case
+    handed: Handed
     moved: Callable[[Case, BodyIndex], bool]
     place: Callable[[Case, np.ndarray], Case]
     box: Box
@@ -85,7 +87,10 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
         obstacles[i_obstacle] = _moved_obstacle(obstacles[i_obstacle], x)
         return replace(whole, obstacles=tuple(obstacles))
 
-    return Shift(case, lambda plain, body: moves_with_obstacle(plain, body, i_obstacle), place, box)
+    def moved(plain: Case, body: BodyIndex) -> bool:
+        return moves_with_obstacle(plain, body, i_obstacle)
+
+    return Shift(case, Handed(case, (True, i_obstacle)), moved, place, box)
 
 
 def base_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
@@ -106,7 +111,10 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
         robots[i_robot] = _moved_base(robots[i_robot], x)
         return replace(whole, robots=tuple(robots))
 
-    return Shift(case, lambda plain, body: moves_with_robot(plain, body, i_robot), place, box)
+    def moved(plain: Case, body: BodyIndex) -> bool:
+        return moves_with_robot(plain, body, i_robot)
+
+    return Shift(case, Handed(case, (False, i_robot)), moved, place, box)
 
 
 def _moved_obstacle(obstacle: Obstacle, x: np.ndarray) -> Obstacle:

@@ -17,8 +17,10 @@ from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import State
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 from clearance.simulate.approaches import Approach
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, carried_by, forest_of
+from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses
+from clearance.world.mimics import followers
 from clearance.world.pairs import BodyIndex
 
 INWARD = 1.0 - 2.0**-16
@@ -29,7 +31,7 @@ def least_shift(shift: Shift, state: State, margin: float) -> float:
     """[m] No shorter shift makes the rules hold by a margin, whatever its direction."""
     least = 0.0
     for approach in state.near:
-        if shift.gradient(approach) is not None:
+        if shift.gradient(approach) is not None and not shift.handed.has(approach):
             least = max(least, float(way_needed(approach, margin).max(initial=0.0)))
     return INWARD * least
 
@@ -39,7 +41,7 @@ def least_offset(offsets: JointOffsets, state: State, margin: float) -> float:
     least = 0.0
     for approach in state.near:
         way = _way_of_unit(offsets, approach)
-        if way > 0.0:
+        if way > 0.0 and not offsets.handed.has(approach):
             least = max(least, float(way_needed(approach, margin).max(initial=0.0)) / way)
     return INWARD * least
 
@@ -57,8 +59,11 @@ def _way_of_unit(offsets: JointOffsets, approach: Approach) -> float:
     return float((radii / offsets.weights).sum())
 
 
-def motion_radii(case: Case, body: BodyIndex) -> np.ndarray:
-    """(columns,) how far the unit of each column can move a point of a body, in any pose [m per rad or m]."""
+def motion_radii(case: Case, body: BodyIndex, *, as_they_are: bool = False) -> np.ndarray:
+    """(columns,) how far the unit of each column can move a point of a body [m per rad or m].
+
+    In any pose that the limits of the joints allow and any that they are in, or only in those that they are in.
+    """
     forest = forest_of(case)
     links = forest.links
     radii = np.zeros(int(links.columns.max(initial=-1)) + 1)
@@ -75,17 +80,28 @@ def motion_radii(case: Case, body: BodyIndex) -> np.ndarray:
             radii[column] += abs(links.factors[link]) * arm
         beyond += float(np.linalg.norm(links.parent_from_joint[link][:3, 3]))
         if kind == SLIDING:
-            beyond += _longest_slide(case, link)
+            beyond += _longest_slide(case, link, as_they_are=as_they_are)
     return radii
 
 
-def _longest_slide(case: Case, link: int) -> float:
-    """[m] How far the joint above a link of a robot slides at most."""
+def _longest_slide(case: Case, link: int, *, as_they_are: bool) -> float:
+    """[m] How far the joint above a link of a robot slides at most; infinite for what a table of poses moves."""
     forest = forest_of(case)
     starts: Sequence[int] = forest.robot_starts
     for placed, start in zip(case.robots, starts, strict=True):
         if start <= link < start + len(placed.robot.link_names):
             child = placed.robot.link_names[link - start]
-            joint = next(one for one in placed.robot.joints if one.child == child)
-            return float(np.abs([joint.lower, joint.upper]).max())
+            course = next(one for one in joint_courses(placed) if one.joint.child == child)
+            ends = [course.at_samples, *(extremes_of(course, placed.trajectory) or ())]
+            far = max(float(np.abs(one).max()) for one in ends)
+            return far if as_they_are else max(far, _longest_in_range(placed, course))
     return float("inf")
+
+
+def _longest_in_range(placed: PlacedRobot, course: JointCourse) -> float:
+    """[m] How far a slide is out where the joint that moves it is anywhere within its limits."""
+    moved = next(one for one in followers(placed.robot) if one.joint.name == course.joint.name)
+    joint = next(one for one in placed.robot.joints if one.name == moved.master)
+    if moved.factor == 0.0:
+        return abs(moved.offset)
+    return max(abs(moved.factor * end + moved.offset) for end in (joint.lower, joint.upper))

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.query.contact import rough_contact
 from clearance.query.pair_query import Query
+from clearance.simulate.overlaps import Overlaps
 from clearance.simulate.point_motion import motion_by_columns
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.sections import Section
@@ -111,20 +111,20 @@ def _with_depths(told: Approach, touching: np.ndarray) -> Approach:
     """The approach with depth and way out at some of the steps in contact; the others are left out."""
     chosen = touching[np.unique(np.linspace(0, len(touching) - 1, MOST_DEPTHS).astype(int))]
     case, pair = told.case, told.pair
-    shapes = [body.shape_in(case) for body in pair]
+    overlaps = Overlaps(*(body.shape_in(case) for body in pair))
     kept = set(np.flatnonzero(told.directions.any(axis=1)).tolist())
     columns = [told.clearances.copy(), told.points.copy(), told.directions.copy()]
     columns.append(told.depths_at_least.copy())
     for row in chosen.tolist():
         poses = [body.poses_in(case, told.poses[row : row + 1])[0] for body in pair]
-        found = rough_contact(*shapes, pose_a=poses[0], pose_b=poses[1])
+        found = overlaps.at(*poses)
         if found is None:
             continue
         kept.add(row)
-        columns[0][row] -= found.penetration
-        columns[1][row] = found.centroid
-        columns[2][row] = -found.direction
-        columns[3][row] = found.penetration_at_least
+        columns[0][row] -= found.depth
+        columns[1][row] = found.point
+        columns[2][row] = found.direction
+        columns[3][row] = found.at_least
     rows = np.array(sorted(kept), dtype=np.int64)
     clearances, points, directions, depths = (column[rows] for column in columns)
     return replace(

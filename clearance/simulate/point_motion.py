@@ -9,8 +9,11 @@ import numpy as np
 
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.world.case import Case
-from clearance.world.forest import WORLD, carried_by, forest_of
+from clearance.world.forest import WORLD, carried_by, forest_of, owner_of
 from clearance.world.pairs import BodyIndex
+
+Thing = tuple[bool, int]
+"""An obstacle (True, its place among those of the case) or a robot (False, its place)."""
 
 
 def motion_by_columns(
@@ -49,21 +52,25 @@ def moves_with_robot(case: Case, body: BodyIndex, i_robot: int) -> bool:
 
 
 def moves_with_obstacle(case: Case, body: BodyIndex, i_obstacle: int) -> bool:
-    """True if a body is an obstacle, or rides on it, so that it moves where that is placed elsewhere."""
-    if body == BodyIndex(-1, i_obstacle):
-        return True
-    return _stands_on(case, body, case.obstacles[i_obstacle].name)
+    """True if a body is an obstacle, or rides on it, so that it moves where that is placed elsewhere.
+
+    Robots between them count: what rides on a robot that stands on the obstacle moves with it.
+    """
+    return (True, i_obstacle) in owners_of(case, body)
 
 
-def _stands_on(case: Case, body: BodyIndex, name: str) -> bool:
-    """True if mounts lead from a body to an obstacle called so."""
-    obstacles = {obstacle.name: obstacle for obstacle in case.obstacles}
-    owner = case.obstacles[body.i_body] if body.is_obstacle else case.robots[body.i_robot]
-    mount = owner.mount
-    while mount is not None:
-        if mount.on == name:
-            return True
-        if mount.on not in obstacles:
-            return False
-        mount = obstacles[mount.on].mount
-    return False
+def owners_of(case: Case, body: BodyIndex) -> tuple[Thing, ...]:
+    """The obstacle or robot that a body is of, and all that it stands on, nearest first."""
+    i = body.i_body if body.is_obstacle else body.i_robot
+    return things_under(case, (body.is_obstacle, i))
+
+
+def things_under(case: Case, thing: Thing) -> tuple[Thing, ...]:
+    """An obstacle or robot, and all that it stands on by mounts, nearest first."""
+    found = [thing]
+    while True:
+        is_obstacle, i = found[-1]
+        mount = case.obstacles[i].mount if is_obstacle else case.robots[i].mount
+        if mount is None:
+            return tuple(found)
+        found.append(owner_of(case, mount))

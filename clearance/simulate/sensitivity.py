@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.query.pair_query import Query
+from clearance.simulate.handed import Handed
 from clearance.simulate.moment import Moment
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.simulate.record import Record
@@ -210,7 +211,11 @@ def _rates(near: list[_Near]) -> Iterator[Rate]:
 
 
 def _of_places(near: list[_Near], case: Case) -> Iterator[Rate]:
-    """Of bases and obstacles that stand or move by themselves."""
+    """Of bases and obstacles that stand or move by themselves.
+
+    Of parts that are picked up or let go elsewhere where they are moved nothing is told: their way depends on how
+    they are turned since.
+    """
     things: list[tuple[str, str, Callable[[Case, BodyIndex, int], bool], int]] = [
         ("base", placed.robot.name, moves_with_robot, i)
         for i, placed in enumerate(case.robots)
@@ -222,6 +227,9 @@ def _of_places(near: list[_Near], case: Case) -> Iterator[Rate]:
         if one.mount is None
     ]
     for kind, name, moves, i in things:
+        handed = Handed(case, (kind == "obstacle", i))
+        if any(handed.has_of(one.case, one.pair) for one in near):
+            continue
         sides = [tuple(moves(one.case, body, i) for body in one.pair) for one in near]
         if not any(a != b for a, b in sides):
             continue

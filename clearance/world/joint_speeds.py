@@ -45,7 +45,7 @@ def _excesses(
     placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str
 ) -> Iterator[str]:
     limit, rate = placed.motion_limits[course.joint.name], placed.timing.rate
-    speed, acceleration = _greatest(course, asked)
+    speed, acceleration = greatest_rates(course, asked)
     unit = "rad" if turns(course.joint) else "m"
     for what, given, most, unit_of in (
         ("moves at", speed * rate, limit.velocity, f"{unit}/s"),
@@ -59,8 +59,10 @@ def _excesses(
             )
 
 
-def _greatest(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    """(n - 1,) the greatest speed and acceleration in each interval; the latter 0 on lines, which have corners.
+def greatest_rates(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """(n - 1,) the greatest speed and acceleration in each interval, in the table's time.
+
+    The latter is 0 on lines, which have corners.
 
     Exactness: the speed on a cubic is a parabola, greatest at an end or where it turns; its slope is linear.
     """

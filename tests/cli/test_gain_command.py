@@ -76,6 +76,9 @@ def test_a_delay_is_told(tmp_path, capsys):
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
         (["--kind", "base", "--keep", "2:1"], "is no stretch of time"),
+        (["--kind", "base", "--keep", "1:2"], "keep is given, of which a change of kind base"),
+        (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),
+        (["--kind", "obstacle", "--robot", "bar"], "robot with kind waypoints or base or timing"),
         (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
     ],
 )

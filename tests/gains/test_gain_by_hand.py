@@ -8,6 +8,9 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
+from clearance.gains.joint_ranges import joint_ranges
+from clearance.world.motion_limits import MotionLimit
+from clearance.world.robot import Mimic
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
 FINE = 1e-6
@@ -146,3 +149,58 @@ def test_a_path_beyond_its_limits_is_refused():
 def test_the_public_name_is_the_function():
     found = cl.gain(slot(), "base", margin=0.001)
     assert isinstance(found, cl.Gain) and found.size == pytest.approx(0.021, abs=FINE)
+
+
+def quick(n, speed, acceleration=np.inf):
+    """A block on cubics along x, past a post that it comes 10 mm too near to."""
+    times = np.linspace(0.0, 2.0, n)
+    at = np.stack([np.linspace(-1.0, 1.0, n), np.zeros(n)], axis=1)
+    rates = np.tile([1.0, 0.0], (n, 1))
+    limits = {"y": MotionLimit(speed, acceleration)}
+    path = cl.Trajectory(times, ("x", "y"), at, rates)
+    placed = cl.PlacedRobot(gantry(), path, motion_limits=limits)
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.5, 0.12, 0.0))
+    return cl.Case("quick", (placed,), (post,), cl.Limits(fail=0.03, joints="fail"))
+
+
+@pytest.mark.parametrize("n", [5, 9, 41])
+@pytest.mark.parametrize("speed, acceleration", [(0.05, 0.2), (0.06, np.inf), (0.03, np.inf)])
+def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
+    found = gain(quick(n, speed, acceleration), "waypoints")
+    assert found.kept == found.after.passed
+    assert "joint limits" not in found.after.verdict.text()
+    ranges = joint_ranges(found.case.robots[0])
+    assert all(one.room.min() > -1e-9 for one in ranges)
+
+
+def test_a_joint_that_follows_is_kept_within_its_limits():
+    robot = gantry()
+    follower = replace(
+        robot.joints[1], name="z", lower=-0.02, upper=0.02, parent="base", child="jaw",
+        mimic=Mimic("y", -2.0, 0.005),
+    )  # fmt: skip
+    links = (*robot.link_names, "jaw")
+    jawed = cl.Robot(robot.name, links, (*robot.joints, follower), robot.bodies)
+    case = slot(off=0.0, fail=0.03)
+    low = standing("low", cl.box((0.5, 0.4, 2.0)), (0.0, -0.26, 0.0))
+    case = replace(case, robots=(replace(case.robots[0], robot=jawed),), obstacles=(low,))
+    found = gain(case, "waypoints")
+    jaw = 0.005 - 2.0 * found.case.robots[0].asked.positions[:, 1]
+    assert not found.kept and np.abs(jaw).max() <= 0.02 + 1e-9
+
+
+def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.75, 0.1, 0.0))
+    placed = along_x(gantry(), np.linspace(0.0, 2.0, 5))
+    found = gain(cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03)), "waypoints")
+    assert not found.kept and "between two steps" in str(found.blocked)
+
+
+@pytest.mark.parametrize("kind", ["obstacle", "base"])
+def test_balls_of_a_cloud_that_overlap_are_parted(kind):
+    cloud = cl.PointCloud([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [-0.5, 0.02, 0.0]], 0.05)
+    scan = standing("scan", cloud, (0.0, 0.08, 0.0))  # 20 mm deep in the block's way
+    case = cl.Case("scan", (along_x(gantry()),), (scan,), cl.Limits(fail=0.01))
+    found = gain(case, kind)
+    assert found.kept and found.size == pytest.approx(0.03, abs=FINE)
+    assert found.lower_bound == pytest.approx(0.03, rel=1e-4)
