@@ -60,12 +60,26 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
         )
     late = [name for name, own in budget.robots.items() if own.timing > 0.0]
     late += [name for name, own in budget.obstacles.items() if own.timing > 0.0]
+    _require_no_loops(case, late)
     if late and len({section.phase.first for section in plan.sections}) > 1:
         raise BadInput(
             f"the clock of {late[0]!r} may be off, and parts change hands, come or go during the run",
             where="tolerance.timing",
             valid="no timing, or a case for each part of the run",
         )
+
+
+def _require_no_loops(case: Case, late: Sequence[str]) -> None:
+    """Nothing, if none whose clock may be off goes on beyond both ends of the run."""
+    timings = {one.robot.name: one.timing for one in case.robots}
+    timings |= {one.name: one.moves.timing for one in case.obstacles if one.moves is not None}
+    for name in late:
+        if name in timings and timings[name].after == "loop":
+            raise BadInput(
+                f"the clock of {name!r} may be off, and it loops: beyond the ends of the run it would go on",
+                where="tolerance.timing",
+                valid="a table of its own for the whole run and what is before and after (after: hold)",
+            )
 
 
 def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> SectionBudget:

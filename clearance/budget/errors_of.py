@@ -28,7 +28,7 @@ from clearance.world.budget import (
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.kinematics import seen_from
-from clearance.world.mimics import followers
+from clearance.world.mimics import leads_of
 from clearance.world.mount import Mount
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
 from clearance.world.robot import Robot
@@ -143,13 +143,10 @@ class _ForestErrors:
         links = {name: start + k for k, name in enumerate(robot.link_names)}
         for joint in robot.joints:
             self._place(links[joint.child], own.joints.get(joint.name, EXACT_JOINT).frame)
-        for follower in followers(robot):
-            name = follower.joint.name
-            size = _size(own, name)
-            if name != follower.master:
-                size += abs(follower.factor) * _size(own, follower.master)
-            self.joint[links[follower.joint.child]] = size
-            self._delay(links[follower.joint.child], own.timing, i_robot)
+            if joint.name in leads_of(robot):
+                leads = leads_of(robot)[joint.name]
+                self.joint[links[joint.child]] = sum(abs(f) * _size(own, name) for name, f in leads)
+                self._delay(links[joint.child], own.timing, i_robot)
         self._place(start, own.base)
         self._hold(start, placed.mount)
 

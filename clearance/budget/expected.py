@@ -17,6 +17,7 @@ from clearance.simulate.measure import Measurement
 from clearance.simulate.parts import blocks
 from clearance.world.budget import Budget
 from clearance.world.case import Case
+from clearance.world.cubic import Cubics, cubics_of, position_on
 from clearance.world.forest import Forest, forest_of, joined_positions
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -89,29 +90,36 @@ def clock_rates(
     if not owners:
         return {}
     forest, whole = forest_of(case), slice(0, motions[0].n_steps)
-    samples, knots = joined_positions(case, motions, whole), motions[0].times
-    here = _at(knots, samples, times)
-    return {name: _rate(forest, knots, samples, times, here, own) for name, own in owners}
+    samples = joined_positions(case, motions, whole)
+    here, before, after = (_at(motions, samples, times + way) for way in (0.0, -A_MOMENT, A_MOMENT))
+    return {name: _rate(forest, here, before, after, own) for name, own in owners}
 
 
 def _rate(
-    forest: Forest,
-    knots: np.ndarray,
-    samples: np.ndarray,
-    times: np.ndarray,
-    here: np.ndarray,
-    own: slice,
+    forest: Forest, here: np.ndarray, before: np.ndarray, after: np.ndarray, own: slice
 ) -> np.ndarray:
     ends = []
-    for way in (-A_MOMENT, A_MOMENT):
+    for then in (before, after):
         moved = here.copy()
-        moved[:, own] = _at(knots, samples[:, own], times + way)
+        moved[:, own] = then[:, own]
         ends.append(forest.poses(moved))
     return (ends[1] - ends[0]) / (2.0 * A_MOMENT)
 
 
-def _at(knots: np.ndarray, samples: np.ndarray, times: np.ndarray) -> np.ndarray:
-    return np.column_stack([np.interp(times, knots, column) for column in samples.T])
+def _at(motions: Sequence[Motion], samples: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """(n, columns) the positions at some times; before and after the run its first and last."""
+    knots = motions[0].times
+    found = np.column_stack([np.interp(times, knots, column) for column in samples.T])
+    first = 0
+    for motion in motions:
+        own = slice(first, first + motion.positions.shape[1])
+        first = own.stop
+        if motion.velocities is not None and motion.n_steps > 1:
+            place = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
+            share = np.clip((times - knots[place]) / np.diff(knots)[place], 0.0, 1.0)[:, None]
+            cubics = cubics_of(knots, motion.positions, motion.velocities)
+            found[:, own] = position_on(Cubics(*(part[place] for part in cubics)), share)
+    return found
 
 
 def _columns(case: Case) -> list[tuple[str, int, int]]:

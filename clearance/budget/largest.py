@@ -17,7 +17,7 @@ from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.world.budget import Budget
 from clearance.world.case import Case
-from clearance.world.mimics import followers
+from clearance.world.mimics import leads_of
 from clearance.world.reach import farthest_reach
 
 GREATEST = {"rad": 0.2, "m": 0.1, "s": 1.0}
@@ -151,8 +151,8 @@ class _Trial:
         for placed in case.robots:
             if placed.robot.name == self.key.owner:
                 factor += sum(
-                    abs(one.factor) for one in followers(placed.robot)
-                    if one.master == self.key.part != one.joint.name
+                    abs(more) for leads in leads_of(placed.robot).values()
+                    for name, more in leads[1:] if name == self.key.part
                 )  # fmt: skip
         return (
             2.0

@@ -29,7 +29,7 @@ from clearance.world.budget import (
 )
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, carried_by, forest_of
-from clearance.world.mimics import Follower, followers
+from clearance.world.mimics import leads_of
 from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.robot import JointKind
@@ -240,9 +240,9 @@ class _Told:
             start = self.forest.robot_starts[i]
             links = {name: start + k for k, name in enumerate(placed.robot.link_names)}
             self.roots[start] = placed
-            moves = {one.joint.name: one for one in followers(placed.robot)}
+            leads = leads_of(placed.robot)
             for joint in placed.robot.joints:
-                self.joints[links[joint.child]] = placed.robot, joint, moves.get(joint.name)
+                self.joints[links[joint.child]] = placed.robot, joint, leads.get(joint.name, ())
         links_of = enumerate(self.forest.obstacle_links)
         self.obstacles = {link: case.obstacles[i] for i, link in links_of if link != WORLD}
 
@@ -250,9 +250,8 @@ class _Told:
         """The slopes of the joint above a link and of all frames that it hangs on."""
         origin = self._joined(link, side)
         if link in self.joints:
-            robot, joint, moves = self.joints[link]
-            if moves is not None:
-                yield from self._of_joint(link, robot.name, moves, side)
+            robot, joint, leads = self.joints[link]
+            yield from self._of_joint(link, robot.name, leads, side)
             yield from _of_frame(SourceKey(robot.name, FRAME, joint.name), side, origin)
         elif link in self.roots:
             placed = self.roots[link]
@@ -289,13 +288,16 @@ class _Told:
             origin = at[:, :3, 3] + at[:, :3, :3] @ held.origin
             yield from _of_frame(SourceKey(held.owner, PLACE, ""), side, origin)
 
-    def _of_joint(self, link: int, robot: str, moves: Follower, side: _Side) -> Effects:
+    def _of_joint(
+        self, link: int, robot: str, leads: tuple[tuple[str, float], ...], side: _Side
+    ) -> Effects:
+        if not leads:
+            return
         at, links = side.witness.poses[:, link], self.forest.links
         way = at[:, :3, :3] @ links.axes[link]
         if links.kinds[link] == TURNING:
             way = np.cross(way, side.x - at[:, :3, 3])
         slope = np.einsum("ni,ni->n", side.u, way)[:, None]
-        for kind in (POSITION, TRACKING):
-            yield SourceKey(robot, kind, moves.joint.name), 0, slope
-            if moves.master != moves.joint.name:
-                yield SourceKey(robot, kind, moves.master), 0, moves.factor * slope
+        for name, factor in leads:
+            for kind in (POSITION, TRACKING):
+                yield SourceKey(robot, kind, name), 0, factor * slope

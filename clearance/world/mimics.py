@@ -35,6 +35,26 @@ def followers(robot: Robot) -> tuple[Follower, ...]:
     return tuple(found[joint.name] for joint in robot.joints if joint.kind is not JointKind.FIXED)
 
 
+@lru_cache(maxsize=8)
+def leads_of(robot: Robot) -> dict[str, tuple[tuple[str, float], ...]]:
+    """Of each joint that moves, by name, the joints whose errors it has: itself, then those that it follows one
+    after the other; and by how much, times their errors.
+
+    Raises:
+        UnknownJoint, BadInput: as `masters_of`.
+    """
+    moves = {one.joint.name: one.joint for one in followers(robot)}
+    found = {}
+    for name, joint in moves.items():
+        leads, factor = [(name, 1.0)], 1.0
+        while joint.mimic is not None:
+            factor *= joint.mimic.multiplier
+            leads.append((joint.mimic.joint, factor))
+            joint = moves[joint.mimic.joint]
+        found[name] = tuple(leads)
+    return found
+
+
 def masters_of(joints: Sequence[Joint]) -> dict[str, Follower]:
     """What moves each joint, by name; in time linear in the joints.
 

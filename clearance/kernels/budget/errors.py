@@ -12,13 +12,13 @@ from clearance.compile.jit import shared
 TURN, SLIDE, FRAME, TOGETHER = 0.0, 1.0, 2.0, 3.0
 """Kinds of rows."""
 
-ORIGIN, AXIS, KIND, FIRST, OFFSET, CHORD, WAY = 0, 3, 6, 7, 8, 9, 10
+ORIGIN, AXIS, KIND, FIRST, OFFSET, CHORD, WAY, FIRST_AT_REST = 0, 3, 6, 7, 8, 9, 10, 11
 """Places in a row: a point of the axis or the frame's origin [m]; the unit axis; the kind; the error [rad] or [m]
-by itself; the offset of a frame [m]; 2 sin(half of all that it can turn); [m] all that it can slide. Of a motion
-together: its velocity in place of the origin, its spin in place of the axis, and in place of the error the share
-of it that is there since a clock may be off."""
+by itself; the offset of a frame [m]; 2 sin(half of all that it can turn); [m] all that it can slide; what of the
+error is there without motion. Of a motion together: its velocity in place of the origin, its spin in place of the
+axis, and in place of the error the share of it that is there since a clock may be off."""
 
-N_NUMBERS = 11
+N_NUMBERS = 12
 
 
 class Extras(NamedTuple):

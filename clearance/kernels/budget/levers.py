@@ -57,14 +57,21 @@ def _way(path, link):
     way = bow = 0.0
     for step in range(len(path.times)):
         way = max(way, abs(path.positions[step, link]))
-    if len(path.velocities) > 0 and path.is_cubic[link]:
-        for step in range(len(path.times) - 1):
-            length = path.times[step + 1] - path.times[step]
-            there = path.positions[step + 1, link] - path.positions[step, link]
-            e0 = abs(length * path.velocities[step, link] - there)
-            e1 = abs(length * path.velocities[step + 1, link] - there)
-            bow = max(bow, 0.25 * max(e0, e1))
+    for step in range(len(path.times) - 1):
+        bow = max(bow, bow_of(path, step, link))
     return (way + bow) * OUTWARD
+
+
+@inline
+def bow_of(path, step, link):
+    """[rad or m] how far a joint gets from the straight way to the next step at most."""
+    if len(path.velocities) == 0 or not path.is_cubic[link]:
+        return 0.0
+    length = path.times[step + 1] - path.times[step]
+    way = path.positions[step + 1, link] - path.positions[step, link]
+    e0 = length * path.velocities[step, link] - way
+    e1 = length * path.velocities[step + 1, link] - way
+    return 0.25 * max(abs(e0), abs(e1))
 
 
 @inline
@@ -121,13 +128,12 @@ def _fill(surface, world, body, errors, levers):
 
 @inline(force=True)
 def moved_from_step(world, path, step, body, levers):
-    """[m] how far any point of a body moves from one step to the next at most, whatever the errors are."""
+    """[m] how far any point of a body gets on the way from one step to the next, whatever the errors are."""
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        moved += (
-            abs(path.positions[step + 1, i] - path.positions[step, i]) * levers.of_links[body, i]
-        )
+        way = abs(path.positions[step + 1, i] - path.positions[step, i]) + bow_of(path, step, i)
+        moved += way * levers.of_links[body, i]
         i = links.parents[i]
     for ball in range(len(path.balls.links)):
         lever = levers.of_links[body, path.balls.links[ball]]

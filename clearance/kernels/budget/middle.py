@@ -10,6 +10,7 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.budget.errors import JointMotion
+from clearance.kernels.budget.levers import bow_of
 from clearance.kernels.motion.certify import IntervalMiddle, go_to_middle
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
 
@@ -40,15 +41,7 @@ def new_middle_of(n_links):
 @inline
 def _position(path, step, link, share):
     """Where a joint is, and how far its path may be from a straight line to either end of the interval."""
-    part = part_of(path, step, link, share, share)
-    bow = 0.0
-    if len(path.velocities) > 0 and path.is_cubic[link]:
-        length = path.times[step + 1] - path.times[step]
-        way = path.positions[step + 1, link] - path.positions[step, link]
-        e0 = length * path.velocities[step, link] - way
-        e1 = length * path.velocities[step + 1, link] - way
-        bow = 0.25 * max(abs(e0), abs(e1))
-    return part.middle, bow
+    return part_of(path, step, link, share, share).middle, bow_of(path, step, link)
 
 
 @inline

@@ -7,7 +7,7 @@ from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, sub
 from clearance.kernels.budget.errors import (
     CHORD,
-    FIRST,
+    FIRST_AT_REST,
     FRAME,
     KIND,
     OFFSET,
@@ -68,12 +68,12 @@ def along_at_rest(found, body, u, x):
         kind = r[KIND]
         o, a = Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5])
         if kind == TURN:
-            moved += r[FIRST] * abs(dot(cross(u, a), sub(x, o)))
+            moved += r[FIRST_AT_REST] * abs(dot(cross(u, a), sub(x, o)))
         elif kind == SLIDE:
-            moved += r[FIRST] * abs(dot(u, a))
+            moved += r[FIRST_AT_REST] * abs(dot(u, a))
         elif kind == FRAME:
             c = cross(u, sub(x, o))
-            moved += r[FIRST] * math.sqrt(dot(c, c))
+            moved += r[FIRST_AT_REST] * math.sqrt(dot(c, c))
         else:
-            moved += r[FIRST] * abs(dot(u, add(o, cross(a, x))))
+            moved += r[FIRST_AT_REST] * abs(dot(u, add(o, cross(a, x))))
     return moved

@@ -22,6 +22,7 @@ from clearance.kernels.arithmetic.vec3 import (
 from clearance.kernels.budget.errors import (
     CHORD,
     FIRST,
+    FIRST_AT_REST,
     FRAME,
     KIND,
     OFFSET,
@@ -64,7 +65,7 @@ def _write(rows, n, origin, axis, kind, first, offset):
     r = rows[n]
     r[0], r[1], r[2] = origin.x, origin.y, origin.z
     r[3], r[4], r[5] = axis.x, axis.y, axis.z
-    r[KIND], r[FIRST], r[OFFSET] = kind, first, offset
+    r[KIND], r[FIRST], r[OFFSET], r[FIRST_AT_REST] = kind, first, offset, first
     r[CHORD], r[WAY] = 0.0, 0.0
     return n + 1
 
@@ -216,6 +217,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
                     velocity.y + swing * axis.y,
                     velocity.z + swing * axis.z,
                 )
+            rows[n - 1, FIRST_AT_REST] = joint + share * bend
         if errors.angle[i] > 0.0 or errors.xyz[i] > 0.0 or motion.turned[i] > 0.0:
             origin = move_back(pose, _joint_origin(links, poses, i))
             angle = errors.angle[i] + motion.turned[i]
