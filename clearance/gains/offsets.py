@@ -1,6 +1,7 @@
 """A change of path: smooth offsets of a robot's joints over its table, and the limits that they keep.
 
-A change is as large as the greatest offset of any joint at any sample, slides counted by `SLIDE`. Of those
+A change is as large as the greatest offset of any joint at any sample, on cubics of what encloses them between
+samples too, slides counted by `SLIDE`. Of those
 that are as large the least in sum is taken. Not for: by how much (`search`).
 """
 
@@ -20,6 +21,7 @@ from clearance.gains.shortfalls import Rows
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.world.case import Case, PlacedRobot
+from clearance.world.cubic import Cubics, position_on
 
 SLIDE = 2.0
 """[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""
@@ -91,11 +93,23 @@ class JointOffsets:
         return self.basis.at(self.placed.asked.times)
 
     @cached_property
+    def _sized(self) -> np.ndarray:
+        """(r, m) what no offset exceeds: samples and, on cubics, the Bernstein coefficients between."""
+        asked, samples = self.placed.asked, self._samples
+        if asked.velocities is None:
+            return samples
+        thirds = np.diff(asked.times)[:, None] / 3.0
+        rates = self.basis.at(asked.times, 1)
+        between = (samples[:-1] + thirds * rates[:-1], samples[1:] - thirds * rates[1:])
+        rows = np.stack([samples[:-1], *between], axis=1).reshape(-1, samples.shape[1])
+        return np.concatenate([rows, samples[-1:]])
+
+    @cached_property
     def _few_samples(self) -> np.ndarray:
-        """The same at some of the samples, as many as the splines can tell apart."""
-        n_rows, wanted = len(self._samples), PER_INTERVAL * self.basis.n_intervals + 1
+        """The same at some of the rows, as many as the splines can tell apart."""
+        n_rows, wanted = len(self._sized), PER_INTERVAL * self.basis.n_intervals + 1
         few = np.unique(np.linspace(0, n_rows - 1, min(n_rows, wanted)).astype(int))
-        return self._samples[few]
+        return self._sized[few]
 
     def offsets(self, x: np.ndarray) -> np.ndarray:
         """(n, k) [rad or m] of the samples of the table."""
@@ -116,8 +130,22 @@ class JointOffsets:
         by_joint = approach.by_columns()[:, self.columns]
         if not by_joint.any():
             return None
-        splines = self.basis.at(self._table_times(approach))
+        splines = self._between_samples(self._table_times(approach))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
+
+    def _between_samples(self, times: np.ndarray) -> np.ndarray:
+        """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""
+        asked, samples = self.placed.asked, self._samples
+        held = np.clip(times, asked.times[0], asked.times[-1])
+        row = np.clip(np.searchsorted(asked.times, held, side="right") - 1, 0, asked.n_steps - 2)
+        length = (asked.times[row + 1] - asked.times[row])[:, None]
+        share = (held - asked.times[row])[:, None] / length
+        step = samples[row + 1] - samples[row]
+        if asked.velocities is None:
+            return np.asarray(samples[row] + share * step)
+        rates = length[..., None] * self.basis.at(asked.times, 1)[np.stack([row, row + 1], axis=1)]
+        cubics = Cubics(samples[row], step, rates[:, 0] - step, rates[:, 1] - step)
+        return np.asarray(position_on(cubics, share))
 
     @cached_property
     def columns(self) -> list[int]:
@@ -131,7 +159,8 @@ class JointOffsets:
         return np.asarray((times - timing.start) * timing.rate)
 
     def size(self, x: np.ndarray) -> float:
-        return float((np.abs(self.offsets(x)) * self.weights).max(initial=0.0))
+        offsets = self._sized @ x.reshape(self.n_joints, -1).T
+        return float((np.abs(offsets) * self.weights).max(initial=0.0))
 
     def swing(self, reach: np.ndarray) -> float:
         return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())

@@ -204,3 +204,13 @@ def test_balls_of_a_cloud_that_overlap_are_parted(kind):
     found = gain(case, kind)
     assert found.kept and found.size == pytest.approx(0.03, abs=FINE)
     assert found.lower_bound == pytest.approx(0.03, rel=1e-4)
+
+
+@pytest.mark.parametrize("n", [4, 6])
+def test_a_change_between_few_samples_counts(n):
+    other = along_x(gantry("other"), np.linspace(0.0, 2.0, 201), y=9.0)
+    case = quick(n, 10.0)
+    post = replace(case.obstacles[0], body=cl.Body("post", cl.box((0.02, 0.1, 1.0))))
+    found = gain(replace(case, robots=(*case.robots, other), obstacles=(post,)), robot="gantry")
+    assert found.size >= 2.0 * 0.01 * (1.0 - 1e-5) or not found.kept
+    assert found.lower_bound == pytest.approx(0.01, rel=1e-4)
