@@ -73,6 +73,9 @@ FILES = {
     "self.yaml": ONE.replace("urdf}", "urdf, self_clearance: true}") + SCENE.format(away=3.0),
     "common.yaml": TWO + SCENE.format(away=2.0) + "clock: common\n",
     "any_time.yaml": TWO + SCENE.format(away=2.0) + "clock: unsynchronised\n",
+    "tolerances.yaml": ONE
+    + SCENE.format(away=1.45)
+    + "tolerance: {joints: {all: 0.001}, kinematics: {all: {xyz: 0.001}}, timing: {all: 0.01}}\n",
     "slack.yaml": TWO + SCENE.format(away=2.0) + "clock: {slack: 0.1}\n",
 }
 
@@ -101,6 +104,7 @@ THE_REST = (
     Question("two robots on one clock", ("check", "common.yaml")),
     Question("two robots on two clocks", ("check", "any_time.yaml")),
     Question("two clocks that nearly agree", ("check", "slack.yaml")),
+    Question("tolerances", ("check", "tolerances.yaml")),
 )
 """What it does where it is asked to."""
 

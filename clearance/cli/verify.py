@@ -80,6 +80,10 @@ def verify(folder: Path, case_file: Path | None, quiet: bool) -> int:
         click.echo(found.headline)
         for path, digest in found.inputs:
             click.echo(f"  {digest[:16]}  {path}")
+        for path, digest in found.not_read:
+            click.echo(
+                f"  {digest[:16]}  {path} (of the run; not read again, no part of the proof)"
+            )
         if found.unmeasured:
             click.echo(
                 f"  {len(found.unmeasured)} links and pairs are left out, as the report lists them:"

@@ -39,7 +39,9 @@ class Verification:
         bounds: [m] proven of each rule that judges something, over all intervals but those of `n_contact`.
         n_pairs, n_intervals: of the run. n_claimed: intervals of which something is claimed.
         n_contact: how many of those have a bound of 0 or less by some rule, so that nothing is proven of it there.
-        data: sha256 of the case's numbers. inputs: path and sha256 of the files.
+        data: sha256 of the case's numbers. inputs: path and sha256 of the files that were read again.
+        not_read: path and sha256 that inputs of the run had which the case does not name, as tolerances given
+            beside it: they are no part of the proof, and whether they are as they were is not known.
         unmeasured: links and pairs that are left out, and why.
         nominal: the case has tolerances, of which the bound takes nothing off.
     """
@@ -56,6 +58,7 @@ class Verification:
     inputs: tuple[tuple[str, str], ...]
     unmeasured: tuple[Omission, ...]
     nominal: bool
+    not_read: tuple[tuple[str, str], ...] = ()
 
     @property
     def proven(self) -> bool:
@@ -77,10 +80,15 @@ class Verification:
         touch = ""
         if self.n_contact:
             touch = f", except in {self.n_contact} intervals, in which bodies may touch"
+        inputs = f"{len(self.inputs)} inputs unchanged"
+        if self.not_read:
+            inputs += (
+                f", {len(self.not_read)} not read again ({', '.join(p for p, _ in self.not_read)})"
+            )
         nominal = ", nominal: tolerances are not taken off" if self.nominal else ""
         return (
             f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{touch}"
-            f"{nominal}; {len(self.inputs)} inputs unchanged, data {self.data[:16]}"
+            f"{nominal}; {inputs}, data {self.data[:16]}"
         )
 
 
@@ -105,6 +113,7 @@ def verify(
     _require_data(data, receipt)
     failure = _failure(data, receipt) or _overstated(place, receipt)
     claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
+    inputs, read = _inputs_of(receipt), {source.path for source in given.sources}
     return Verification(
         data.name,
         receipt.head["kind"],
@@ -119,10 +128,16 @@ def verify(
         int(claimed.any(axis=0).sum()),
         int((claimed & (receipt.claims <= 0)).any(axis=0).sum()),
         data.digest,
-        tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
+        tuple(one for one in inputs if one[0] in read),
         data.unmeasured,
         receipt.head["nominal"] or given.tolerance is not None,
+        tuple(one for one in inputs if one[0] not in read),
     )
+
+
+def _inputs_of(receipt: Receipt) -> tuple[tuple[str, str], ...]:
+    """Path and sha256 of all inputs of the run."""
+    return tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"])
 
 
 def _failure(data: CaseData, receipt: Receipt) -> str:
@@ -215,7 +230,7 @@ def _require_inputs(case: Case, receipt: Receipt) -> None:
     Raises:
         BadSyntax: the first that is not, or was none.
     """
-    known = {one["path"]: one["sha256"] for one in receipt.head["inputs"]}
+    known = dict(_inputs_of(receipt))
     for source in case.sources:
         if known.get(source.path) != source.sha256:
             problem = "was no input of the run" if source.path not in known else "has changed"

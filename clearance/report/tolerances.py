@@ -48,9 +48,7 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     waived = " (waived pairs among them)" if record.case.waivers else ""
     left = f"at least {mm(proven)} mm are left{waived}"
     if proven <= 0.0:
-        left = "contact is not ruled out" + (
-            f" (they could overlap by {depth_mm(-proven)} mm)" if proven < 0.0 else ""
-        )
+        left = "contact is not ruled out"  # a number below 0 says no depth
     told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
     if expected is not None:
         spread = f"{budget.coverage:g} sigma, estimate"

@@ -93,3 +93,17 @@ def test_a_receipt_of_what_is_not_proven_is_refused_before_anything_is_measured(
     assert run(["check", str(case), *options]) == ExitCode.BAD_INPUT
     assert "receipt" in capsys.readouterr().err
     assert not (home.parent / "out").exists()
+
+
+def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys):
+    tolerances, out = home / "tol.yaml", home / "again"
+    tolerances.write_text("joints: {all: 0.0001}\n")
+    case = str(home / "scenes" / "box_box" / "case.yaml")
+    given = ["--tolerance", str(tolerances), "--unproven-ok"]
+    run(["check", case, *given, "--out", str(out), "--receipt"])
+    tolerances.write_text("joints: {all: 0.0002}\n")
+    capsys.readouterr()
+    assert run(["verify", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert "1 not read again (" in told
+    assert "tol.yaml (of the run; not read again, no part of the proof)" in told
