@@ -10,7 +10,6 @@ import numpy as np
 
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.query.contact import rough_contact
 from clearance.query.pair_query import Query
 
 THIN = 1e-7
@@ -42,6 +41,8 @@ class Overlaps:
         is inside a solid."""
         if any(isinstance(shape, PointCloud) for shape in self.shapes):
             return self._of_balls(pose_a, pose_b)
+        from clearance.query.contact import rough_contact
+
         found = rough_contact(*self.shapes, pose_a=pose_a, pose_b=pose_b)
         if found is None:
             return None
