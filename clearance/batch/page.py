@@ -59,10 +59,9 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
 
 def unfinished_page(name: str, text: str) -> str:
     """The page of a batch that has no answer yet."""
-    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
-    title, told = escape(f"{name}: not finished"), escape(text)
+    head = head_of(f"{name}: not finished")
     return Template(_own("unfinished.html")).substitute(
-        title=title, style=style, name=escape(name), text=told, version=escape(__version__)
+        head=head, name=escape(name), text=escape(text), version=escape(__version__)
     )
 
 
