@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadSyntax, MissingFile, at, unwritable
+from clearance.errors import BadSyntax, MissingFile, at
 from clearance.receipt.proof.proving import SIZES, BadEvidence
 
 FILE_NAME = "receipt.bin"
@@ -181,18 +181,3 @@ class GoneThrough:
         if start + n > len(part):
             raise BadEvidence("the evidence ends too soon")
         return part[start : start + n]
-
-
-def write_file(path: Path, content: bytes) -> None:
-    """Writes a file whole or not at all.
-
-    Raises:
-        Unwritable: it cannot be written.
-    """
-    with unwritable(path):
-        partial = path.with_name(f".{path.name}.partial")
-        try:
-            partial.write_bytes(content)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)

@@ -20,9 +20,9 @@ from clearance.receipt.receipt_file import (
     REPORT,
     Receipt,
     receipt_bytes,
-    write_file,
 )
 from clearance.receipt.search import evidence_for
+from clearance.report.folder import write_file
 
 if TYPE_CHECKING:
     from clearance.run import Run
