@@ -132,11 +132,12 @@ class Search:
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""
         reach, missing = self.change.first_reach, [state.worst]
+        rows = state.rows(self.change.gradient)
         for _ in range(MOST_STEPS):
             if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
                 return state
-            x = self._aim(state, reach)
-            foretold = self._merit(x, self._missing_at(state, x))
+            x = self._aim(state, rows, reach)
+            foretold = self._merit(x, _foretold(rows, x - state.x))
             gain = self._merit(state.x, state.worst) - foretold
             if gain <= SMALLER * self.change.size(state.x):
                 return state
@@ -149,13 +150,12 @@ class Search:
                 continue
             if done > GOOD_SHARE * gain:
                 reach = np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
-            state = tried
+            state, rows = tried, tried.rows(self.change.gradient)
             missing.append(state.worst)
         return state
 
-    def _aim(self, state: State, reach: np.ndarray) -> np.ndarray:
+    def _aim(self, state: State, rows: Rows, reach: np.ndarray) -> np.ndarray:
         """Where the next step goes: the least change that keeps all rows, or misses them by least."""
-        rows = state.rows(self.change.gradient)
         box = self.change.box.about(state.x, reach)
         x = self.change.least(rows, state.x, box)
         if x is None:
@@ -165,11 +165,11 @@ class Search:
             x = nearest if x is None else x
         return np.clip(x, box.low, box.high)
 
-    def _missing_at(self, state: State, x: np.ndarray) -> float:
-        """[m] What the rows foretell to be missing."""
-        rows = state.rows(self.change.gradient)
-        return max(0.0, float((rows.missing - rows.gradients @ (x - state.x)).max(initial=0.0)))
-
     def _merit(self, x: np.ndarray, missing: float) -> float:
         """What a step is to lower: the size of the change, and what is missing at its price."""
         return self.change.size(x) + self.change.price * max(0.0, missing - FINE)
+
+
+def _foretold(rows: Rows, step: np.ndarray) -> float:
+    """[m] What is missing after a step (m,), as the rows foretell it."""
+    return max(0.0, float((rows.missing - rows.gradients @ step).max(initial=0.0)))
