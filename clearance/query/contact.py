@@ -80,11 +80,13 @@ def contact(
     *,
     pose_a: np.ndarray | None = None,
     pose_b: np.ndarray | None = None,
+    rough: bool = False,
 ) -> Contact | None:
     """How two bodies overlap; None if they are apart.
 
     Args:
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
+        rough: concave bodies are not cut, which takes milliseconds: bounds of the depth are wider.
 
     Raises:
         BadPose: not a rigid motion. BadInput: a body without any extent in space. BadShape: a cloud of points.
@@ -93,24 +95,6 @@ def contact(
         and `_at_least` lower ones; the translation has then been confirmed by the distance of the bodies
         themselves, where both have an inside.
     """
-    return _contact(a, b, pose_a, pose_b, rough=False)
-
-
-def rough_contact(
-    a: Polyhedron, b: Polyhedron, *, pose_a: np.ndarray, pose_b: np.ndarray
-) -> Contact | None:
-    """The same in milliseconds, concave bodies not cut: bounds of the depth are wider, and still bounds."""
-    return _contact(a, b, pose_a, pose_b, rough=True)
-
-
-def _contact(
-    a: Polyhedron,
-    b: Polyhedron,
-    pose_a: np.ndarray | None,
-    pose_b: np.ndarray | None,
-    *,
-    rough: bool,
-) -> Contact | None:
     require_surface(a, "a"), require_surface(b, "b")
     world_from_a = validated_pose(np.eye(4) if pose_a is None else pose_a)
     world_from_b = validated_pose(np.eye(4) if pose_b is None else pose_b)

@@ -41,9 +41,9 @@ class Overlaps:
         is inside a solid."""
         if any(isinstance(shape, PointCloud) for shape in self.shapes):
             return self._of_balls(pose_a, pose_b)
-        from clearance.query.contact import rough_contact
+        from clearance.query.contact import contact
 
-        found = rough_contact(*self.shapes, pose_a=pose_a, pose_b=pose_b)
+        found = contact(*self.shapes, pose_a=pose_a, pose_b=pose_b, rough=True)
         if found is None:
             return None
         return Overlap(
