@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,13 +28,28 @@ GREATEST = {"rad": 0.2, "m": 0.1, "s": 1.0}
 SHARPNESS = 2e-3
 """The share of a tolerance within which the greatest is found."""
 
-MOST_TRIES = 24
+FIRST = {"rad": 0.002, "m": 0.002, "s": 0.02}
+"""What is tried first of an error that is 0."""
+
+FARTHER = 4.0
+"""How many times as much is tried next while a row keeps the limit."""
+
+COARSE = 0.02
+"""The share of what errors take by which what is proven of an interval may be too low: large ones are cut less."""
 
 MORE_ROWS = 8
 """Each time that rows keep a limit this many times as many are asked at once."""
 
 MOST_ROUNDS = 6
-"""Times that moments are added at which a number turned out too large; then it is halved until it is proven."""
+"""Times that rows are added at which a number turned out too large; then it is halved until it is proven."""
+
+
+class _Row(NamedTuple):
+    """A step, or the interval after it, of one of the sections."""
+
+    section: int
+    between: bool
+    row: int
 
 
 @dataclass(eq=False)
@@ -45,7 +62,7 @@ class Largest:
 
     fail: float
     sections: Sequence[SectionBudget]
-    _hard: list[tuple[int, bool, int]] = field(default_factory=list)
+    _hard: list[_Row] = field(default_factory=list)
     _known: dict[SourceKey, tuple[float | None, ...]] = field(default_factory=dict)
 
     def of(self, case: Case, key: SourceKey) -> tuple[float | None, ...]:
@@ -59,17 +76,25 @@ class Largest:
         trial = _Trial(self, key, place, unit)
         if not trial.keeps(0.0):
             return None
-        if trial.keeps(GREATEST[unit]):
-            return GREATEST[unit]
-        low, high = 0.0, GREATEST[unit]
+        number = GREATEST[unit]
         for _ in range(MOST_ROUNDS):
-            low, high = trial.narrowed(low, high)
-            if trial.keeps(low):
-                return low
-            low, high = 0.0, low
-        while low < high and not trial.keeps(high):
-            high = 0.5 * high
-        return high
+            for row in [*dict.fromkeys([*self._least, *self._hard])]:
+                number = trial.greatest_at(row, number)
+            if trial.keeps(number):
+                return number
+        while number > 0.0 and not trial.keeps(number):
+            number = 0.5 * number
+        return number
+
+    @cached_property
+    def _least(self) -> list[_Row]:
+        """The step and the interval of each section of which least is proven as the errors are."""
+        least = []
+        for i, section in enumerate(self.sections):
+            least.append(_Row(i, False, int(np.argmin(section.steps.proven))))
+            if section.between is not None and len(section.between.proven) > 1:
+                least.append(_Row(i, True, int(np.argmin(section.between.proven[:-1]))))
+        return least
 
 
 @dataclass(eq=False)
@@ -98,29 +123,39 @@ class _Trial:
                 failing = _failing(section, pairs, rows, self._limit(section), between=between)
                 if failing is not None:
                     if number > 0.0:
-                        self.asked._hard.append((i, between, failing))
+                        self.asked._hard.append(_Row(i, between, failing))
                     return False
         return True
 
-    def narrowed(self, low: float, high: float) -> tuple[float, float]:
-        """Bounds of the greatest number, as far as the hard moments tell."""
-        for _ in range(MOST_TRIES):
-            if high - low <= SHARPNESS * high:
-                break
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if self._keeps_hard(middle) else (low, middle)
-        return low, high
+    def greatest_at(self, row: _Row, most: float) -> float:
+        """A number up to `most` with which one row is proven to keep the limit, and little more is not; or 0."""
+        from scipy.optimize import brentq
 
-    def _keeps_hard(self, number: float) -> bool:
-        for i, between, row in dict.fromkeys(self.asked._hard):
-            section = self.asked.sections[i]
-            pairs = self._pairs(section, number)
-            if (
-                _failing(section, pairs, np.array([row]), self._limit(section), between=between)
-                is not None
-            ):
-                return False
-        return True
+        kept = [0.0]
+
+        def beyond(number: float) -> float:
+            left = self._beyond(row, number)
+            if left >= 0.0:
+                kept.append(number)
+            return left
+
+        high = min(most, 2.0 * self.given if self.given > 0.0 else FIRST[self.unit])
+        while beyond(high) >= 0.0:
+            if high >= most:
+                return most
+            high = min(most, FARTHER * high)
+        if beyond(max(kept)) < 0.0:
+            return 0.0
+        root = brentq(beyond, max(kept), high, xtol=SHARPNESS * high * 0.25, rtol=SHARPNESS)
+        beyond((1.0 - SHARPNESS) * root)
+        return max(kept)
+
+    def _beyond(self, row: _Row, number: float) -> float:
+        """[m] how far what is proven of a row lies above the limit."""
+        section = self.asked.sections[row.section]
+        pairs = self._pairs(section, number)
+        left = _proven(section, pairs, np.array([row.row]), math.inf, between=row.between)
+        return float(left[0]) - self._limit(section)
 
     def _pairs(self, section: SectionBudget, number: float) -> PairsWithErrors:
         sizes = list(sizes_of(self._budget, self.key))
@@ -198,11 +233,15 @@ def _proven(
     assert section.between is not None
     assert section.answer.certificate is not None
     gap = section.answer.certificate.gap
-    known = np.full(len(rows), enough + 2.0 * gap)  # so that no more than the limit is asked about
-    if not math.isfinite(enough):
-        ends = (_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1))
-        known = np.minimum(*ends)
-    return pairs.between(rows, section.between.pair[rows], known, gap, enough).proven
+    if math.isfinite(enough):
+        known = np.full(len(rows), enough + 2.0 * gap)  # no more than the limit is asked about
+        return pairs.between(rows, section.between.pair[rows], known, gap, enough).proven
+    ends = [_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1)]
+    known = np.minimum(*ends)
+    taken = np.max(section.answer.found.clearance[rows] - known)
+    gap = max(gap, COARSE * taken)
+    order = section.between.pair[rows]
+    return pairs.between(rows, order, known, gap, enough, fail=math.inf).proven
 
 
 def _proven_of_steps(

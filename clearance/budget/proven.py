@@ -116,13 +116,15 @@ class PairsWithErrors:
         known: np.ndarray,
         gap: float,
         enough: float = np.inf,
+        fail: float | None = None,
     ) -> BudgetRows:
         """What is proven of the motion from some steps to the next.
 
         Args:
             known: (n,) [m] the least that is proven at both ends. gap: [m] how far below what occurs it may be.
+            fail: [m] less than the gap where that would leave this limit undecided; None: that of the rule.
         """
-        fail = self.what.limits.fail
+        undecided = self.what.limits.fail if fail is None else fail
 
         def ask(span: slice) -> BudgetIntervals:
             return BudgetIntervals(
@@ -131,7 +133,7 @@ class PairsWithErrors:
                 _writable(known[span]),
                 enough,
                 gap,
-                fail,
+                undecided,
                 MOST_PARTS,
             )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeVar, overload
 
 import numpy as np
@@ -132,7 +132,8 @@ class WorstMoments(LookedAt[BudgetMoment]):
             found.append(
                 ErrorSource(
                     key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
-                    max(0.0, taken), float(np.sqrt(variance)), self._largest.of(case, key),
+                    max(0.0, taken), float(np.sqrt(variance)),
+                    LookedAt(partial(self._largest.of, case, key)),
                 )
             )  # fmt: skip
         return sorted(found, key=lambda source: -source.proven)

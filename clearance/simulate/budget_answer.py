@@ -34,7 +34,7 @@ class ErrorSource:
     tolerances: tuple[tuple[float, str], ...]
     proven: float
     expected: float
-    largest: tuple[float | None, ...] = ()
+    largest: Sequence[float | None] = ()
 
 
 @dataclass(frozen=True, eq=False)
