@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import pyarrow as pa
@@ -15,7 +16,7 @@ import pyarrow.compute as pc
 
 from clearance.batch.rows import ERROR, VERDICT, error_row
 from clearance.batch.run import Outcome
-from clearance.batch.shared_waivers import stale_waivers
+from clearance.batch.shared_waivers import stale_waivers, stale_waivers_of_cells
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
 
@@ -110,10 +111,12 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
 
 
 def _stale(outcome: Outcome, cases: pa.Table) -> tuple[str, ...]:
+    needed = [own or () for own in cases["waivers"].to_pylist()]
+    told = stale_waivers_of_cells(outcome.items, needed)
     if not outcome.waivers:
-        return ()
-    needed = {waiver for own in cases["waivers"].to_pylist() for waiver in own or ()}
-    return stale_waivers(outcome.items, outcome.waivers, needed, outcome.items[0].options.day)
+        return tuple(told)
+    among, day = set(chain.from_iterable(needed)), outcome.items[0].options.day
+    return (*told, *stale_waivers(outcome.items, outcome.waivers, among, day))
 
 
 def _findings(table: pa.Table, names: pa.Array) -> pa.Table:

@@ -9,7 +9,9 @@ fault itself. Not for: what a task is (`measuring`), nor the queue (`engine`).
 from __future__ import annotations
 
 import logging
+import math
 import signal
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
@@ -33,6 +35,9 @@ LOST_WITH = 2
 STARTS = 3
 """Times that workers are tried to be started."""
 
+RECOUNTING = 1.0
+"""[s] After which workers are counted again."""
+
 CONNECTING = 20
 """[s] In which a scheduler must answer."""
 
@@ -47,7 +52,11 @@ def local_cluster(jobs: int, say: Callable[[str], None]) -> Iterator[DaskEngine]
     compile_ahead(say)
     with importing("batch", "more than one job"):
         import distributed
-    with _settings(), _workers(jobs) as cluster, distributed.Client(cluster) as client:
+    with (
+        _settings(),
+        _workers(jobs) as cluster,
+        distributed.Client(cluster, direct_to_workers=True) as client,
+    ):
         yield DaskEngine(client)
 
 
@@ -146,6 +155,7 @@ class DaskEngine:
 
     def __init__(self, client: Client) -> None:
         self.client = client
+        self._counted, self._counted_at = 1, -math.inf
 
     def results(self, queue: Queue) -> Iterator[Done]:
         """What the tasks come to, as they come.
@@ -174,8 +184,9 @@ class DaskEngine:
                 future.release()
 
     def _fill(self, queue: Queue, running: dict[Future, Task], finished: Any) -> None:
-        while len(running) < AHEAD * self._n_workers():
-            task = queue.task()
+        n_hands = AHEAD * self._n_workers()
+        while len(running) < n_hands:
+            task = queue.task(n_hands)
             if task is None:
                 return
             future = self.client.submit(measure_there, task, pure=False)
@@ -183,7 +194,12 @@ class DaskEngine:
             finished.add(future)
 
     def _n_workers(self) -> int:
-        return max(1, len(self.client.ncores() or ()))
+        """How many there are, asked for once a second at most: they come, and some are lost."""
+        now = time.monotonic()
+        if now - self._counted_at > RECOUNTING:
+            self._counted = max(1, len(self.client.ncores() or ()))
+            self._counted_at = now
+        return self._counted
 
     def _result(self, future: Future, task: Task, queue: Queue) -> Done | None:
         """What a task came to; None where its cases wait again, one by one."""

@@ -14,8 +14,11 @@ from clearance.batch.item import Item
 from clearance.batch.keys import program
 from clearance.batch.measuring import Done, Task, measure
 
-MOST = 32
+MOST = 64
 """Cases of a task: what is lost with a worker, at most."""
+
+LEAST = 8
+"""Cases of a task where as many wait: to hand one out and take it back costs as much as half a short case."""
 
 SECONDS = 1.0
 """After so long a task comes back with what it has."""
@@ -36,13 +39,18 @@ class Queue:
     def __len__(self) -> int:
         return len(self._waiting)
 
-    def task(self) -> Task | None:
-        """The next cases, all of one cell; None where none waits."""
+    def task(self, n_hands: int = 1) -> Task | None:
+        """The next cases, all of one cell; None where none waits.
+
+        Args:
+            n_hands: tasks that are out at a time. Each is a share of what waits, so all end at about one time.
+        """
         if not self._waiting:
             return None
+        share = min(MOST, max(LEAST, -(-len(self) // n_hands)))
         first = self._waiting.popleft()
         items = [first]
-        while len(items) < MOST and self._goes_with(first):
+        while len(items) < share and self._goes_with(first):
             items.append(self._waiting.popleft())
         return Task(tuple(items), SECONDS, program(), self._batch)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from clearance.batch.options import Options
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class GivenTrajectory:
     """A trajectory that a cell is given.
 
@@ -21,7 +21,7 @@ class GivenTrajectory:
     robot: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Item:
     """One case.
 

@@ -9,7 +9,7 @@ import json
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -18,6 +18,7 @@ from clearance.batch.item import Item
 from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
+from clearance.batch.shared_waivers import as_shared
 from clearance.errors import ClearanceError, Incomplete
 from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.manifest_schema import Reading
@@ -181,6 +182,8 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     reading = Reading.model_validate(json.loads(given.reading))
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
+    if case.waivers:
+        case = replace(case, waivers=as_shared(case.waivers))
     return ReadItem(case, cell.files.sources, since)
 
 

@@ -1,17 +1,42 @@
-"""Waivers that all cases of a batch share: which of them should go.
+"""Waivers that cases share, all of a batch or those of one cell: which of them should go.
 
 Not for: what they waive in a case (`findings.judgement`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 from datetime import date
 
 from clearance.batch.item import Item
 from clearance.errors import nearest_name
+from clearance.load.case_file import waivers_of_cell
 from clearance.world.rules import matches
 from clearance.world.waiver import Waiver
+
+
+def as_shared(waivers: Iterable[Waiver]) -> tuple[Waiver, ...]:
+    """The waivers, such that no case fails because only others need them."""
+    return tuple(replace(waiver, shared=True) for waiver in waivers)
+
+
+def stale_waivers_of_cells(items: Sequence[Item], needed: Sequence[Collection[str]]) -> list[str]:
+    """Why the waivers that cells name fail a batch of which all cases are answered, as `stale_waivers` tells.
+
+    Args:
+        needed: of each item, the shared waivers that it needs, as texts.
+    """
+    of_cell: dict[str, list[int]] = {}
+    for i, item in enumerate(items):
+        if item.trajectory is not None:
+            of_cell.setdefault(item.file, []).append(i)
+    told: list[str] = []
+    for file, own in of_cell.items():
+        given = as_shared(waivers_of_cell(file))
+        among = {waiver for i in own for waiver in needed[i]}
+        told += stale_waivers([items[i] for i in own], given, among, items[own[0]].options.day)
+    return list(dict.fromkeys(told))
 
 
 def stale_waivers(

@@ -66,11 +66,16 @@ class Outputs:
         refuse_inputs_of_cases([case], self.files)
 
     def withdraw_older(self) -> None:
-        """Writes over an older JUnit file that there is no answer yet; a run that is stopped leaves nothing green.
+        """Says in an older report and JUnit file that there is no answer yet; a run that is stopped leaves nothing
+        green.
 
         Raises:
             Unwritable: it cannot be written.
         """
+        if self.out is not None and self.out.is_dir():
+            from clearance.report.withdrawn import withdraw_report
+
+            withdraw_report(self.out)
         if self.junit is not None and self.junit.is_file():
             from clearance.report.folder import write_file
             from clearance.report.unfinished_junit import unfinished_junit

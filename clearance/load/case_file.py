@@ -75,6 +75,21 @@ def load_cell(path: str | PathLike[str]) -> CellFile:
     return _read(path, schema.Cell, InputFiles(path.parent))
 
 
+def waivers_of_cell(path: str | PathLike[str]) -> tuple[Waiver, ...]:
+    """The waivers that the file of a cell names, without reading what is in the cell.
+
+    Raises:
+        BadInput: as `load_cell`, of that file and of the waivers.
+    """
+    path = Path(path)
+    files = InputFiles(path.parent)
+    if b"waivers" not in files.read(path):
+        return ()
+    given, _ = read_schema(path, files, schema.Cell)
+    with at(path.name):
+        return tuple(_waivers(given, path, files))
+
+
 def with_trajectory_file(
     cell: CellFile, given: schema.TrajectoryFile, name: str, robot: str | None = None
 ) -> Case:

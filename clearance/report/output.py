@@ -25,6 +25,7 @@ from clearance.report.tables import (
     write_csv,
     write_parquet,
 )
+from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, replay_of
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
@@ -40,6 +41,7 @@ OWN = (
     findings_file.FILE_NAME,
     "report.html",
     "receipt.bin",
+    OLDER_SUMMARY,
     LAST,
 )
 """All files that a report can have; a receipt, which is of one report, goes with it."""

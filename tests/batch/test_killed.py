@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 
 import numpy as np
@@ -13,6 +14,7 @@ import pytest
 
 from tests.batch.batches import answer_bytes, run_here, write_cell
 from tests.batch.clusters import (
+    ROOT,
     finished,
     is_gone,
     kill,
@@ -50,6 +52,44 @@ def test_two_workers_write_what_one_process_does(undisturbed, tmp_path):
     manifest, expected = undisturbed
     code, out, err = finished(*arguments(manifest, tmp_path / "out"))
     assert (code, err) == (1, "") and f"{N_CASES} cases" in out and "1 error" in out
+    assert answer_bytes(tmp_path / "out") == expected
+    code, out, err = finished(*arguments(manifest, tmp_path / "out", "--strict"))
+    assert (code, err) == (2, "") and f"cached      {N_CASES - 1} of {N_CASES}" in out
+
+
+FULL = """
+import errno
+import clearance.batch.store as store
+from clearance.cli import main
+from clearance.errors import unwritable
+kept, write = [], store.write_file
+def full(path, content):
+    with unwritable(path):
+        if path.parent.name == "segments" and kept:
+            raise OSError(errno.ENOSPC, "No space left on device")
+    kept.append(path) if path.parent.name == "segments" else None
+    write(path, content)
+store.write_file = full
+if __name__ == "__main__":
+    main()
+"""
+
+
+def test_a_full_disk_ends_a_batch_of_workers_and_keeps_what_was_kept(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    (tmp_path / "full_disk.py").write_text(FULL)
+    asked = arguments(manifest, tmp_path / "out")
+    done = subprocess.run(
+        [sys.executable, str(tmp_path / "full_disk.py"), "batch", *asked],
+        env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (4, "")
+    told = done.stderr.splitlines()
+    assert told[-1].startswith("incomplete: ") and "No space left on device" in told[-1]
+    assert len(segments(tmp_path / "out")) == 1
+    assert set(answer_bytes(tmp_path / "out")) == {"batch.html", "junit.xml"}  # "not finished"
+    code, out, err = finished(*asked[:-1], "1")
+    assert (code, err) == (1, "") and "cached      0 of" not in out
     assert answer_bytes(tmp_path / "out") == expected
 
 

@@ -138,3 +138,44 @@ def test_mistakes_are_one_line(folder, capsys):
     assert err.count("\n") == 1 and not (folder / "store").exists()
     assert run(["batch", "batch.yaml", "--out", "store", "--waivers", "none.yaml"]) == 2
     assert "there is no file 'none.yaml'" in capsys.readouterr().err
+
+
+CELL_TABLE = {
+    # what: waivers of the cell, exit code, headline, a line
+    "one motion needs it": (waiver(), 0, "CLEAR  3 cases: 3 clear", ""),
+    "expired": (waiver(until="2026-10-31"), 1, "VIOLATED", "has expired on 2026-10-31"),
+    "no motion needs it": (
+        waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: what it is of keeps",
+    ),
+    "of no motion": (waiver() + waiver(case="t02"), 1, "STALE WAIVER", "did you mean 't002'?"),
+    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", CELL_TABLE)
+def test_waivers_that_the_cell_names_are_of_all_its_motions(what, folder, capsys):
+    text, code, headline, line = CELL_TABLE[what]
+    cell = folder / "cell.yaml"
+    cell.write_text(cell.read_text() + "waivers: [own.yaml]\n")
+    (folder / "own.yaml").write_text(text)
+    asked = ["batch", "batch.yaml", "--out", "store", "--jobs", "1", "--today", DAY]
+    assert run(asked) == code
+    told = capsys.readouterr().out
+    assert told.startswith(headline), told
+    assert line in told + (folder / "store" / "batch.html").read_text()
+    first = answer_bytes(folder / "store")
+    assert run([*asked, "--quiet"]) == code and answer_bytes(folder / "store") == first
+
+
+def test_a_waiver_that_another_cell_needs_is_not_needed_for_that(folder, capsys):
+    write_cell(folder / "far", [0.5])
+    for cell in (folder / "cell.yaml", folder / "far" / "cell.yaml"):
+        cell.write_text(cell.read_text() + "waivers: [own.yaml]\n")
+        (cell.parent / "own.yaml").write_text(waiver())
+    (folder / "far" / "batch.yaml").write_text(
+        'name: far\ncell: cell.yaml\ntrajectories: "t*.csv"\n'
+    )
+    asked = ["batch", "batch.yaml", "far/batch.yaml", "--out", "store", "--jobs", "1"]
+    assert run([*asked, "--today", DAY]) == 1
+    assert capsys.readouterr().out.startswith("STALE WAIVER  4 cases: 4 clear")

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from clearance.report.folder import LAST
+from clearance.report.withdrawn import OLDER_SUMMARY
 from tests.cart import URDF
 
 ROOT = Path(__file__).parents[2]
@@ -236,7 +238,7 @@ cli.main()
 """
 
 
-def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
+def test_an_interrupted_run_leaves_the_older_report_marked_as_such(folder):
     assert clearance(folder, "--out", "report").returncode == 0
     before = files(folder / "report")
     (folder / "path.csv").write_text(PATH.replace("0.7", "0.6"))
@@ -258,5 +260,9 @@ def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
         text=True,
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
-    assert files(folder / "report") == before
+    left = files(folder / "report")
+    assert left.pop(OLDER_SUMMARY) == before.pop(LAST)
+    assert "what follows is older" in left.pop("report.html").decode()
+    before.pop("report.html")
+    assert left == before
     assert not list(folder.glob("**/*.partial"))

@@ -1,0 +1,49 @@
+"""An older report whose folder a run is to write anew: marked, so that nobody reads it as the answer of that run.
+
+A run that comes to its end replaces the folder; one that is stopped leaves the mark. The page says on top that it
+is older, and `summary.json`, which programs read, has another name. Not for: JUnit, which is written anew
+(`unfinished_junit`), nor what `clearance compare` refuses (`cli.kept`).
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from clearance.errors import unwritable
+from clearance.report.folder import LAST, write_file
+
+OLDER_SUMMARY = "summary.older.json"
+"""The name of `summary.json` while the folder is not written anew."""
+
+_MARK = b'<header id="older">'
+_TOLD = _MARK + (
+    b'<div class="title"><h1>Not finished</h1><p class="verdict violated">what follows is older</p></div>'
+    b'<ul class="beside"><li>A later run into this folder has not come to its end; the same command goes on. '
+    b"This page is of the run before it.</li></ul></header>\n"
+)
+
+
+def withdraw_report(folder: Path) -> None:
+    """Marks the report in a folder as older, if there is one; a second time changes nothing.
+
+    Raises:
+        Unwritable: it cannot be marked.
+    """
+    page, summary = folder / "report.html", folder / LAST
+    if page.is_file() and not page.is_symlink():
+        content = page.read_bytes()
+        marked = marked_page(content)
+        if marked != content:
+            write_file(page, marked)
+    if summary.is_file():
+        with unwritable(summary):
+            summary.replace(folder / OLDER_SUMMARY)
+
+
+def marked_page(content: bytes) -> bytes:
+    """A page that says in its title and on top that it is older; one that says so is left as it is."""
+    if _MARK in content:
+        return content
+    titled = content.replace(b"<title>", b"<title>Not finished: ", 1)
+    return re.sub(rb"<body[^>]*>\n?", lambda found: found[0] + _TOLD, titled, count=1)
