@@ -35,7 +35,7 @@ FARTHER = 4.0
 """How many times as much is tried next while a row keeps the limit."""
 
 COARSE = 0.02
-"""The share of what errors take by which what is proven of an interval may be too low: large ones are cut less."""
+"""The share of what is taken more than as given by which a proof of an interval may be too low."""
 
 MORE_ROWS = 8
 """Each time that rows keep a limit this many times as many are asked at once."""
@@ -238,10 +238,13 @@ def _proven(
         return pairs.between(rows, section.between.pair[rows], known, gap, enough).proven
     ends = [_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1)]
     known = np.minimum(*ends)
-    taken = np.max(section.answer.found.clearance[rows] - known)
-    gap = max(gap, COARSE * taken)
     order = section.between.pair[rows]
-    return pairs.between(rows, order, known, gap, enough, fail=math.inf).proven
+    more = float(
+        np.max(section.between.proven[rows] - known)
+    )  # that is taken than of the errors as given
+    if COARSE * more <= gap:
+        return pairs.between(rows, order, known, gap, enough).proven
+    return pairs.between(rows, order, known, COARSE * more, enough, fail=math.inf).proven
 
 
 def _proven_of_steps(
