@@ -9,8 +9,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.for_ci import Day
-from clearance.cli.options import Millimetres, OutputPath
-from clearance.world.notice import KINDS
+from clearance.cli.options import Millimetres, OutputPath, accept_option
 
 
 class _Commands(click.Group):
@@ -82,13 +81,7 @@ class _Shard(click.ParamType):
 @click.option("--certify-mm", type=Millimetres(), help="As of check.  [default: 0.1]")
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the cases'.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the cases'.")
-@click.option(
-    "--accept",
-    metavar="KIND",
-    multiple=True,
-    type=click.Choice(KINDS),
-    help=f"Let no suspect input of this kind decide a verdict ({', '.join(KINDS)}).",
-)
+@accept_option("a verdict")
 @click.option(
     "--waivers",
     "waiver_files",
