@@ -126,7 +126,7 @@ def check(
     from clearance.batch.manifest import Changes, items_of
     from clearance.batch.output import ANSWER
     from clearance.batch.store import open_store
-    from clearance.cli.batch_run import Asked, run_asked
+    from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
     from clearance.load.waiver_file import load_waivers
 
@@ -139,7 +139,7 @@ def check(
     changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers)
     items = items_of(arguments, changes)
     refuse_inputs([place / name for name in ANSWER], waiver_files)
-    asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
+    asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
     return run_asked(items, open_store(place, fresh=fresh), asked)
 
 
