@@ -12,7 +12,7 @@ from clearance.cli.options import OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.load.conversion import Converted
+    from clearance.load.conversion import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -84,7 +84,7 @@ def _require_place(in_file: Path, out_file: Path) -> None:
     refuse_inputs([out_file], [in_file])
 
 
-def _print(out_file: Path, made: Converted) -> None:
+def _print(out_file: Path, made: ConvertedFiles) -> None:
     for warning in made.warnings:
         click.echo(f"warning: {shown(warning)}", err=True)
     for note in made.notes:
