@@ -1,6 +1,6 @@
 """A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
-Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`doubts_compared`),
+Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`compared_doubts`),
 files (`findings_file`), nor how it is shown (`report.findings`).
 """
 
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from clearance.findings.doubts_compared import (
-    DoubtCompared,
+from clearance.findings.compared_doubts import (
+    ComparedDoubt,
     doubts_compared,
     known_less,
     slack_text,
@@ -83,7 +83,7 @@ class Comparison:
     now: str
     rows: tuple[ComparedFinding, ...]
     whole: str = ""
-    doubts: tuple[DoubtCompared, ...] = ()
+    doubts: tuple[ComparedDoubt, ...] = ()
     less: tuple[str, ...] = ()
 
     @cached_property

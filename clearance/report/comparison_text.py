@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from clearance.findings.compared_doubts import ComparedDoubt
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
-from clearance.findings.doubts_compared import DoubtCompared
 from clearance.report.finding_text import bodies_text
 from clearance.report.rules import name_shown
 from clearance.report.wording import mm
@@ -41,7 +41,7 @@ def _in_doubt(comparison: Comparison) -> list[str]:
     return told
 
 
-def _many(kind: str, rows: list[DoubtCompared]) -> str:
+def _many(kind: str, rows: list[ComparedDoubt]) -> str:
     name = _NAMES.get(kind, kind)
     return name if len(rows) == 1 else f"{name} ({len(rows)})"
 
