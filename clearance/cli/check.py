@@ -195,8 +195,8 @@ def _answer(
     terminal: Terminal,
 ) -> Run:
     """Measures, writes what is wanted, and prints the verdict."""
-    from clearance.cli.kept import kept_rows
     from clearance.cli.progress import shown_progress
+    from clearance.cli.run_rows import kept_rows
     from clearance.run import Resources, answer
 
     outputs.withdraw_older()

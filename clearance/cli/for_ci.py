@@ -108,8 +108,8 @@ def baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | Non
     """
     if path is None:
         return None
-    from clearance.cli.kept import require_finished
     from clearance.cli.places import refuse_inputs
+    from clearance.cli.run_rows import require_finished
     from clearance.findings.findings_file import FILE_NAME, read_findings
 
     refuse_inputs(outputs, [path / FILE_NAME if path.is_dir() else path])
