@@ -28,6 +28,9 @@ SHARPNESS = 2e-3
 
 MOST_TRIES = 24
 
+MORE_ROWS = 8
+"""Each time that rows keep a limit this many times as many are asked at once."""
+
 MOST_ROUNDS = 6
 """Times that moments are added at which a number turned out too large; then it is halved until it is proven."""
 
@@ -128,7 +131,7 @@ class _Trial:
         return self.asked.fail + section.section.padding
 
     def _open(self, i: int, number: float, *, between: bool) -> np.ndarray:
-        """Rows that are not known to keep the limit from what is proven with the number as given."""
+        """Rows not known to keep the limit from what is proven with the number as given, hardest first."""
         section = self.asked.sections[i]
         rows = section.between if between else section.steps
         if rows is None:
@@ -136,9 +139,9 @@ class _Trial:
         proven = rows.proven[:-1] if between else rows.proven
         more = max(0.0, number - self.given)
         taken = 2.0 * math.sin(0.5 * more) if self.unit == "rad" else more
-        return np.flatnonzero(
-            proven - (taken * self.levers[i] if more > 0.0 else 0.0) < self._limit(section)
-        )
+        left = proven - (taken * self.levers[i] if more > 0.0 else 0.0)
+        open_rows = np.flatnonzero(left < self._limit(section))
+        return open_rows[np.argsort(left[open_rows], kind="stable")]
 
     def _lever(self, section: SectionBudget) -> float:
         """[m/rad], [m/m] or [m/s] more than any point can move by one more of the number."""
@@ -168,23 +171,44 @@ class _Trial:
 def _failing(
     section: SectionBudget, pairs: PairsWithErrors, rows: np.ndarray, limit: float, *, between: bool
 ) -> int | None:
-    """The row of which least is proven, if that is below the limit; None if all keep it."""
-    if len(rows) == 0:
-        return None
-    enough = limit * (1.0 + 1e-9) + 1e-12
-    if between:
-        assert section.between is not None
-        assert section.answer.certificate is not None
-        gap = section.answer.certificate.gap
-        known = np.full(
-            len(rows), enough + 2.0 * gap
-        )  # so that no more than the limit is asked about
-        found = pairs.between(rows, section.between.pair[rows], known, gap, enough)
-    else:
-        at = section.pairs.steps()
-        moments = Moments(at.intervals[rows], at.shares[rows])
-        found = pairs.at(
-            moments, section.steps.pair[rows], section.answer.found.clearance[rows], enough
-        )
-    worst = int(np.argmin(found.proven))
-    return int(rows[worst]) if found.proven[worst] < limit else None
+    """A row of which less than the limit is proven; None if all keep it. Rows come hardest first."""
+    first, many = 0, 1
+    while first < len(rows):
+        block = rows[first : first + many]
+        enough = limit * (1.0 + 1e-9) + 1e-12
+        for row in block[_proven(section, pairs, block, enough, between=between) < limit]:
+            one = np.array([row])
+            if _proven(section, pairs, one, math.inf, between=between)[0] < limit:
+                return int(row)
+        first, many = first + many, MORE_ROWS * many
+    return None
+
+
+def _proven(
+    section: SectionBudget,
+    pairs: PairsWithErrors,
+    rows: np.ndarray,
+    enough: float,
+    *,
+    between: bool,
+) -> np.ndarray:
+    """[m] what is proven of some rows; near a finite `enough` it is some per cent of the errors lower."""
+    if not between:
+        return _proven_of_steps(section, pairs, rows, enough)
+    assert section.between is not None
+    assert section.answer.certificate is not None
+    gap = section.answer.certificate.gap
+    known = np.full(len(rows), enough + 2.0 * gap)  # so that no more than the limit is asked about
+    if not math.isfinite(enough):
+        ends = (_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1))
+        known = np.minimum(*ends)
+    return pairs.between(rows, section.between.pair[rows], known, gap, enough).proven
+
+
+def _proven_of_steps(
+    section: SectionBudget, pairs: PairsWithErrors, rows: np.ndarray, enough: float
+) -> np.ndarray:
+    at = section.pairs.steps()
+    moments = Moments(at.intervals[rows], at.shares[rows])
+    nominal = section.answer.found.clearance[rows]
+    return pairs.at(moments, section.steps.pair[rows], nominal, enough).proven

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from clearance.errors import BadInput
 from clearance.world.budget import Budget, ObstacleTolerance, RobotTolerance
 from clearance.world.case import Clock
 from tests.budget.budget_cases import random_case
+
+SCENES = Path(__file__).parents[2] / "scenes"
 
 
 @pytest.fixture(scope="module")
@@ -124,3 +127,23 @@ def test_a_late_clock_is_refused_where_parts_change_hands():
     late = Budget({"arm": RobotTolerance(timing=0.01)}, {"o0": ObstacleTolerance()})
     with pytest.raises(BadInput, match="clock of 'arm' may be off"):
         cl.check(replace(case, obstacles=obstacles, carries=carries, tolerance=late))
+
+
+def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be():
+    case = cl.load_case(SCENES / "iiwa_pipe_rack" / "case.yaml")
+    tolerance = {
+        "joints": {"all": 0.0005},
+        "base": {"xyz": 0.002, "angle": 0.001},
+        "obstacles": {"default": {"xyz": 0.001}},
+    }
+    (budget,) = cl.check(case, tolerance=tolerance).record.budget
+    assert not budget.keeps
+    base = budget.worst[0].sources[0]
+    assert base.kind == "base"
+    for place, name in enumerate(("xyz", "angle")):
+        for factor, keeps in ((1.0, True), (1.5, False)):
+            greatest = {name: factor * base.largest[place]}
+            (answer,) = cl.check(
+                case, tolerance=tolerance | {"base": tolerance["base"] | greatest}
+            ).record.budget
+            assert answer.keeps is keeps
