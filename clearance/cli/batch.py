@@ -9,8 +9,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.for_ci import Day
-from clearance.cli.options import Millimetres, OutputPath
-from clearance.world.notice import KINDS
+from clearance.cli.options import Millimetres, OutputPath, accept_option
 
 
 class _Commands(click.Group):
@@ -82,13 +81,7 @@ class _Shard(click.ParamType):
 @click.option("--certify-mm", type=Millimetres(), help="As of check.  [default: 0.1]")
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the cases'.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the cases'.")
-@click.option(
-    "--accept",
-    metavar="KIND",
-    multiple=True,
-    type=click.Choice(KINDS),
-    help=f"Let no suspect input of this kind decide a verdict ({', '.join(KINDS)}).",
-)
+@accept_option("a verdict")
 @click.option(
     "--waivers",
     "waiver_files",
@@ -133,7 +126,7 @@ def check(
     from clearance.batch.manifest import Changes, items_of
     from clearance.batch.output import ANSWER
     from clearance.batch.store import open_store
-    from clearance.cli.batch_run import Asked, run_asked
+    from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
     from clearance.load.waiver_file import load_waivers
 
@@ -146,7 +139,7 @@ def check(
     changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers)
     items = items_of(arguments, changes)
     refuse_inputs([place / name for name in ANSWER], waiver_files)
-    asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
+    asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
     return run_asked(items, open_store(place, fresh=fresh), asked)
 
 

@@ -28,7 +28,7 @@ FEW = 32
 
 
 @dataclass(frozen=True)
-class Asked:
+class BatchRequest:
     """What the command line says beside the cases."""
 
     jobs: int | None
@@ -41,7 +41,7 @@ class Asked:
     waivers: tuple[Waiver, ...] = ()
 
 
-def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
+def run_asked(items: Sequence[Item], store: Store, asked: BatchRequest) -> int:
     """Measures, writes the answer and prints it; the exit code.
 
     Raises:
@@ -80,7 +80,7 @@ def _keep_faults(store: Store, outcome: Outcome) -> None:
         keep_faults(store.place, tried, outcome.faults)
 
 
-def _opener(asked: Asked, say: Callable[[str], None]) -> Opener:
+def _opener(asked: BatchRequest, say: Callable[[str], None]) -> Opener:
     """Opens the engine that is asked for."""
 
     @contextmanager

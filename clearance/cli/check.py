@@ -14,11 +14,10 @@ from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
-from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.options import Millimetres, OutputPath, accept_option
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
 from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
 from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
-from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.findings.findings_file import FindingList
@@ -54,13 +53,7 @@ if TYPE_CHECKING:
     help="steps: every step. pairs: every pair at every step too (pairs.parquet). limit: steps below "
     "the warn limit, a proven bound for the rest. minimum: the worst moment only.",
 )
-@click.option(
-    "--accept",
-    metavar="KIND",
-    multiple=True,
-    type=click.Choice(KINDS),
-    help=f"Let no suspect input of this kind decide the verdict ({', '.join(KINDS)}).",
-)
+@accept_option("the verdict")
 @tolerance_options
 @click.option(
     "--contact",
@@ -202,8 +195,8 @@ def _answer(
     terminal: Terminal,
 ) -> Run:
     """Measures, writes what is wanted, and prints the verdict."""
-    from clearance.cli.kept import kept_rows
     from clearance.cli.progress import shown_progress
+    from clearance.cli.run_rows import kept_rows
     from clearance.run import Resources, answer
 
     outputs.withdraw_older()

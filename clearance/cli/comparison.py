@@ -68,7 +68,7 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     is suspect, not checked or warned of as that of A was not, or if less is proven or measured;
     else 0. 2 bad input, 4 if the run into A or B was interrupted.
     """
-    from clearance.cli.kept import require_finished
+    from clearance.cli.run_rows import require_finished
     from clearance.findings.comparison import compared
     from clearance.findings.findings_file import read_findings
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from clearance.cli.rehearsal import Question
+    from clearance.cli.rehearsal import CommandCall
 
 
 @click.command(name="compile")
@@ -52,7 +52,7 @@ def compile_kernels(everything: bool) -> int:
     return 0
 
 
-def _ask(questions: Sequence[Question]) -> None:
+def _ask(questions: Sequence[CommandCall]) -> None:
     """Asks all of them in a folder that is gone afterwards.
 
     Raises:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath
+from clearance.cli.options import OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.load.conversion import Converted
+    from clearance.load.conversion import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -32,14 +32,7 @@ _KINDS = ("trajectory", "scene", "poses")
     help="Which trajectory of a file that holds several, from 1.",
 )
 @click.option("--topic", help="Which topic of a bag.")
-@click.option(
-    "--package-dir",
-    "package_dirs",
-    metavar="DIR",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    help="Where package:// and model:// of a scene are looked for; may be given again.",
-)
+@package_dir_option("package:// and model:// of a scene are")
 @click.option(
     "--force", is_flag=True, help="Overwrite OUT, and meshes beside it, where they are there."
 )
@@ -91,7 +84,7 @@ def _require_place(in_file: Path, out_file: Path) -> None:
     refuse_inputs([out_file], [in_file])
 
 
-def _print(out_file: Path, made: Converted) -> None:
+def _print(out_file: Path, made: ConvertedFiles) -> None:
     for warning in made.warnings:
         click.echo(f"warning: {shown(warning)}", err=True)
     for note in made.notes:

@@ -6,15 +6,15 @@ Not for: their words (`report`), nor JUnit, which is a file of the report.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from clearance.cli.options import OutputPath
+from clearance.cli.options import OutputPath, in_order
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
@@ -76,11 +76,7 @@ _OPTIONS = (
 )
 
 
-def ci_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options to a command, in their order."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+ci_options = in_order(*_OPTIONS)
 
 
 def with_waivers(case: Case, paths: Sequence[Path]) -> Case:
@@ -112,8 +108,8 @@ def baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | Non
     """
     if path is None:
         return None
-    from clearance.cli.kept import require_finished
     from clearance.cli.places import refuse_inputs
+    from clearance.cli.run_rows import require_finished
     from clearance.findings.findings_file import FILE_NAME, read_findings
 
     refuse_inputs(outputs, [path / FILE_NAME if path.is_dir() else path])

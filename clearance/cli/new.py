@@ -126,7 +126,7 @@ def new(
     that of the check.
     """
     from clearance.load.new_case import new_case
-    from clearance.load.new_robot import Given
+    from clearance.load.new_robot import NewCaseRequest
 
     keys = {
         "urdf": robot,
@@ -149,7 +149,7 @@ def new(
     asked = _given(motion)
     if asked and (states or trajectory is None):
         raise click.UsageError(_only_one(states, [*asked]))
-    given = Given(_given(keys), asked or None, states or (), rest, scene)
+    given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene)
     made = new_case(given, out_dir)
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)

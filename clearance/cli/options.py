@@ -10,6 +10,8 @@ from typing import Any
 
 import click
 
+from clearance.world.notice import KINDS
+
 
 class Millimetres(click.ParamType):
     """A length in millimetres, finite and not negative; handed on in metres."""
@@ -49,6 +51,40 @@ class OutputPath(click.Path):
         path = super().convert(value, param, ctx)
         assert isinstance(path, Path)  # as `path_type` says
         return path
+
+
+def in_order(*options: Callable[..., Any]) -> Callable[..., Any]:
+    """The decorator that adds the options to a command, in their order."""
+
+    def add(command: Callable[..., Any]) -> Callable[..., Any]:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+def package_dir_option(told: str) -> Callable[..., Any]:
+    """The option for folders of packages; `told` says what is looked for there."""
+    return click.option(
+        "--package-dir",
+        "package_dirs",
+        metavar="DIR",
+        multiple=True,
+        type=click.Path(path_type=Path),
+        help=f"Where {told} looked for; may be given again.",
+    )
+
+
+def accept_option(which: str) -> Callable[..., Any]:
+    """The option that takes kinds of suspect input as they are; `which` verdict they then do not decide."""
+    return click.option(
+        "--accept",
+        metavar="KIND",
+        multiple=True,
+        type=click.Choice(KINDS),
+        help=f"Let no suspect input of this kind decide {which} ({', '.join(KINDS)}).",
+    )
 
 
 def motion_option(*more: str, told: str = "") -> Callable[..., Any]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from clearance.cli.options import motion_option
+from clearance.cli.options import in_order, motion_option
 
 if TYPE_CHECKING:
     from clearance.world.case import Case
@@ -32,11 +31,7 @@ _OPTIONS = (
 )
 
 
-def recorded_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options to a command, in their order."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+recorded_options = in_order(*_OPTIONS)
 
 
 def require_recorded(

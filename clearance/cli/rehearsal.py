@@ -80,7 +80,7 @@ FILES = {
 }
 
 
-class Question(NamedTuple):
+class CommandCall(NamedTuple):
     """One call of the command line, and what it is about."""
 
     about: str
@@ -88,23 +88,23 @@ class Question(NamedTuple):
 
 
 EVERYDAY = (
-    Question("a motion that stays clear", ("check", "clear.yaml")),
-    Question("a motion that comes near", ("check", "near.yaml")),
-    Question("a motion in contact", ("check", "contact.yaml", "--json")),
+    CommandCall("a motion that stays clear", ("check", "clear.yaml")),
+    CommandCall("a motion that comes near", ("check", "near.yaml")),
+    CommandCall("a motion in contact", ("check", "contact.yaml", "--json")),
 )
 """What `clearance check` does of itself."""
 
 THE_REST = (
-    Question("every pair", ("check", "contact.yaml", "--need", "pairs")),
-    Question("steps below the limit", ("check", "near.yaml", "--need", "limit")),
-    Question("the worst moment", ("check", "near.yaml", "--need", "minimum")),
-    Question("contact of every step", ("check", "contact.yaml", "--contact", "every", "--json")),
-    Question("the paper's method", ("check", "near.yaml", "--method", "paper")),
-    Question("self-collision", ("check", "self.yaml")),
-    Question("two robots on one clock", ("check", "common.yaml")),
-    Question("two robots on two clocks", ("check", "any_time.yaml")),
-    Question("two clocks that nearly agree", ("check", "slack.yaml")),
-    Question("tolerances", ("check", "tolerances.yaml")),
+    CommandCall("every pair", ("check", "contact.yaml", "--need", "pairs")),
+    CommandCall("steps below the limit", ("check", "near.yaml", "--need", "limit")),
+    CommandCall("the worst moment", ("check", "near.yaml", "--need", "minimum")),
+    CommandCall("contact of every step", ("check", "contact.yaml", "--contact", "every", "--json")),
+    CommandCall("the paper's method", ("check", "near.yaml", "--method", "paper")),
+    CommandCall("self-collision", ("check", "self.yaml")),
+    CommandCall("two robots on one clock", ("check", "common.yaml")),
+    CommandCall("two robots on two clocks", ("check", "any_time.yaml")),
+    CommandCall("two clocks that nearly agree", ("check", "slack.yaml")),
+    CommandCall("tolerances", ("check", "tolerances.yaml")),
 )
 """What it does where it is asked to."""
 

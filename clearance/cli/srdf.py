@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import XACRO_OPTIONS, OutputPath
+from clearance.cli.options import XACRO_OPTIONS, OutputPath, package_dir_option
 
 if TYPE_CHECKING:
     from clearance.world.robot import Robot
@@ -39,14 +39,7 @@ def _robot_options(command: _Command) -> _Command:
             show_default=True,
             help="Which shapes of the links are looked at.",
         ),
-        click.option(
-            "--package-dir",
-            "package_dirs",
-            metavar="DIR",
-            multiple=True,
-            type=click.Path(path_type=Path),
-            help="Where package:// is looked for; may be given again.",
-        ),
+        package_dir_option("package:// is"),
         *XACRO_OPTIONS,
     ):
         command = option(command)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
+
+from clearance.cli.options import in_order
 
 if TYPE_CHECKING:
     from clearance.world.case import Case
@@ -27,11 +28,7 @@ _OPTIONS = (
 )
 
 
-def tolerance_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options to a command, in their order."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+tolerance_options = in_order(*_OPTIONS)
 
 
 def with_tolerances(case: Case, path: Path | None) -> Case:

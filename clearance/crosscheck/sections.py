@@ -11,10 +11,10 @@ from dataclasses import replace
 import pyarrow as pa
 
 from clearance.crosscheck.compare import compared
-from clearance.simulate.judged import Judged
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import CrossCheck, Samples
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.run_answer import RunAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.steps import step_table
 
@@ -54,7 +54,7 @@ def _of_section(
     """The comparison of a section, and the steps of the run that are settled for us."""
     section, first = answer.section, answer.section.phase.first
     alone = RuleAnswer("", section.in_motion.limits, answer.found, None, _no_moment)
-    judged = Judged((alone,), answer.found, None, answer.found, None)
+    judged = RunAnswer((alone,), answer.found, None, answer.found, None)
     tables = step_table(section.phase.case, section.phase.motions, section.pairs, judged)
     samples = Samples(section.phase.case, section.phase.motions, pa.concat_tables(tables), ())
     found, settled = compared(samples, progress, section.pairs)

@@ -1,6 +1,6 @@
 """A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
-Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`doubts_compared`),
+Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`compared_doubts`),
 files (`findings_file`), nor how it is shown (`report.findings`).
 """
 
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from clearance.findings.doubts_compared import (
-    DoubtCompared,
+from clearance.findings.compared_doubts import (
+    ComparedDoubt,
     doubts_compared,
     known_less,
     slack_text,
@@ -42,7 +42,7 @@ class Change(StrEnum):
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedFinding:
     """A finding of one or both of two runs.
 
     Attributes:
@@ -81,9 +81,9 @@ class Comparison:
 
     before: str
     now: str
-    rows: tuple[Compared, ...]
+    rows: tuple[ComparedFinding, ...]
     whole: str = ""
-    doubts: tuple[DoubtCompared, ...] = ()
+    doubts: tuple[ComparedDoubt, ...] = ()
     less: tuple[str, ...] = ()
 
     @cached_property
@@ -136,14 +136,14 @@ class _Comparing:
     tolerance: float
     whole: str
 
-    def rows(self) -> Iterator[Compared]:
+    def rows(self) -> Iterator[ComparedFinding]:
         old, new = (_by_key(found) for found in (self.before, self.now))
         for key in dict.fromkeys([*new, *old]):
             row = self._row(old.get(key), new.get(key))
             if row is not None:
                 yield row
 
-    def _row(self, before: Finding | None, now: Finding | None) -> Compared | None:
+    def _row(self, before: Finding | None, now: Finding | None) -> ComparedFinding | None:
         one = now or before
         assert one is not None
         why = self.whole or self._changed_inputs(one)
@@ -155,7 +155,7 @@ class _Comparing:
         else:
             why = why or _no_number(before, now)
             change = self._change(before, now)
-        return Compared(Change.NOT_COMPARABLE if why else change, before, now, why)
+        return ComparedFinding(Change.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> Change:
         kept = [finding.status == Status.CLEAR for finding in (before, now)]

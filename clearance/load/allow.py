@@ -13,7 +13,7 @@ _WILDCARDS = frozenset("*?[")
 
 
 @dataclass(frozen=True)
-class BodyNames:
+class PatternNames:
     """What patterns of a case may match.
 
     Attributes:
@@ -29,7 +29,7 @@ class BodyNames:
     obstacles_meet: bool
 
 
-def body_names(case: Case) -> BodyNames:
+def body_names(case: Case) -> PatternNames:
     """The names of a case's bodies."""
     several = len(case.robots) > 1
     alone = [link for placed in case.robots for link in placed.robot.link_names]
@@ -37,7 +37,7 @@ def body_names(case: Case) -> BodyNames:
         case.prefix_of(placed) + link for placed in case.robots for link in placed.robot.link_names
     ]
     mounted = any(placed.mount is not None for placed in case.robots)
-    return BodyNames(
+    return PatternNames(
         tuple(table_links),
         tuple(dict.fromkeys([*table_links, *alone])),
         tuple(obstacle.name for obstacle in case.obstacles),
@@ -48,7 +48,7 @@ def body_names(case: Case) -> BodyNames:
     )
 
 
-def require_allowances(rows: Sequence[Allowance], names: BodyNames) -> None:
+def require_allowances(rows: Sequence[Allowance], names: PatternNames) -> None:
     """Nothing, if each pattern matches a body that it can be of: the first a link where one of the pair is.
 
     Raises:
@@ -65,7 +65,7 @@ def require_allowances(rows: Sequence[Allowance], names: BodyNames) -> None:
             _refuse_unmatched(row.between[1], second, what, UnknownObstacle)
 
 
-def require_patterns(given: Sequence[str], names: BodyNames) -> None:
+def require_patterns(given: Sequence[str], names: PatternNames) -> None:
     """Nothing, if each pattern matches a body.
 
     Raises:
@@ -103,7 +103,7 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
     return tuple(given)
 
 
-def _refuse_turned_round(first: str, second: str, names: BodyNames) -> None:
+def _refuse_turned_round(first: str, second: str, names: PatternNames) -> None:
     """Refuses an obstacle before a link, which would be of no pair."""
     is_obstacle = _matches(first, names.obstacles) and not _matches(first, names.links)
     is_link = _matches(second, names.links) and not _matches(second, names.obstacles)

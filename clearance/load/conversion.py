@@ -37,7 +37,7 @@ class Conversion:
     package_dirs: tuple[Path, ...] = ()
 
 
-class Converted(NamedTuple):
+class ConvertedFiles(NamedTuple):
     """What was made.
 
     Attributes:
@@ -51,7 +51,7 @@ class Converted(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def converted(asked: Conversion, kind: FileKind) -> Converted:
+def converted(asked: Conversion, kind: FileKind) -> ConvertedFiles:
     """The files of a conversion.
 
     Raises:
@@ -88,35 +88,39 @@ def _refuse_idle(asked: Conversion, kind: FileKind) -> None:
             )
 
 
-def _trajectory(asked: Conversion) -> Converted:
+def _trajectory(asked: Conversion) -> ConvertedFiles:
     trajectory, notes = load_trajectory(asked.source, asked.choice, asked.files)
     with at(asked.source.name):
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
     told = f"{counted(trajectory.n_steps, 'sample')} of {n_joints}"
-    return Converted({asked.target.name: content}, told, (*notes, *_of_target(asked, changes)))
+    return ConvertedFiles({asked.target.name: content}, told, (*notes, *_of_target(asked, changes)))
 
 
-def _poses(asked: Conversion) -> Converted:
+def _poses(asked: Conversion) -> ConvertedFiles:
     samples, notes = load_samples(asked.source, asked.files)
     with at(asked.source.name):
         content, changes = pose_writer.written_poses(samples, asked.target.name)
     of_source = (f"{asked.source.name}: {note}" for note in notes)
     told = counted(len(samples.times), "pose")
-    return Converted({asked.target.name: content}, told, (*of_source, *_of_target(asked, changes)))
+    return ConvertedFiles(
+        {asked.target.name: content}, told, (*of_source, *_of_target(asked, changes))
+    )
 
 
-def _scene(asked: Conversion) -> Converted:
+def _scene(asked: Conversion) -> ConvertedFiles:
     request = SceneRequest(asked.source, asked.files, asked.package_dirs)
     made = converted_scene(request, asked.target)
-    return Converted(made.files, counted(made.n_obstacles, "obstacle"), made.notes, made.warnings)
+    return ConvertedFiles(
+        made.files, counted(made.n_obstacles, "obstacle"), made.notes, made.warnings
+    )
 
 
 def _of_target(asked: Conversion, changes: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{asked.target.name}: {change}" for change in changes)
 
 
-_KINDS: dict[FileKind, tuple[tuple[str, ...], Callable[[Conversion], Converted]]] = {
+_KINDS: dict[FileKind, tuple[tuple[str, ...], Callable[[Conversion], ConvertedFiles]]] = {
     FileKind.TRAJECTORY: (tuple(trajectory_writer.WRITERS), _trajectory),
     FileKind.SCENE: (SCENE_SUFFIXES, _scene),
     FileKind.POSES: (pose_writer.SUFFIXES, _poses),

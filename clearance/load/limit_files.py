@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _Value = TypeVar("_Value")
 
 
-class Limited(NamedTuple):
+class LimitedRobot(NamedTuple):
     """A robot with the narrower limits, its other limits by joint, and a line each on what was taken."""
 
     robot: Robot
@@ -36,7 +36,9 @@ class Limited(NamedTuple):
     notes: tuple[str, ...]
 
 
-def limited(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles) -> Limited:
+def limited(
+    entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFiles
+) -> LimitedRobot:
     """The robot of an entry with what its limit files say.
 
     Raises:
@@ -67,7 +69,7 @@ def limited(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFi
         notes += [
             f"{shown}: {note}" for note in _notes_on_tolerances(controllers, tolerances, robot)
         ]
-    return Limited(robot, motion, tolerances, tuple(notes))
+    return LimitedRobot(robot, motion, tolerances, tuple(notes))
 
 
 def _of_robot(found: Mapping[str, _Value], names: Collection[str]) -> dict[str, _Value]:

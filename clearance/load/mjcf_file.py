@@ -22,8 +22,8 @@ from clearance.errors import BadSyntax
 from clearance.extras import importing
 from clearance.geometry.pose import inverse, pose_from_quaternion
 from clearance.load.mjcf_model import (
-    Follows,
     MjcfBody,
+    MjcfFollower,
     MjcfGeom,
     MjcfJoint,
     MjcfKey,
@@ -228,10 +228,10 @@ class _Plain:
             0 <= compiled.geom_group[i] <= _LAST_SHOWN,
         )  # fmt: skip
 
-    def _follows(self, i: int) -> Follows:
+    def _follows(self, i: int) -> MjcfFollower:
         compiled = self.compiled
         one, other = int(compiled.eq_obj1id[i]), int(compiled.eq_obj2id[i])
-        return Follows(
+        return MjcfFollower(
             self.joints[one],
             self.joints[other] if other >= 0 else None,
             tuple(compiled.eq_data[i, :5].tolist()),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from clearance.load.mjcf_model import Follows, MjcfModel
+from clearance.load.mjcf_model import MjcfFollower, MjcfModel
 from clearance.world.notice import Notice, Severity
 from clearance.world.robot import Joint, Mimic
 
@@ -43,7 +43,7 @@ def with_followers(
     return [found[joint.name] for joint in joints], notes, notices
 
 
-def _why_not(row: Follows, joints: dict[str, Joint]) -> str:
+def _why_not(row: MjcfFollower, joints: dict[str, Joint]) -> str:
     for name in (row.joint, row.master):
         if name is not None and name not in joints:
             return f"joint {name!r} has several degrees of freedom"
@@ -54,7 +54,7 @@ def _why_not(row: Follows, joints: dict[str, Joint]) -> str:
     return ""
 
 
-def _not_followed(row: Follows, why: str) -> Notice:
+def _not_followed(row: MjcfFollower, why: str) -> Notice:
     text = (
         f"the equality of joint {row.joint!r} is not followed: {why}; give the joint its own values"
     )

@@ -77,7 +77,7 @@ class MjcfBody(NamedTuple):
     is_mocap: bool
 
 
-class Follows(NamedTuple):
+class MjcfFollower(NamedTuple):
     """A joint whose value is its reference + polynomial(value of `master` - its reference); None: a constant."""
 
     joint: str
@@ -105,6 +105,6 @@ class MjcfModel:
     bodies: tuple[MjcfBody, ...]
     joints: tuple[MjcfJoint, ...]
     geoms: tuple[MjcfGeom, ...]
-    follows: tuple[Follows, ...]
+    follows: tuple[MjcfFollower, ...]
     excludes: tuple[tuple[str, str], ...]
     keys: tuple[MjcfKey, ...]

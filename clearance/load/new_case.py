@@ -18,7 +18,7 @@ from clearance.load.case_text import CaseText, text_of
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.named_motion import PERIOD, motion_between
-from clearance.load.new_robot import Given, NewRobot, new_robot
+from clearance.load.new_robot import NewCaseRequest, NewRobot, new_robot
 from clearance.load.new_scene import NewScene, new_scene
 from clearance.load.notes import counted
 from clearance.load.srdf_states import NamedStates, names_of, states_known
@@ -49,7 +49,7 @@ class NewCase:
     lost: tuple[str, ...]
 
 
-def new_case(given: Given, folder: Path) -> NewCase:
+def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
     """The files of a case in `folder`, which need not be there.
 
     Raises:
@@ -98,7 +98,7 @@ class _Motion(NamedTuple):
     notes: Sequence[str]
 
 
-def _notes_of(given: Given, robot: NewRobot, files: InputFiles) -> list[str]:
+def _notes_of(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> list[str]:
     """The notes on the trajectory's file, which begin with its name."""
     if given.trajectory is None:
         return []
@@ -106,7 +106,7 @@ def _notes_of(given: Given, robot: NewRobot, files: InputFiles) -> list[str]:
     return [note for note in robot.notes if note.startswith(begins)]
 
 
-def _motion(given: Given, robot: NewRobot, files: InputFiles) -> tuple[Trajectory, str]:
+def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[Trajectory, str]:
     """What the robot does, and where that is from."""
     if robot.placed.trajectory is not None and given.trajectory is not None:
         topic = given.trajectory.get("topic")
@@ -132,7 +132,7 @@ def _told(trajectory: Trajectory) -> str:
     return f"{counted(trajectory.n_steps, 'sample')} of {n_joints}, {start:g} to {end:g} s"
 
 
-def _assumed_of_motion(given: Given) -> list[str]:
+def _assumed_of_motion(given: NewCaseRequest) -> list[str]:
     if given.trajectory is not None:
         return []
     return [
@@ -141,7 +141,7 @@ def _assumed_of_motion(given: Given) -> list[str]:
 
 
 def _text(
-    given: Given,
+    given: NewCaseRequest,
     robot: NewRobot,
     scene: NewScene,
     motion: _Motion,
@@ -170,7 +170,7 @@ def _text(
     )
 
 
-def _states(given: Given, robot: NewRobot, files: InputFiles) -> NamedStates:
+def _states(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> NamedStates:
     """The states of the SRDF or of the robot's own file."""
     srdf = None if given.srdf is None else resolved(given.srdf, Path())
     placed = robot.placed

@@ -39,7 +39,7 @@ _FIRST = ("xacro", "xacro_args", "package_dirs")
 
 
 @dataclass(frozen=True)
-class Given:
+class NewCaseRequest:
     """What a new case is made from; paths are relative to the current folder.
 
     Attributes:
@@ -148,7 +148,7 @@ class NewRobot:
         return [joint for joint in self.placed.robot.moving_joints if joint.name not in known]
 
 
-def new_robot(given: Given, meshes: MeshStore) -> NewRobot:
+def new_robot(given: NewCaseRequest, meshes: MeshStore) -> NewRobot:
     """The robot that is given; its visual shapes where it has no others and nothing is said of that.
 
     Raises:
@@ -182,7 +182,7 @@ def new_robot(given: Given, meshes: MeshStore) -> NewRobot:
 
 
 def _placed(
-    keys: Mapping[str, Any], given: Given, meshes: MeshStore
+    keys: Mapping[str, Any], given: NewCaseRequest, meshes: MeshStore
 ) -> tuple[PlacedRobot, list[str]]:
     robot = validated(schema.Robot, dict(keys), "robot")
     motion = None

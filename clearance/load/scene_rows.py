@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.load.allow import BodyNames, body_names
+from clearance.load.allow import PatternNames, body_names
 from clearance.load.scene_request import SceneContent
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.notice import Notice, Severity, listed
@@ -77,7 +77,7 @@ def _is_world(placed: PlacedRobot, link: str) -> bool:
     return placed.mount is None and bool(np.abs(standing - np.eye(4)).max() < ORIGIN)
 
 
-def _row(pair: tuple[str, str], names: BodyNames) -> Allowance | None:
+def _row(pair: tuple[str, str], names: PatternNames) -> Allowance | None:
     """The row of a link and an obstacle, or of two obstacles that can meet."""
     for one, other in (pair, pair[::-1]):
         if _any(one, names.links) and _any(other, names.obstacles):

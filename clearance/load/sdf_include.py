@@ -14,7 +14,7 @@ from clearance.load.lookups import MODEL, OPTIONAL, note_lookup
 from clearance.load.mesh_paths import model_path
 from clearance.load.scene_request import SceneRequest
 from clearance.load.sdf_document import NEWEST, sdf_element, text_of
-from clearance.load.sdf_scope import Included
+from clearance.load.sdf_scope import IncludedModel
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -55,7 +55,7 @@ class IncludeReader:
             raise BadInput(f"more than {MOST_ELEMENTS} elements in all", valid="fewer includes")
         return self._roots[path]
 
-    def include(self, element: Element, folder: Path, chain: tuple[str, ...]) -> Included:
+    def include(self, element: Element, folder: Path, chain: tuple[str, ...]) -> IncludedModel:
         """The model that an `<include>` in a file of `folder` names.
 
         Args:
@@ -70,7 +70,7 @@ class IncludeReader:
                 raise
             note_lookup(self._asked.files, MODEL, *asked, None)
             self.missing_suns += 1
-            return Included(None, folder, uri)
+            return IncludedModel(None, folder, uri)
         note_lookup(self._asked.files, MODEL, *asked, found.path)
         path = _file_of(found.path, self._asked)
         shown = self._asked.files.shown(path)
@@ -78,7 +78,7 @@ class IncludeReader:
         if shown in chain:
             raise BadInput(f"{shown} includes itself", valid="no ring of files")
         with at(shown):
-            return Included(_only_model(self.root(path)), path.parent, shown)
+            return IncludedModel(_only_model(self.root(path)), path.parent, shown)
 
 
 def _file_of(path: Path, asked: SceneRequest) -> Path:

@@ -43,7 +43,7 @@ class SdfShape(NamedTuple):
     folder: Path
 
 
-class Included(NamedTuple):
+class IncludedModel(NamedTuple):
     """The model in an included file: none where that holds only lights or actors."""
 
     model: Element | None
@@ -61,7 +61,7 @@ class Scope:
     """
 
     folder: Path
-    include: Callable[[Element, Path, tuple[str, ...]], Included]
+    include: Callable[[Element, Path, tuple[str, ...]], IncludedModel]
     chain: tuple[str, ...]
     depth: int = 0
     n_shapes: list[int] = field(default_factory=lambda: [0])

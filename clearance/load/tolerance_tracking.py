@@ -25,14 +25,16 @@ _Key = tuple[str, str]
 
 
 @dataclass(frozen=True)
-class Tracked:
+class TrackingErrors:
     """Errors by robot and joint [rad] or [m], and a line on where they are from."""
 
     errors: Mapping[_Key, float] = field(default_factory=dict)
     sources: tuple[str, ...] = ()
 
 
-def tracking_of(given: Tracking | None, case: Case, folder: Path, files: InputFiles) -> Tracked:
+def tracking_of(
+    given: Tracking | None, case: Case, folder: Path, files: InputFiles
+) -> TrackingErrors:
     """What a block says of tracking.
 
     Raises:
@@ -40,14 +42,14 @@ def tracking_of(given: Tracking | None, case: Case, folder: Path, files: InputFi
         BadInput: a joint that they leave without a bound and nothing else gives one.
     """
     if given is None:
-        return Tracked()
+        return TrackingErrors()
     with at("tracking"):
         numbers = _numbers(given, case)
         if given.of_case:
             bounds = _of_case(case)
             return _joined(numbers, bounds, case, "path tolerances of the robots' controllers")
         if given.file is None:
-            return Tracked(numbers)
+            return TrackingErrors(numbers)
         path = resolved(given.file, folder)
         with at("file"), at(files.shown(path)):
             bounds = _of_file(files.read(path), case)
@@ -96,7 +98,7 @@ def _of_case(case: Case) -> dict[_Key, PathTolerance]:
 
 def _joined(
     numbers: Mapping[_Key, float], bounds: Mapping[_Key, PathTolerance], case: Case, told: str
-) -> Tracked:
+) -> TrackingErrors:
     """Numbers before bounds.
 
     Raises:
@@ -124,4 +126,4 @@ def _joined(
         if (one.owner, one.part) not in errors and one.part in leaders
     ]
     told += f"; none of joints {listed(free, 8)}" if free else ""
-    return Tracked(errors, (told,))
+    return TrackingErrors(errors, (told,))

@@ -41,14 +41,14 @@ MOST_MEMORY = 1 << 30
 _PROCESS = Path(__file__).with_name("xacro_process.py")
 
 
-class Expanded(NamedTuple):
+class ExpandedUrdf(NamedTuple):
     """A URDF document, and a line each on how it was made."""
 
     urdf: bytes
     notes: tuple[str, ...]
 
 
-def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
+def expanded(request: RobotRequest, files: InputFiles) -> ExpandedUrdf:
     """The URDF that xacro makes of a file; all files that it reads are read through `files` too.
 
     Raises:
@@ -81,7 +81,7 @@ def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
         *notes_on_variables(found),
         *_warnings(done["said"], shown, request.path.parent),
     ]
-    return Expanded(done["urdf"].encode(), tuple(notes))
+    return ExpandedUrdf(done["urdf"].encode(), tuple(notes))
 
 
 def _run(request: RobotRequest, shown: str) -> dict[str, Any]:

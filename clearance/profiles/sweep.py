@@ -14,9 +14,9 @@ import numpy as np
 
 from clearance.errors import BadDimension, NothingToMeasure
 from clearance.kernels.profile.swept_cover import Raster, row_sums
-from clearance.profiles.collected import PolygonCollection
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
+from clearance.profiles.polygon_collection import PolygonCollection
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import covered_region
 from clearance.profiles.silhouette import Silhouette

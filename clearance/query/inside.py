@@ -88,7 +88,7 @@ _Sides = tuple[tuple["Shell | LooseFaces", "Component | CloudPoints"], ...]
 """What may hold something, and what that may be."""
 
 
-class Doubt:
+class PossibleContainment:
     """What of one of two bodies may be inside the other; it does not keep the bodies alive."""
 
     def __init__(self, of_a: _Sides, of_b: _Sides) -> None:
@@ -120,10 +120,10 @@ class Doubt:
         return found
 
 
-def doubt_of(a: Polyhedron, b: Polyhedron) -> Doubt | None:
+def doubt_of(a: Polyhedron, b: Polyhedron) -> PossibleContainment | None:
     """What can be in doubt of two bodies; None where all components are closed, or too open, or too small."""
     sides = _sides(a, b), _sides(b, a)
-    return Doubt(*sides) if any(sides) else None
+    return PossibleContainment(*sides) if any(sides) else None
 
 
 def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:

@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from clearance.errors import BadInput
-from clearance.findings.comparison import Change, Compared, Comparison
+from clearance.findings.comparison import Change, ComparedFinding, Comparison
 from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import Curve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
@@ -101,7 +101,7 @@ def _findings(comparison: Comparison) -> Markup:
     return section("Findings", table(heads, rows, class_="findings"), *notes)
 
 
-def _row(row: Compared) -> Markup:
+def _row(row: ComparedFinding) -> Markup:
     change, before, now, *rest = comparison_cells(row)
     cells = [element("td", element("strong", change) if row.alarms else change)]
     cells += [

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clearance.findings.comparison import Compared, Comparison
+from clearance.findings.compared_doubts import ComparedDoubt
+from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
-from clearance.findings.doubts_compared import DoubtCompared
 from clearance.report.finding_text import bodies_text
 from clearance.report.rules import name_shown
 from clearance.report.wording import mm
@@ -41,7 +41,7 @@ def _in_doubt(comparison: Comparison) -> list[str]:
     return told
 
 
-def _many(kind: str, rows: list[DoubtCompared]) -> str:
+def _many(kind: str, rows: list[ComparedDoubt]) -> str:
     name = _NAMES.get(kind, kind)
     return name if len(rows) == 1 else f"{name} ({len(rows)})"
 
@@ -71,7 +71,7 @@ def doubt_text(doubt: Doubt) -> str:
     return f"{doubt.kind}{about}: {doubt.text}"
 
 
-def comparison_cells(row: Compared) -> tuple[str, ...]:
+def comparison_cells(row: ComparedFinding) -> tuple[str, ...]:
     """A row of a table with `HEADS`."""
     finding = row.finding
     both = (row.before, row.now)
@@ -81,7 +81,7 @@ def comparison_cells(row: Compared) -> tuple[str, ...]:
     return (str(row.change), *statuses, *least, name_shown(finding.rule), who, row.why)
 
 
-def gone_text(row: Compared) -> str:
+def gone_text(row: ComparedFinding) -> str:
     """A finding that only the baseline has, in one line."""
     before = row.finding
     least = "" if before.clearance is None else f", {mm(before.clearance)} mm in the baseline"
@@ -91,7 +91,7 @@ def gone_text(row: Compared) -> str:
     )
 
 
-def since_text(row: Compared | None) -> str:
+def since_text(row: ComparedFinding | None) -> str:
     """What became of a finding, and its clearance before, in a few words."""
     if row is None:
         return ""

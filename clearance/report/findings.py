@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from clearance.findings.comparison import Compared, Comparison
+from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.finding import Finding
 from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
 from clearance.report.finding_text import bodies_text, stretch_text, waived_text, when_text
@@ -67,7 +67,7 @@ def _beside(comparison: Comparison) -> list[Markup]:
     return [element("ul", *items, class_="beside")] if items else []
 
 
-def _row(finding: Finding, since: Compared | None, compared: bool) -> Markup:
+def _row(finding: Finding, since: ComparedFinding | None, compared: bool) -> Markup:
     figures = [_mm(finding.clearance), limit_mm(finding.fail), _mm(finding.proven)]
     who = bodies_text(finding) or finding.text or "no pair is near"
     cells = [

@@ -20,7 +20,6 @@ from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
@@ -34,6 +33,7 @@ from clearance.simulate.record import (
 from clearance.simulate.replay_bodies import notes_on_drawing
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.run_answer import RunAnswer, judged
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
@@ -75,7 +75,7 @@ class Answers:
         cross_check: None where no peer was asked. budget: None where the case has no tolerances.
     """
 
-    judged: Judged
+    judged: RunAnswer
     samples: Samples
     contacts: ContactSequence | tuple[()]
     notices: tuple[Notice, ...]
@@ -198,7 +198,7 @@ def _budget(
 
 def _samples(
     plan: MeasurementPlan,
-    judged: Judged,
+    judged: RunAnswer,
     budget: tuple[RuleBudget, ...] | None,
     resources: Resources,
 ) -> Samples:

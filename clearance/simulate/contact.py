@@ -20,7 +20,6 @@ from clearance.progress import Progress
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
-from clearance.simulate.contact_budget import Budget
 from clearance.simulate.contact_events import (
     MOST_RATED,
     ContactEvent,
@@ -29,6 +28,7 @@ from clearance.simulate.contact_events import (
     hull_depths,
 )
 from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.contact_work import ContactWork
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.names import pair_names
@@ -134,7 +134,7 @@ class _OverlapFinder:
         return self._known[key].placed(self._world_from_b(i_pair, step))
 
     def _deepest(
-        self, event: ContactEvent, steps: np.ndarray, budget: Budget
+        self, event: ContactEvent, steps: np.ndarray, budget: ContactWork
     ) -> tuple[int, Contact]:
         """The row of an event that is worked out, and its overlap; bounds alone beyond the budget."""
         i_pair, n_rows = event.i_pair, len(event.rows)
@@ -207,8 +207,8 @@ class _OverlapFinder:
         links, obstacles = self._names
         self._told[f"contact: {links[i_pair]} - {obstacles[i_pair]}: {why}"] = None
 
-    def _budget(self, i_pair: int) -> Budget:
-        return Budget(sum(body.n_triangles for body in self._shapes(i_pair)))
+    def _budget(self, i_pair: int) -> ContactWork:
+        return ContactWork(sum(body.n_triangles for body in self._shapes(i_pair)))
 
     def _world_from_b(self, i_pair: int, step: int) -> np.ndarray:
         b = self.pairs[i_pair].b

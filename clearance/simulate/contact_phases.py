@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import overload
 
 import numpy as np
 
@@ -118,18 +117,6 @@ class ContactsOfPhases(ContactSequence):
             for name in ("penetration", "volume")
         }
         return self.steps[low:high], numbers
-
-    def __len__(self) -> int:
-        return len(self.steps)
-
-    @overload
-    def __getitem__(self, index: int) -> StepContact: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
-        chosen = range(len(self))[index]
-        return self._at(chosen) if isinstance(chosen, int) else tuple(map(self._at, chosen))
 
     def _at(self, i: int) -> StepContact:
         if i not in self._told:

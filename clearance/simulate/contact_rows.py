@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol, overload
+from typing import Protocol
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from clearance.geometry.boolean import ClosedMesh
 from clearance.progress import Progress
 from clearance.query.contact import Contact
 from clearance.simulate.contact_sequence import ContactSequence, StepContact
+from clearance.simulate.rows_on_demand import RowsOnDemand
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""
@@ -136,20 +137,8 @@ class ContactRows(ContactSequence):
         if len(self._regions) < MOST_REGIONS:
             self._regions.append(found.region)
 
-    def __len__(self) -> int:
-        return len(self.steps)
-
-    @overload
-    def __getitem__(self, index: int) -> StepContact: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
-        chosen = range(len(self))[index]
-        self.work_out()
-        return self._at(chosen) if isinstance(chosen, int) else tuple(map(self._at, chosen))
-
     def _at(self, i: int) -> StepContact:
+        self.work_out()
         step, i_pair = int(self.steps[i]), int(self.pairs[i])
         slot = int(self._slots[i])
         again = (
@@ -170,7 +159,7 @@ class ContactRows(ContactSequence):
 
 
 @dataclass(frozen=True, eq=False)
-class _SelectedRows(Sequence[StepContact]):
+class _SelectedRows(RowsOnDemand[StepContact]):
     """Some of the rows, made when they are looked at."""
 
     rows: ContactRows
@@ -179,15 +168,5 @@ class _SelectedRows(Sequence[StepContact]):
     def __len__(self) -> int:
         return len(self.which)
 
-    @overload
-    def __getitem__(self, index: int) -> StepContact: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
-        chosen = self.which[index]
-        return (
-            tuple(self.rows[int(i)] for i in chosen)
-            if isinstance(index, slice)
-            else self.rows[int(chosen)]
-        )
+    def _at(self, i: int) -> StepContact:
+        return self.rows[int(self.which[i])]

@@ -10,6 +10,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from clearance.simulate.rows_on_demand import RowsOnDemand
+
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
 
@@ -45,8 +49,16 @@ class StepContact:
         return self.known
 
 
-class ContactSequence(Sequence[StepContact]):
+class ContactSequence(RowsOnDemand[StepContact]):
     """Every pair in contact at every step, steps first; what the run works out of them waits until it is asked."""
+
+    @property
+    @abstractmethod
+    def steps(self) -> np.ndarray:
+        """(k,) the step of each, not decreasing."""
+
+    def __len__(self) -> int:
+        return len(self.steps)
 
     @abstractmethod
     def work_out(self, progress: Callable[[int, int], None] | None = None) -> None:

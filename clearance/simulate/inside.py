@@ -14,7 +14,7 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.search.boxes_on_a_way import CarriedBoxes, steps_together
 from clearance.query.distance import distance
-from clearance.query.inside import Doubt, doubt_of
+from clearance.query.inside import PossibleContainment, doubt_of
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
@@ -71,7 +71,7 @@ class _OpenPairs:
     """
 
     places: tuple[int, ...]
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[PossibleContainment, ...]
     boxes: CarriedBoxes
     pairs: np.ndarray
 
@@ -110,18 +110,20 @@ def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
     return _OpenPairs(tuple(doubts), tuple(doubts.values()), boxes, numbered)
 
 
-def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
+def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, PossibleContainment]:
     """What can be in doubt, by the pairs of which something can be."""
     return dict(_doubts_of(case, tuple(pairs)))
 
 
 @once_a_cell(16)
-def _doubts_of(case: Case, pairs: tuple[Pair, ...]) -> dict[int, Doubt]:
+def _doubts_of(case: Case, pairs: tuple[Pair, ...]) -> dict[int, PossibleContainment]:
     doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
     return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
 
-def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
+def is_in_doubt(
+    case: Case, pair: Pair, doubt: PossibleContainment, poses: np.ndarray
+) -> np.ndarray:
     """(n,) whether a pair is in doubt and not in contact, at `poses` (n, links, 4, 4) of all links."""
     found = np.zeros(len(poses), dtype=bool)
     for k in _in_doubt(case, pair, doubt, BodyPoses(case, poses), slice(0, len(poses))):
@@ -160,14 +162,19 @@ class BodyPoses:
 
 
 def _first_in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, span: slice
+    case: Case, pair: Pair, doubt: PossibleContainment, poses: BodyPoses, span: slice
 ) -> int | None:
     """The first of some steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
     return next(_in_doubt(case, pair, doubt, poses, span, along_a_way=True), None)
 
 
 def _in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, span: slice, along_a_way: bool = False
+    case: Case,
+    pair: Pair,
+    doubt: PossibleContainment,
+    poses: BodyPoses,
+    span: slice,
+    along_a_way: bool = False,
 ) -> Iterator[int]:
     of_one, of_other = poses.of(pair.a)[span], poses.of(pair.b)[span]
     open_at = doubt.at(of_one, of_other, along_a_way)

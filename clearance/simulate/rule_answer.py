@@ -1,4 +1,4 @@
-"""How the pairs that one rule judges stand against it. Not for: putting rules together (`judged`)."""
+"""How the pairs that one rule judges stand against it. Not for: putting rules together (`run_answer`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was found of one section. Not for: what sections come to together (`judged`)."""
+"""What was found of one section. Not for: what sections come to together (`run_answer`)."""
 
 from __future__ import annotations
 

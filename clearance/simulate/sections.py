@@ -2,7 +2,7 @@
 clocks.
 
 A run without rules, padding and windows is one section. Not for: which pairs there are (`world.pairs`), and what
-the sections' answers come to together (`judged`).
+the sections' answers come to together (`run_answer`).
 """
 
 from __future__ import annotations

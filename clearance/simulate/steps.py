@@ -12,13 +12,13 @@ import pyarrow as pa
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_columns import no_contact_columns
 from clearance.simulate.every_pair import EveryPair
-from clearance.simulate.judged import Judged
 from clearance.simulate.measure import Measurement
 from clearance.simulate.name_codes import names_of
 from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names, sides_of
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import PairMinimum
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.run_answer import RunAnswer
 from clearance.simulate.status import STATUSES
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
@@ -36,7 +36,7 @@ def step_table(
     case: Case,
     motions: Sequence[Motion],
     pairs: Sequence[Pair],
-    judged: Judged,
+    judged: RunAnswer,
     *,
     with_error: bool = False,
     left: tuple[np.ndarray, np.ndarray] | None = None,
@@ -68,7 +68,7 @@ def step_table(
         yield pa.table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
 
-def _with_motion(judged: Judged, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _with_motion(judged: RunAnswer, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The status of each of `steps`, or of the motion to the next where that is worse than at both of its ends;
     and whether it is."""
     after = judged.sample_codes(slice(steps.start + 1, steps.stop + 1))
@@ -86,7 +86,7 @@ def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array
     return {general: columns[own] for own, general in told}
 
 
-def _rule_columns(names: BodyNames, judged: Judged, steps: slice) -> dict[str, pa.Array]:
+def _rule_columns(names: BodyNames, judged: RunAnswer, steps: slice) -> dict[str, pa.Array]:
     """What judged each step, and where there are several rules the nearest pair of all."""
     columns = {"rule": names_of(judged.rules_at(steps), [rule.name for rule in judged.rules])}
     if judged.rule is not None:
@@ -201,7 +201,7 @@ class PairMinima(Sequence[PairMinimum]):
                 )
 
 
-def every_pair(case: Case, pairs: Sequence[Pair], judged: Judged) -> EveryPair | None:
+def every_pair(case: Case, pairs: Sequence[Pair], judged: RunAnswer) -> EveryPair | None:
     """The clearance of every pair at every step; None if that was not asked for."""
     every = judged.found.every
     if every is None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 
 from clearance.errors import BadDimension, UnknownKey, at, nearest_name
-from clearance.sketch.checked import number
+from clearance.sketch.checked_numbers import number
 from clearance.sketch.constraints import Constraint, measured
 from clearance.sketch.entities import Point
 from clearance.sketch.expression import evaluated, names_in

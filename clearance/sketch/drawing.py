@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from clearance.errors import BadShape
 from clearance.kernels.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
-from clearance.sketch.checked import number, two
+from clearance.sketch.checked_numbers import number, two
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.faults import DegenerateSketch
 from clearance.sketch.lists import FlatLists

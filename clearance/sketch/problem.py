@@ -8,6 +8,7 @@ which is how conflicts are searched.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -195,9 +196,8 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     if tables.together:
         rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == 6))
         fate[rows] = MERGED
-    out = _fresh(
-        tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale
-    )
+    same, merged = _Joined(alias, weight, repeated), _Merged(parent, scale, shift, fate)
+    out = _fresh(tables, same, merged, var, value, size, length_scale)
     out.system = out.system._replace(coef=coef)
     return out
 
@@ -219,9 +219,27 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     return coef
 
 
-def _fresh(
-    tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale
-):
+class _Joined(NamedTuple):
+    """(n,) which number stands for each, and for how many each stands; rows that say so once more."""
+
+    alias: np.ndarray
+    weight: np.ndarray
+    repeated: list[int]
+
+
+class _Merged(NamedTuple):
+    """(n + 1,) each number is `scale` times that of `parent`, plus `shift`; (m,) what became of each row."""
+
+    parent: np.ndarray
+    scale: np.ndarray
+    shift: np.ndarray
+    fate: np.ndarray
+
+
+def _fresh(tables, same: _Joined, merged: _Merged, var, value, size, length_scale):
+    """The problem with a plan of its own."""
+    alias, weight, repeated = same
+    parent, scale, shift, fate = merged
     vertex_of, kind, root = vertices(tables.role, parent, weight > 0)
     ends = edges(var, tables.ground, fate, vertex_of)
     start, member = members(vertex_of, tables.role, parent, kind.shape[0])

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.sketch.checked import two
+from clearance.sketch.checked_numbers import two
 from clearance.sketch.constraints import Constraint
 from clearance.sketch.dimensions import Dimensions
 from clearance.sketch.drawing import Drawing

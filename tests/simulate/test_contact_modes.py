@@ -10,7 +10,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
-from clearance.simulate import contact_budget, contact_events
+from clearance.simulate import contact_events, contact_work
 from clearance.simulate.contact_events import deepest_of, events_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -137,7 +137,7 @@ def test_the_deepest_moment_of_the_shelf_is_that_of_all_its_steps():
 
 @pytest.mark.cold
 def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
-    monkeypatch.setattr(contact_budget, "WORK", int(1.5 * contact_budget.ROW))
+    monkeypatch.setattr(contact_work, "WORK", int(1.5 * contact_work.ROW))
     exact = [row.known for row in cl.check(sliding(channel()), contact="every").record.contacts]
     asked.clear()
     runs = [cl.check(sliding(channel())) for _ in range(2)]

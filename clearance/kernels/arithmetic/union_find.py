@@ -16,6 +16,32 @@ def find_root(parents, i):
     return i
 
 
+@inline
+def join(parents, i, k):
+    """Makes the trees of `i` and `k` one; its root, the lesser of theirs."""
+    a, b = find_root(parents, i), find_root(parents, k)
+    parents[max(a, b)] = min(a, b)
+    return min(a, b)
+
+
+@inline
+def labels_of(parents, start):
+    """(n,) a label 0, 1, … for each item from `start` on, the same for all of a tree and -1 before; their number.
+
+    Labels are given in the order of the roots, each the least item of its tree.
+    """
+    labels = np.full(len(parents), -1, dtype=np.int64)
+    n_labels = 0
+    for i in range(start, len(parents)):
+        root = find_root(parents, i)
+        if root == i:
+            labels[i] = n_labels
+            n_labels += 1
+        else:
+            labels[i] = labels[root]
+    return labels, n_labels
+
+
 @kernel
 def joined_labels(n_items, first, second):
     """(n_items,) a label 0, 1, … for each item, equal for items that pairs (first, second) connect.
@@ -24,19 +50,5 @@ def joined_labels(n_items, first, second):
     """
     parents = np.arange(n_items)
     for i in range(len(first)):
-        a = find_root(parents, first[i])
-        b = find_root(parents, second[i])
-        if a < b:
-            parents[b] = a
-        elif b < a:
-            parents[a] = b
-    labels = np.empty(n_items, dtype=np.int64)
-    n_labels = 0
-    for i in range(n_items):
-        root = find_root(parents, i)
-        if root == i:
-            labels[i] = n_labels
-            n_labels += 1
-        else:
-            labels[i] = labels[root]
-    return labels
+        join(parents, first[i], second[i])
+    return labels_of(parents, 0)[0]

@@ -109,13 +109,15 @@ def turn(m, v):
 
 
 @inline(force=True)
+def turned_back(m):
+    """The rotation R^T, without a translation."""
+    return RigidMotion(m.xx, m.yx, m.zx, m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, Vec3(0.0, 0.0, 0.0))
+
+
+@inline(force=True)
 def turn_back(m, v):
     """R^T v."""
-    return Vec3(
-        m.xx * v.x + m.yx * v.y + m.zx * v.z,
-        m.xy * v.x + m.yy * v.y + m.zy * v.z,
-        m.xz * v.x + m.yz * v.y + m.zz * v.z,
-    )
+    return turn(turned_back(m), v)
 
 
 @inline(force=True)
@@ -149,19 +151,31 @@ def rigid(matrix):
 
 
 @inline(force=True)
+def _product(a, b, t):
+    """The motion x -> R_a R_b x + t."""
+    return RigidMotion(
+        a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
+        a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
+        a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
+        a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
+        a.yx * b.xy + a.yy * b.yy + a.yz * b.zy,
+        a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
+        a.zx * b.xx + a.zy * b.yx + a.zz * b.zx,
+        a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
+        a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
+        t,
+    )  # fmt: skip
+
+
+@inline(force=True)
+def after(a, b):
+    """The motion `b` and then `a`: x -> a(b(x))."""
+    return _product(a, b, move(a, b.t))
+
+
+@inline(force=True)
 def relative(world_from_a, world_from_b):
     """The motion `a_from_b`; the origins are differenced before anything is multiplied."""
-    a = world_from_a
-    b = world_from_b
-    return RigidMotion(
-        a.xx * b.xx + a.yx * b.yx + a.zx * b.zx,
-        a.xx * b.xy + a.yx * b.yy + a.zx * b.zy,
-        a.xx * b.xz + a.yx * b.yz + a.zx * b.zz,
-        a.xy * b.xx + a.yy * b.yx + a.zy * b.zx,
-        a.xy * b.xy + a.yy * b.yy + a.zy * b.zy,
-        a.xy * b.xz + a.yy * b.yz + a.zy * b.zz,
-        a.xz * b.xx + a.yz * b.yx + a.zz * b.zx,
-        a.xz * b.xy + a.yz * b.yy + a.zz * b.zy,
-        a.xz * b.xz + a.yz * b.yz + a.zz * b.zz,
-        turn_back(a, sub(b.t, a.t)),
-    )  # fmt: skip
+    a_from_world = turned_back(world_from_a)
+    t = turn(a_from_world, sub(world_from_b.t, world_from_a.t))
+    return _product(a_from_world, world_from_b, t)

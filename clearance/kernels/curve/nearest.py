@@ -131,6 +131,15 @@ def least_square(points, n, rational, out):
     return least, reach
 
 
+@inline
+def _slopes(pieces, i, x, y, t):
+    """Of half the squared distance from (x, y) to piece `i` at `t`: its slope, its bend, and the speed squared."""
+    here = jet(pieces, i, t)
+    ex, ey = here.x - x, here.y - y
+    speed_sq = here.dx * here.dx + here.dy * here.dy
+    return ex * here.dx + ey * here.dy, speed_sq + ex * here.ddx + ey * here.ddy, speed_sq
+
+
 @kernel
 def slide_to_foot(pieces, i, x, y, t, low, high):
     """A local minimum of the distance from (x, y) to piece `i` on [low, high], from `t` on.
@@ -139,11 +148,7 @@ def slide_to_foot(pieces, i, x, y, t, low, high):
     result is a point of the curve: callers that need more prove it themselves.
     """
     for _ in range(12):
-        here = jet(pieces, i, t)
-        ex, ey = here.x - x, here.y - y
-        slope = ex * here.dx + ey * here.dy
-        speed_sq = here.dx * here.dx + here.dy * here.dy
-        bend = speed_sq + ex * here.ddx + ey * here.ddy
+        slope, bend, speed_sq = _slopes(pieces, i, x, y, t)
         if bend < 0.02 * speed_sq:
             bend = max(speed_sq, -bend)
         if bend == 0.0:
@@ -160,10 +165,7 @@ def slide_to_foot(pieces, i, x, y, t, low, high):
 def _foot_between(pieces, i, x, y, t, low, high):
     """The root of the slope on [low, high], where it rises from negative to positive: Newton in a bracket."""
     for _ in range(60):
-        here = jet(pieces, i, t)
-        ex, ey = here.x - x, here.y - y
-        slope = ex * here.dx + ey * here.dy
-        bend = here.dx * here.dx + here.dy * here.dy + ex * here.ddx + ey * here.ddy
+        slope, bend, _ = _slopes(pieces, i, x, y, t)
         if slope > 0.0:
             high = t
         else:

@@ -39,6 +39,15 @@ class NearestFeatures(NamedTuple):
     sure: Wide
 
 
+class PosedCorner(NamedTuple):
+    """A vertex `at` of one body, where it is in the frame of the other [m], and True if it is of body a."""
+
+    at: int
+    y: Vec3
+    simplex: Simplex
+    is_a: bool
+
+
 @inline
 def _take(frames, one, two, feature, best, table):
     """`best`, or a feature pair that is nearer."""
@@ -53,31 +62,39 @@ def _take(frames, one, two, feature, best, table):
 
 
 @inline
-def _corner_to_face(one, at, two, face, frames, is_a, cutoff, best, table):
-    """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
-    v = row(one.vertices, at)
+def _corner_of(one, at, frames, is_a):
+    """The vertex `at` of one body, seen from the other."""
+    v, x = row(one.vertices, at), row(one.exact, at)
     y = move_back(frames.m, v) if is_a else move(frames.m, v)
+    return PosedCorner(at, y, Simplex(1, x, x, x), is_a)
+
+
+@inline
+def _take_corner(frames, corner, other, n_corners, k, best, table):
+    """`best`, or a vertex against feature `k` of the other body, of so many corners, where that is nearer."""
+    if corner.is_a:
+        feature = Feature(1, corner.at, n_corners, k)
+        return _take(frames, corner.simplex, other, feature, best, table)
+    feature = Feature(n_corners, k, 1, corner.at)
+    return _take(frames, other, corner.simplex, feature, best, table)
+
+
+@inline
+def _corner_to_face(corner, two, face, frames, cutoff, best, table):
+    """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
+    y = corner.y
     if has_plane(two, face):
         if abs(height(two, face, y)) > cutoff.limit or not may_be_over(two, face, y, cutoff.margin):
             return best
-    x = row(one.exact, at)
-    corner = Simplex(1, x, x, x)
     for k in range(two.face_starts[face] + 1, two.face_starts[face + 1] - 1):
-        other = simplex(two, face, 3, k)
-        if is_a:
-            best = _take(frames, corner, other, Feature(1, at, 3, k), best, table)
-        else:
-            best = _take(frames, other, corner, Feature(3, k, 1, at), best, table)
+        best = _take_corner(frames, corner, simplex(two, face, 3, k), 3, k, best, table)
     return best
 
 
 @inline
-def _corner_to_segments(one, at, two, face, frames, is_a, cutoff, best, table):
+def _corner_to_segments(corner, two, face, frames, cutoff, best, table):
     """`best` with a vertex of one body against the segments of a face of the other."""
-    v = row(one.vertices, at)
-    y = move_back(frames.m, v) if is_a else move(frames.m, v)
-    x = row(one.exact, at)
-    corner = Simplex(1, x, x, x)
+    y = corner.y
     for s in range(n_segments(two, face)):
         i0, i1 = segment(two, face, s)
         start, end = row(two.vertices, i0), row(two.vertices, i1)
@@ -85,11 +102,7 @@ def _corner_to_segments(one, at, two, face, frames, is_a, cutoff, best, table):
             continue
         if gap_sq(y, nearest_on_segment(y, start, end)) > cutoff.limit * cutoff.limit:
             continue
-        other = simplex(two, face, 2, s)
-        if is_a:
-            best = _take(frames, corner, other, Feature(1, at, 2, s), best, table)
-        else:
-            best = _take(frames, other, corner, Feature(2, s, 1, at), best, table)
+        best = _take_corner(frames, corner, simplex(two, face, 2, s), 2, s, best, table)
     return best
 
 
@@ -146,9 +159,9 @@ def nearest_of_every(a, face_a, b, face_b, frames, cutoff, table):
     for side in range(2):
         is_a = side == 0
         for n in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
-            at = one.owned_vertices[n]
-            best = _corner_to_face(one, at, two, face_two, frames, is_a, cutoff, best, table)
-            best = _corner_to_segments(one, at, two, face_two, frames, is_a, cutoff, best, table)
+            corner = _corner_of(one, one.owned_vertices[n], frames, is_a)
+            best = _corner_to_face(corner, two, face_two, frames, cutoff, best, table)
+            best = _corner_to_segments(corner, two, face_two, frames, cutoff, best, table)
         one, face_one, two, face_two = b, face_b, a, face_a
     best = _between_corners(a, face_a, b, face_b, frames, cutoff, best, table)
     return _between_segments(a, face_a, b, face_b, frames, cutoff, best, table)

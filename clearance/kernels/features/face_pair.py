@@ -112,6 +112,14 @@ def take(near, hit, candidate):
 
 
 @inline(force=True)
+def take_within(near, limit_sq, hit, kind, i, j):
+    """`near` with one more pair of points, of features `i` and `j`, if it is within the limit."""
+    if hit.gap_sq <= limit_sq:
+        near = take(near, hit, FeatureCandidate(hit.gap_sq, kind, i, j))
+    return near
+
+
+@inline(force=True)
 def is_over(surface, face, x):
     """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
@@ -191,10 +199,8 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
             p1 = row(a.vertices, a.owned_edges[e, 1])
             inside, p = foot_inside(q, p0, p1)
             if inside:
-                found_sq = gap_sq(p, q)
-                if found_sq <= limit_sq:
-                    hit = Hit(found_sq, face_a, face_b, p, q)
-                    near = take(near, hit, FeatureCandidate(found_sq, EDGE_CORNER, e, j))
+                hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
+                near = take_within(near, limit_sq, hit, EDGE_CORNER, e, j)
     return near
 
 
@@ -221,10 +227,8 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
             p = row(a.vertices, i)
             inside, q = foot_inside(p, q0, q1)
             if inside:
-                found_sq = gap_sq(p, q)
-                if found_sq <= limit_sq:
-                    hit = Hit(found_sq, face_a, face_b, p, q)
-                    near = take(near, hit, FeatureCandidate(found_sq, CORNER_EDGE, i, e))
+                hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
+                near = take_within(near, limit_sq, hit, CORNER_EDGE, i, e)
         for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[i, 0])
             p1 = row(a.vertices, a.owned_edges[i, 1])
@@ -232,10 +236,8 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
                 continue
             inside, p, q = common_perpendicular(p0, p1, q0, q1, margin)
             if inside:
-                found_sq = gap_sq(p, q)
-                if found_sq <= limit_sq:
-                    hit = Hit(found_sq, face_a, face_b, p, q)
-                    near = take(near, hit, FeatureCandidate(found_sq, EDGES, i, e))
+                hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
+                near = take_within(near, limit_sq, hit, EDGES, i, e)
     return near
 
 
@@ -248,10 +250,8 @@ def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
         for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
             i = a.owned_vertices[k]
             p = row(a.vertices, i)
-            found_sq = gap_sq(p, q)
-            if found_sq <= limit_sq:
-                hit = Hit(found_sq, face_a, face_b, p, q)
-                near = take(near, hit, FeatureCandidate(found_sq, CORNERS, i, j))
+            hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
+            near = take_within(near, limit_sq, hit, CORNERS, i, j)
     return near
 
 

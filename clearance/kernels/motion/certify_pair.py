@@ -10,7 +10,7 @@ import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
-from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
+from clearance.kernels.arithmetic.lanes import larger, marks_within
 from clearance.kernels.features.bounds import (
     direction_beside,
     direction_between,
@@ -35,11 +35,10 @@ from clearance.kernels.search.front import KEPT_DOWN
 from clearance.kernels.search.node_pairs import (
     Views,
     opened,
-    pair_in_group,
     turned_away_while,
     views_along,
+    wait_for_near,
 )
-from clearance.kernels.search.scratch import STACK_DEPTH, wait
 
 FINEST = 1e-3
 """The share of the asked gap beyond which a limit that is touched is left undecided."""
@@ -284,18 +283,9 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
         away = 0
         if turn < MOST_TURNED and marks_within(bounds, target):
             away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, moved)
-        if n_waiting + WIDTH > STACK_DEPTH:
-            raise AssertionError("no room for what waits")
-        first = n_waiting
-        for k in range(count):
-            if away >> k & 1:
-                continue
-            bound = lane(bounds, k)
-            if bound >= target:
-                lower_bound = min(lower_bound, bound)
-                continue
-            node_a, node_b = pair_in_group(nodes, k)
-            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
+        marks = ((1 << count) - 1) & ~away
+        n_waiting, passed = wait_for_near(scratch, n_waiting, nodes, bounds, marks, target)
+        lower_bound = min(lower_bound, passed)
     if balls > 0.0:
         lower_bound = max(0.0, (lower_bound - balls) * KEPT_DOWN)
     seen = _seen_of_balls(search, least, balls)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, move, rigid
+from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, after, move, rigid
 
 FIXED, TURNING, SLIDING, BALL = 0, 1, 2, 3
 
@@ -35,23 +35,6 @@ class Links(NamedTuple):
 
 
 @inline(force=True)
-def _then(a, b):
-    """The motion `b` and then `a`."""
-    return RigidMotion(
-        a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
-        a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
-        a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
-        a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
-        a.yx * b.xy + a.yy * b.yy + a.yz * b.zy,
-        a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
-        a.zx * b.xx + a.zy * b.yx + a.zz * b.zx,
-        a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
-        a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
-        move(a, b.t),
-    )  # fmt: skip
-
-
-@inline(force=True)
 def _turned(m, axis, position):
     """The motion `m` after a turn about a unit axis."""
     s = math.sin(position)
@@ -63,7 +46,7 @@ def _turned(m, axis, position):
         v * x * z - s * y, v * y * z + s * x, 1.0 - v * (x * x + y * y),
         Vec3(0.0, 0.0, 0.0),
     )  # fmt: skip
-    return _then(m, turn)
+    return after(m, turn)
 
 
 @inline(force=True)
@@ -88,7 +71,7 @@ def _oriented(m, positions, column):
         s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y),
         Vec3(0.0, 0.0, 0.0),
     )  # fmt: skip
-    return _then(m, turn)
+    return after(m, turn)
 
 
 @inline(force=True)
@@ -109,7 +92,7 @@ def _write(m, out):
 @inline(force=True)
 def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
     """Writes the pose of a link whose joint, no ball joint, is at `position`."""
-    at = _then(rigid(world_from_parent), rigid(parent_from_joint))
+    at = after(rigid(world_from_parent), rigid(parent_from_joint))
     if kind == TURNING:
         at = _turned(at, axis, position)
     elif kind == SLIDING:
@@ -132,7 +115,7 @@ def place_links(links, positions, poses, wanted, look):
             continue
         column = links.columns[link]
         if links.kinds[link] == BALL:
-            at = _then(rigid(poses[parent]), rigid(links.parent_from_joint[link]))
+            at = after(rigid(poses[parent]), rigid(links.parent_from_joint[link]))
             _write(_oriented(at, positions, column), poses[link])
             continue
         position = (

@@ -197,6 +197,16 @@ def _like():
     )
 
 
+@inline
+def _wait_for_children(surface, node, waiting, n_waiting):
+    """Lets the children of a node wait; how many nodes wait."""
+    first = WIDTH * np.int64(surface.children[node, 0])
+    for k in range(surface.children[node, 1]):
+        waiting[n_waiting, 0] = first + k
+        n_waiting += 1
+    return n_waiting
+
+
 @apart(WINDING_NUMBER, _like)
 def winding_number(surface, body, is_b, probe, frames, exact, nodes):
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
@@ -220,9 +230,7 @@ def winding_number(surface, body, is_b, probe, frames, exact, nodes):
             continue
         first = np.int64(surface.children[node, 0])
         if not is_leaf(surface, node):
-            for k in range(surface.children[node, 1]):
-                nodes[n_waiting, 0] = WIDTH * first + k
-                n_waiting += 1
+            n_waiting = _wait_for_children(surface, node, nodes, n_waiting)
         elif surface.turns[first] != 0:
             number += surface.turns[first] * _crossings(surface, first, side, vertex, exact)
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
@@ -279,9 +287,7 @@ def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table):
             continue
         first = np.int64(one.children[node, 0])
         if not is_leaf(one, node):
-            for k in range(one.children[node, 1]):
-                waiting[n_waiting, 0] = WIDTH * first + k
-                n_waiting += 1
+            n_waiting = _wait_for_children(one, node, waiting, n_waiting)
             continue
         at = one.face_vertices[one.face_starts[first]]
         if _is_probe(one, body_one, at):

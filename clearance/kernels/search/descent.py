@@ -46,7 +46,7 @@ from clearance.kernels.search.node_pairs import (
     pair_in_group,
     turned_away,
 )
-from clearance.kernels.search.scratch import STACK_DEPTH, swap, wait
+from clearance.kernels.search.scratch import require_room, swap, wait
 from clearance.kernels.search.warm_start import warm_start
 
 
@@ -246,8 +246,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
             marks = (1 << count) - 1
             bounds = bounds_of_group(a, b, near.views, nodes, marks, slack, near.cut)
             n_nodes += count
-            if n_waiting + WIDTH > STACK_DEPTH:
-                raise AssertionError("no room for what waits")
+            require_room(n_waiting)
             n_waiting, marks, low, far = _wait_for_near(
                 a, b, near, nodes, marks, bounds, slack, scratch, n_waiting
             )

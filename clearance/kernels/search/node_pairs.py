@@ -1,9 +1,17 @@
-"""A group of nodes against a node of the other body: how far they are, and what is opened next."""
+"""A group of nodes against a node of the other body: how far they are, what is opened next, and what waits."""
 
+import math
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
-from clearance.kernels.arithmetic.lanes import WIDTH, larger, marks_within, square_root
+from clearance.kernels.arithmetic.lanes import (
+    WIDTH,
+    first_of,
+    lane,
+    larger,
+    marks_within,
+    square_root,
+)
 from clearance.kernels.arithmetic.vec3 import RigidMotion, dot, inverse, move, sub
 from clearance.kernels.features.bounds import (
     SeparatingDirection,
@@ -14,6 +22,7 @@ from clearance.kernels.features.bounds import (
 )
 from clearance.kernels.mesh.normal_cones import marks_turned_away, normal_cones_of, while_moving
 from clearance.kernels.mesh.surface import box_at, box_of, group_at, is_leaf
+from clearance.kernels.search.scratch import require_room, wait
 
 
 class NodeGroup(NamedTuple):
@@ -149,3 +158,24 @@ def pair_in_group(nodes, k):
     """Node `k` of a group and the node across, that of a first."""
     node = WIDTH * nodes.group + k
     return (nodes.other, node) if nodes.is_of_b else (node, nodes.other)
+
+
+@inline(force=True)
+def wait_for_near(scratch, n_waiting, nodes, bounds, marks, target):
+    """Lets the marked nodes of a group that are nearer than `target` [m] wait with the node across, nearest last.
+
+    Returns:
+        how many wait, and [m] the least bound of those marked that do not; infinity without any.
+    """
+    require_room(n_waiting)
+    first, least = n_waiting, math.inf
+    while marks:
+        k = first_of(marks)
+        marks &= marks - 1
+        bound = lane(bounds, k)
+        if bound >= target:
+            least = min(least, bound)
+        else:
+            node_a, node_b = pair_in_group(nodes, k)
+            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
+    return n_waiting, least

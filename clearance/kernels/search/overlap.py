@@ -7,21 +7,22 @@ Which contact is found depends on the bodies and their poses alone, so that a ro
 sweep starts. Not for: bodies that are apart (`descent`), of which it says nothing.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import OVERLAP, apart, at_address, borrow, table_like
-from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, marks_within
+from clearance.kernels.arithmetic.lanes import marks_within
 from clearance.kernels.arithmetic.vec3 import Vec3, inverse
 from clearance.kernels.features.bounds import lower_bound_boxes, margin_of
 from clearance.kernels.features.face_pair import Hit, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
 from clearance.kernels.features.posed_pair import parts, posed_pair_like
 from clearance.kernels.mesh.surface import is_leaf
-from clearance.kernels.search.node_pairs import boxes_of_group, opened, pair_in_group
-from clearance.kernels.search.scratch import STACK_DEPTH, new_scratch, wait
+from clearance.kernels.search.node_pairs import boxes_of_group, opened, wait_for_near
+from clearance.kernels.search.scratch import new_scratch
 
 
 class Overlap(NamedTuple):
@@ -83,14 +84,7 @@ def overlap(roots, slack, reach, scratch, table):
         p, q = boxes_of_group(a, b, nodes)
         bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
         marks = ((1 << count) - 1) & marks_within(bounds, reach)
-        if n_waiting + WIDTH > STACK_DEPTH:
-            raise AssertionError("no room for what waits")
-        first = n_waiting
-        while marks:
-            i = first_of(marks)
-            marks &= marks - 1
-            node_a, node_b = pair_in_group(nodes, i)
-            n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(bounds, i), first)
+        n_waiting, _ = wait_for_near(scratch, n_waiting, nodes, bounds, marks, math.inf)
     return Overlap(NO_MEETING, NO_HIT, np.int64(-1), np.int64(-1), n_nodes, n_faces)
 
 

@@ -56,6 +56,13 @@ def swap(scratch, i, k):
 
 
 @inline(force=True)
+def require_room(n_waiting):
+    """Asserts that there is room for a group of node pairs beside those that wait."""
+    if n_waiting + WIDTH > STACK_DEPTH:
+        raise AssertionError("no room for what waits")
+
+
+@inline(force=True)
 def wait(scratch, n_waiting, node_a, node_b, bound, first):
     """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
     k = n_waiting

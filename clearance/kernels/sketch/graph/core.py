@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.arithmetic.union_find import find_root
+from clearance.kernels.arithmetic.union_find import find_root, join, labels_of
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch.graph.matching import match, ordered_parts
 from clearance.kernels.sketch.graph.rules import RULED, MergeOrder, merge_order
@@ -39,15 +39,10 @@ def _joined(kind, ends, theta_of):
         for k in range(5):
             v = ends[row, k]
             if v > 0:
-                a = find_root(group, v)
-                if first >= 0:
-                    group[max(a, first)] = min(a, first)
-                    a = min(a, first)
-                first = a
+                first = find_root(group, v) if first < 0 else join(group, v, first)
     for v in range(1, n):
         if kind[v] == SLIDE and theta_of[v] > 0:
-            a, b = find_root(group, v), find_root(group, theta_of[v])
-            group[max(a, b)] = min(a, b)
+            join(group, v, theta_of[v])
     return group
 
 
@@ -56,15 +51,7 @@ def components(kind, ends, theta_of, absolute):
     """The connected parts of a graph; see `Components`."""
     n = kind.shape[0]
     group = _joined(kind, ends, theta_of)
-    part = np.full(n, -1, np.int64)
-    count = 0
-    for v in range(1, n):
-        r = find_root(group, v)
-        if r == v:
-            part[v] = count
-            count += 1
-        else:
-            part[v] = part[r]
+    part, count = labels_of(group, 1)
     hold = np.zeros(count, np.int64)
     for row in range(ends.shape[0]):
         grounded = False

@@ -28,7 +28,7 @@ from clearance.world.rules import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class RunAnswer:
     """What was found of a run.
 
     Attributes:
@@ -70,7 +70,7 @@ def judged(
     answers: Sequence[SectionAnswer],
     case: Case,
     motions: Sequence[Motion],
-) -> Judged:
+) -> RunAnswer:
     """What a run comes to, of what its sections come to."""
     rules, limits, n_steps = [], case.limits, motions[0].n_steps
     samples = SampleMoments(pair_names(case, plan.pairs), motions)
@@ -84,12 +84,12 @@ def judged(
         rules.append(RuleAnswer(name, limits.of_rule(rule), found, certificate, moment_at, pairs))
     if len(rules) == 1:
         only = rules[0]
-        return Judged((only,), only.measurement, None, only.measurement, only.certificate)
+        return RunAnswer((only,), only.measurement, None, only.measurement, only.certificate)
     worst = _worst_rule(rules, n_steps)
     found = _chosen([rule.measurement for rule in rules], worst)
     least = np.argmin([_or_far(rule.measurement.clearance) for rule in rules], axis=0)
     nearest = _chosen([rule.measurement for rule in rules], least)
-    return Judged(tuple(rules), found, worst, nearest, _over_rules(rules))
+    return RunAnswer(tuple(rules), found, worst, nearest, _over_rules(rules))
 
 
 def joined(answers: Sequence[SectionAnswer], n_steps: int, n_pairs: int) -> Measurement:

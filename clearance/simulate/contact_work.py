@@ -24,7 +24,7 @@ PER_TRIANGLE = 12
 
 
 @dataclass(eq=False)
-class Budget:
+class ContactWork:
     """What is left for a pair of so many triangles in all."""
 
     n_triangles: int

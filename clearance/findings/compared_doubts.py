@@ -18,7 +18,7 @@ MOST_NAMED = 3
 
 
 @dataclass(frozen=True)
-class DoubtCompared:
+class ComparedDoubt:
     """A doubt of one or both of two runs.
 
     Attributes:
@@ -36,10 +36,10 @@ class DoubtCompared:
         return self.now and not self.before and alarming
 
 
-def doubts_compared(before: FindingList, now: FindingList) -> tuple[DoubtCompared, ...]:
+def doubts_compared(before: FindingList, now: FindingList) -> tuple[ComparedDoubt, ...]:
     """The doubts of both, compared by their words: those that alarm first, then those of now, then the others."""
     known = {one: None for one in (*now.doubts, *before.doubts)}
-    rows = [DoubtCompared(one, one in before.doubts, one in now.doubts) for one in known]
+    rows = [ComparedDoubt(one, one in before.doubts, one in now.doubts) for one in known]
     return tuple(sorted(rows, key=lambda row: (not row.alarms, not row.now)))
 
 
