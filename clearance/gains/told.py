@@ -82,6 +82,12 @@ def amount_text(part: Moved) -> str:
     return f"{_figure(abs(part.amount) * factor)} {unit}"
 
 
+def signed_text(part: Moved) -> str:
+    """The same with its sign; none where that is nothing in the digits told."""
+    text = amount_text(part)
+    return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
+
+
 def size_text(gain: Gain) -> str:
     """The size of the change."""
     factor, unit = size_unit(gain)
@@ -137,7 +143,7 @@ def _worst(run: Run) -> str:
 
 
 def _joint(part: Moved) -> str:
-    told = f"joint {part.name} by up to {amount_text(part)}"
+    told = f"joint {part.name} by up to {signed_text(part)}"
     return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 

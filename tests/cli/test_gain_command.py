@@ -40,6 +40,11 @@ def test_nothing_to_change_is_said(tmp_path, capsys):
     assert code == 0 and "nothing had to be changed" in text
 
 
+def test_a_joint_is_told_with_the_sign_of_its_offset(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints")
+    assert code == 0 and "joint y by up to -20.00 mm at " in text
+
+
 def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     out = tmp_path / "out"
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep", "0.9:1.1", "--out", out)
