@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
-from clearance.gains.answer import OWN, Gain, gain
+from clearance.gains.answer import Gain, gain
+from clearance.gains.asked import OWN
 from clearance.gains.told import bound_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case
