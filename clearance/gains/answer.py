@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
-from clearance.gains.asked import MOST_DELAY, Asked
-from clearance.gains.binding import bound_by
+from clearance.gains.asked import MOST_DELAY, Asked, Range, ranges_of
+from clearance.gains.binding import bound_by, ends_reached
 from clearance.gains.blocked import (
     NOT_FOUND,
+    TOO_FAR,
     TOO_LATE,
     Blocked,
     blocked_by,
@@ -27,9 +28,11 @@ from clearance.gains.blocked import (
 from clearance.gains.delay import least_delay
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import joint_offsets
+from clearance.gains.programme import Box
 from clearance.gains.search import Change, Found, Search
-from clearance.gains.shift import Shift, base_shift, obstacle_shift
+from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
+from clearance.gains.turn import Turn
 from clearance.gains.unreachable import least_offset, least_shift
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
@@ -46,6 +49,7 @@ INSIDE = 0.8
 FARTHER = 0.05
 """[m] From how far, where the first search found none."""
 
+
 @dataclass(frozen=True, eq=False)
 class Gain:
     """What a change comes to.
@@ -53,7 +57,8 @@ class Gain:
     Attributes:
         asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
         case: the changed case; the best that was reached where it is not kept.
-        change: (3,) [m] of a shift; (n, k) [rad or m] of the samples of a path; (1,) [s] of a delay.
+        change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
+            samples of a path; (1,) [s] of a delay.
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
@@ -94,6 +99,8 @@ def gain(
     keep: Sequence[tuple[float, float]] = (),
     keep_ends: bool = True,
     most_delay: float = MOST_DELAY,
+    within: Sequence[float | Range] | None = None,
+    turn: Turn | str | None = None,
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -105,6 +112,9 @@ def gain(
         robot, obstacle: what is changed; where there is one, it need not be named.
         keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
         most_delay: [s] that is looked at.
+        within: [m] how far a shift may go along x, y and z: a number for either way, or both ends.
+        turn: that is allowed beside a shift: an axis of the world through the origin of what is moved, "x", "y" or
+            "z", or a `Turn`.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
@@ -112,7 +122,9 @@ def gain(
     from clearance.load.case_file import load_case
 
     kept = tuple((start, end) for start, end in keep)
-    asked = Asked(kind, margin, robot, obstacle, kept, keep_ends, most_delay)
+    room = None if within is None else ranges_of(within)
+    allowed = Turn(turn) if isinstance(turn, str) else turn
+    asked = Asked(kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed)
     if isinstance(case, Case):
         return gained(case, asked)
     if not isinstance(case, str | PathLike):
@@ -136,23 +148,28 @@ def gained(case: Case, asked: Asked) -> Gain:
 def _by_shift(case: Case, asked: Asked) -> Gain:
     shift, who = _shift(case, asked)
     search = Search(shift, asked.margin)
-    first = search.state_at(np.zeros(3))
+    first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_shift(shift, first, asked.margin)
     blocked = blocked_by(first, shift.gradient, shift.handed)
-    if blocked is not None:
-        return _gain(case, asked, Found(first, None, 1), np.zeros(3), shift, at_least, who, blocked)
-    found = _least_of_several(search, shift, first, at_least)
-    return _gain(case, asked, found, found.state.x, shift, at_least, who, None)
+    if blocked is None and at_least > shift.farthest:
+        blocked = worst_pair(first, TOO_FAR)
+    found = Found(first, None, 1)
+    if blocked is None:
+        found = _least_of_several(search, shift, first, at_least)
+    return _gain(case, asked, found, shift.change_of(found.state.x), shift, at_least, who, blocked)
 
 
 def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> Found:
-    """The least of a search from where it is, and, where that may be beaten, from six sides."""
+    """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
     far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
-    for side in (*np.eye(3), *-np.eye(3)):
-        start = search.state_at(far * side)
+    for side in (*np.eye(shift.size_of_x), *-np.eye(shift.size_of_x)):
+        x = np.clip(far * side, *shift.box)
+        if not x.any():
+            continue
+        start = search.state_at(x)
         if start.record.nearest.touches:
             continue
         found = search.from_state(start, shift.size(best.state.x) if best.kept else np.inf)
@@ -227,6 +244,8 @@ def _gain(
         blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, asked.margin)
         robot = found.state.case.robots[_robot(case, who)] if asked.kind == "waypoints" else None
         binding = bound_by(found.state, blocked, robot)
+        if isinstance(way, Shift):
+            binding += ends_reached(found.state.x, way.box)
     return Gain(
         asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
         found.n_measured, binding=binding,
@@ -247,14 +266,15 @@ def _by_delay(case: Case, asked: Asked) -> Gain:
 
 
 def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
+    box = ANYWHERE if asked.within is None else Box(*np.array(asked.within).T)
     if asked.kind == "base":
         who = case.robots[_robot(case, asked.robot)].robot.name
-        return base_shift(case, who), who
+        return base_shift(case, who, box, asked.turn), who
     if asked.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
         raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")
     who = asked.obstacle or case.obstacles[0].name
-    return obstacle_shift(case, who), who
+    return obstacle_shift(case, who, box, asked.turn), who
 
 
 def _robot(case: Case, name: str | None) -> int:

@@ -5,11 +5,13 @@ Not for: whether a case has what is named (`answer`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput
+from clearance.gains.turn import Turn
 
 KINDS = ("waypoints", "obstacle", "base", "timing")
 
@@ -17,8 +19,13 @@ OWN = {
     "robot": ("waypoints", "base", "timing"),
     "obstacle": ("obstacle",),
     "keep": ("waypoints",),
+    "within": ("obstacle", "base"),
+    "turn": ("obstacle", "base"),
 }
 """Which kinds what is named is of; of others it would be passed over."""
+
+Range = tuple[float, float]
+"""The least and the greatest that something may be."""
 
 MOST_DELAY = 60.0
 """[s] That is looked at, if nothing is given."""
@@ -33,6 +40,8 @@ class Asked:
         robot, obstacle: names; where there is one, it need not be given.
         keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
         most_delay: [s].
+        within: how far a shift may go along x, y and z, ends of both signs or 0 [m]; None for anywhere.
+        turn: that is allowed beside a shift.
     """
 
     kind: str
@@ -42,6 +51,8 @@ class Asked:
     keep: tuple[tuple[float, float], ...] = ()
     keep_ends: bool = True
     most_delay: float = MOST_DELAY
+    within: tuple[Range, ...] | None = None
+    turn: Turn | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -56,8 +67,38 @@ class Asked:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
             raise BadInput(f"a delay of {self.most_delay!r:.60} s", valid="a time, 0 or more")
+        if self.within is not None:
+            _require_room(self.within, self.turn)
         for start, end in self.keep:
             if not start <= end:
                 raise BadInput(
                     f"from {start:g} s to {end:g} s is kept", valid="a start before its end"
                 )
+
+
+def ranges_of(within: Sequence[float | Range]) -> tuple[Range, ...]:
+    """Each range by its ends; a number is as far either way."""
+    return tuple(
+        (-float(one), float(one))
+        if isinstance(one, int | float)
+        else (float(one[0]), float(one[1]))
+        for one in within
+    )
+
+
+def _require_room(within: Sequence[Range], turn: Turn | None) -> None:
+    """Nothing, if a shift within these ranges can be none, and can be another.
+
+    Raises:
+        BadDimension: there are not three, or one that leaves out no shift. BadInput: nothing can be moved.
+    """
+    if len(within) != 3:
+        raise BadDimension(f"{len(within)} ranges of a shift are given", valid="those of x, y, z")
+    for axis, (low, high) in zip("xyz", within, strict=True):
+        if not low <= 0.0 <= high:
+            raise BadDimension(
+                f"a shift along {axis} from {low * 1e3:g} to {high * 1e3:g} mm leaves out where it is",
+                valid="a range that 0 is in",
+            )
+    if turn is None and not any(low < high for low, high in within):
+        raise BadInput("a box of zero leaves nothing to move", valid="a range that is not 0")

@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.gains.blocked import Blocked
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.programme import Box
 from clearance.gains.shortfalls import State
 from clearance.world.case import PlacedRobot
 
@@ -28,6 +29,16 @@ def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tupl
     return (
         *_pairs(state, blocked)[:MOST],
         *(_joints(placed, blocked.time) if placed else [])[:MOST],
+    )
+
+
+def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
+    """The variables of a shift that are at an end of what they may be."""
+    names = [*(f"the shift along {axis}" for axis in "xyz"), "the turn"]
+    return tuple(
+        f"{name} is as far as it may go"
+        for name, value, low, high in zip(names, x, *box, strict=False)
+        if low < high and (value > high - CLOSE or value < low + CLOSE)
     )
 
 

@@ -20,6 +20,7 @@ KEPT_STILL = "that moment is to be kept"
 NOT_APART = "small changes of this kind do not part them there"
 NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
+TOO_FAR = "no change within what is allowed is large enough"
 TOO_LATE = "no delay that was looked at gives more"
 
 

@@ -102,6 +102,8 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "margin": asked.margin,
         "keep": [list(window) for window in asked.keep],
         "keep_ends": asked.keep_ends,
+        "within": None if asked.within is None else [list(ends) for ends in asked.within],
+        "turn": None if asked.turn is None else vars(asked.turn),
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,

@@ -19,7 +19,8 @@ class Moved(NamedTuple):
     """A part of a change.
 
     Attributes:
-        name: a joint, "x", "y", "z", or "start". amount: the greatest one, with its sign [rad], [m] or [s].
+        name: a joint, "x", "y", "z", "turn about z", or "start". amount: the greatest one, with its sign [rad],
+            [m] or [s].
         unit: "rad", "m" or "s". time: when that is; start, end: from when until when it is moved [s of the run];
             None for what is so throughout.
     """
@@ -33,13 +34,15 @@ class Moved(NamedTuple):
 
 
 def moved_parts(gain: Gain) -> list[Moved]:
-    """All joints that move, in their table's order; the three components of a shift; the delay."""
+    """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
     if gain.asked.kind == "waypoints":
         return _joints(gain)
     change = gain.change.tolist()
     if gain.asked.kind == "timing":
         return [Moved("start", change[0], "s")]
-    return [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=True)]
+    parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
+    turn = gain.asked.turn
+    return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
 
 
 def _joints(gain: Gain) -> list[Moved]:

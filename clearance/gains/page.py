@@ -88,14 +88,23 @@ def _moved(gain: Gain) -> Markup:
         heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
         return section("What is changed", table(heads, [_joint(part) for part in parts]))
     rows = [
-        element("tr", element("td", _what(gain, part)), _number(signed_text(part))) for part in parts
+        element("tr", element("td", _what(gain, part)), _number(signed_text(part)))
+        for part in parts
     ]
     if gain.asked.kind != "timing":
-        rows.append(element("tr", element("td", "length"), _number(size_text(gain))))
+        rows.append(
+            element(
+                "tr",
+                element("td", "length" if gain.asked.turn is None else "size"),
+                _number(size_text(gain)),
+            )
+        )
     return section("What is changed", table((f"{gain.who}", ">By"), rows))
 
 
 def _what(gain: Gain, part: Moved) -> str:
+    if part.unit == "rad":
+        return part.name
     return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
 
 

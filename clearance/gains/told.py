@@ -10,9 +10,10 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
-from clearance.gains.blocked import KEPT_STILL, NOT_MOVED
+from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
 from clearance.gains.moved import Moved, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
+from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
 
@@ -58,7 +59,7 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
 
 def _is_hopeless(gain: Gain) -> bool:
     """True if no change of the kind, however large, can make every rule hold."""
-    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL)
+    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL, TOO_FAR)
 
 
 def changed_lines(gain: Gain) -> list[str]:
@@ -69,11 +70,23 @@ def changed_lines(gain: Gain) -> list[str]:
     if gain.asked.kind == "timing":
         return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
     who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
-    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts)
+    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts if part.unit == "m")
+    turned = [f", turned {signed_text(part)}{_about(gain)}" for part in parts if part.unit == "rad"]
     joints = (
         "; its joints as they are, so its tool moves along" if gain.asked.kind == "base" else ""
     )
-    return [f"{who} moved {size_text(gain)}: {axes}{joints}"]
+    return [f"{who} moved {size_text(gain)}: {axes}{''.join(turned)}{joints}"]
+
+
+def _about(gain: Gain) -> str:
+    """What a turn is about, and how it counts."""
+    turn = gain.asked.turn
+    assert turn is not None
+    through = "its origin"
+    if turn.about is not None:
+        through = ", ".join(f"{1e3 * one:g}" for one in turn.about) + " mm"
+    counted = 1e3 * math.radians(1.0) * ARM
+    return f" about {turn.axis} through {through} (1 deg counts as {counted:.2f} mm)"
 
 
 def amount_text(part: Moved) -> str:

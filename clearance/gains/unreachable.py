@@ -28,11 +28,12 @@ INWARD = 1.0 - 2.0**-16
 
 
 def least_shift(shift: Shift, state: State, margin: float) -> float:
-    """[m] No shorter shift makes the rules hold by a margin, whatever its direction."""
+    """[m] No smaller shift, with its turn, makes the rules hold by a margin, whatever its direction."""
     least = 0.0
     for approach in state.near:
         if shift.gradient(approach) is not None and not shift.handed.has(approach):
-            least = max(least, float(way_needed(approach, margin).max(initial=0.0)))
+            sizes = way_needed(approach, margin) / shift.factors(approach)
+            least = max(least, float(sizes.max(initial=0.0)))
     return INWARD * least
 
 

@@ -34,6 +34,24 @@ def test_a_margin_is_kept_and_said_not_to_be_in_the_case(slot, capsys):
     assert "not written into the changed case" in text
 
 
+def test_a_shift_keeps_within_its_room(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,19,0")
+    assert code == 1 and "no change within what is allowed is large enough" in text
+    code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,-21:0,0")
+    assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
+
+
+def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
+    path, out = slot.parent / "turned.yaml", tmp_path / "out"
+    path.write_text(slot.read_text().replace("[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
+                    "[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0], rpy: [0, 0, 0.1]}"))  # fmt: skip
+    options = ("--kind", "obstacle", "--obstacle", "left", "--within-mm", "0,30,0", "--turn", "z")
+    code, text, _ = said(capsys, path, *options, "--out", out)
+    assert code == 0 and " deg about z through its origin (1 deg counts as 8.73 mm)" in text
+    assert "turn about z" in (out / "gain.html").read_text()
+    assert run(["check", str(out / "case.yaml")]) == 0
+
+
 def test_nothing_to_change_is_said(tmp_path, capsys):
     path = write_cell(tmp_path, SLOT.replace("fail: 0.04", "fail: 0.01"))
     code, text, _ = said(capsys, path, "--kind", "waypoints")
@@ -85,6 +103,12 @@ def test_a_delay_is_told(tmp_path, capsys):
         (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),
         (["--kind", "obstacle", "--robot", "bar"], "robot with kind waypoints or base or timing"),
         (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
+        (["--kind", "base", "--within-mm", "0,0,0"], "a box of zero leaves nothing to move"),
+        (["--kind", "base", "--within-mm", "5,5"], "is no room for a shift"),
+        (["--kind", "base", "--within-mm", "5,5,3:9"], "along z from 3 to 9 mm leaves out where"),
+        (["--kind", "waypoints", "--turn", "z"], "turn is given, of which a change of kind way"),
+        (["--kind", "base", "--about-mm", "1,2,3"], "a turn is spoken of that is not asked for"),
+        (["--kind", "base", "--turn", "z", "--most-turn-deg", "0"], "up to 180 deg"),
     ],
 )
 def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):
