@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.gain_options import Place, Room, Stretch
+from clearance.cli.gain_options import Place, Pose, Room, Stretch
 from clearance.cli.notices import say_notices
 from clearance.cli.options import Millimetres, OutputPath
 from clearance.errors import BadInput, shown
@@ -44,6 +44,16 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
 )
 @click.option(
     "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."
+)
+@click.option(
+    "--keep-tool",
+    metavar="TIME=MM,DEG",
+    multiple=True,
+    type=Pose(),
+    help="How far the tool may move and turn at a time of the run, as 12.0=2mm,1deg; may be given again.",
+)
+@click.option(
+    "--tool", metavar="LINK", help="Which; else the first link that all joints of the path move."
 )
 @click.option(
     "--most-delay",

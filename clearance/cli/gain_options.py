@@ -6,6 +6,7 @@ Not for: what they are for (`gain`).
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import click
@@ -31,6 +32,32 @@ class Stretch(click.ParamType):
                 f"{value!r} is no stretch of time; START:END in seconds, as 1.2:1.5", param, ctx
             )
         return start, end
+
+
+class Pose(click.ParamType):
+    """How far a tool may move and turn at a moment, TIME=Nmm,Ndeg; handed on in seconds, metres and radians."""
+
+    name = "time=mm,deg"
+    _FORM = re.compile(r"([^=]+?)s?=([^,]+)mm,([^,]+)deg")
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float, float]:
+        """Time [s], way [m] and angle [rad]."""
+        if isinstance(value, tuple):
+            return value
+        form = self._FORM.fullmatch(value)
+        try:
+            time, far, turn = (float(part) for part in form.groups()) if form else (math.nan,) * 3
+        except ValueError:
+            time = far = turn = math.nan
+        if not all(map(math.isfinite, (time, far, turn))):
+            self.fail(
+                f"{value!r} is no moment with a tolerance; TIME=Nmm,Ndeg, as 12.0=2mm,1deg",
+                param,
+                ctx,
+            )
+        return time, far / 1000.0, math.radians(turn)
 
 
 class Room(click.ParamType):

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.asked import MOST_DELAY, Asked, Range, ranges_of
-from clearance.gains.binding import bound_by, ends_reached
+from clearance.gains.binding import bound_by, ends_reached, tools_held
 from clearance.gains.blocked import (
     NOT_FOUND,
     TOO_FAR,
@@ -27,15 +27,16 @@ from clearance.gains.blocked import (
 )
 from clearance.gains.delay import least_delay
 from clearance.gains.joint_ranges import require_within_limits
-from clearance.gains.offsets import joint_offsets
+from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.programme import Box
 from clearance.gains.search import Change, Found, Search
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
+from clearance.gains.tool_poses import ToolKeep, ToolMove
 from clearance.gains.turn import Turn
 from clearance.gains.unreachable import least_offset, least_shift
 from clearance.run import Question, Run, answer
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
@@ -65,6 +66,7 @@ class Gain:
         blocked: what stays too near, where it is not kept. binding: what the best that was reached is up against,
             a line each.
         n_measured: how many cases were measured.
+        tool_moves: how far the tool is moved where it is to stay about where it is.
         joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
     """
 
@@ -82,6 +84,7 @@ class Gain:
     joint_names: tuple[str, ...] = field(default=())
     binding: tuple[str, ...] = field(default=())
     case_file: Path | None = None
+    tool_moves: tuple[ToolMove, ...] = ()
 
     @property
     def unit(self) -> str:
@@ -101,6 +104,8 @@ def gain(
     most_delay: float = MOST_DELAY,
     within: Sequence[float | Range] | None = None,
     turn: Turn | str | None = None,
+    keep_tool: Sequence[ToolKeep | tuple[float, float, float]] = (),
+    tool: str | None = None,
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -115,6 +120,8 @@ def gain(
         within: [m] how far a shift may go along x, y and z: a number for either way, or both ends.
         turn: that is allowed beside a shift: an axis of the world through the origin of what is moved, "x", "y" or
             "z", or a `Turn`.
+        keep_tool: (time [s of the run], [m], [rad]): how far the tool may move and turn then.
+        tool: the link that it is; else the first that all joints of the path move.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
@@ -124,7 +131,10 @@ def gain(
     kept = tuple((start, end) for start, end in keep)
     room = None if within is None else ranges_of(within)
     allowed = Turn(turn) if isinstance(turn, str) else turn
-    asked = Asked(kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed)
+    keeps = tuple(one if isinstance(one, ToolKeep) else ToolKeep(*one) for one in keep_tool)
+    asked = Asked(
+        kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed, keeps, tool
+    )
     if isinstance(case, Case):
         return gained(case, asked)
     if not isinstance(case, str | PathLike):
@@ -182,8 +192,11 @@ def _by_path(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
     who = case.robots[i_robot].robot.name
     require_within_limits(case.robots[i_robot])
+    _require_in_path(case.robots[i_robot], asked.keep_tool)
     for n_intervals in INTERVALS:
-        offsets = joint_offsets(case, i_robot, n_intervals, _kept(case, i_robot, asked))
+        offsets = joint_offsets(
+            case, i_robot, n_intervals, _kept(case, i_robot, asked), asked.keep_tool, asked.tool
+        )
         search = Search(offsets, asked.margin)
         first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
         at_least = least_offset(offsets, first, asked.margin)
@@ -195,7 +208,26 @@ def _by_path(case: Case, asked: Asked) -> Gain:
             break
     change = offsets.offsets(found.state.x)
     told = _gain(case, asked, found, change, offsets, at_least, who, blocked)
-    return replace(told, joint_names=offsets.placed.asked.joint_names)
+    poses = offsets.tool_poses
+    moves = () if poses is None else tuple(poses.moves(found.state.x))
+    return replace(told, joint_names=offsets.placed.asked.joint_names, tool_moves=moves)
+
+
+def _require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
+    """Nothing, if the moments at which a tool is kept are of its robot's path.
+
+    Raises:
+        BadInput: which is not.
+    """
+    if placed.trajectory is None:
+        return
+    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
+    for one in keeps:
+        if not start <= one.time <= end:
+            raise BadInput(
+                f"a tool is to be kept at {one.time:g} s, at which its path is not",
+                valid=f"a time from {start:g} to {end:g} s",
+            )
 
 
 def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
@@ -246,6 +278,8 @@ def _gain(
         binding = bound_by(found.state, blocked, robot)
         if isinstance(way, Shift):
             binding += ends_reached(found.state.x, way.box)
+        if isinstance(way, JointOffsets) and way.tool_poses is not None:
+            binding += tools_held(way.tool_poses.moves(found.state.x))
     return Gain(
         asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
         found.n_measured, binding=binding,

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput
+from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
 
 KINDS = ("waypoints", "obstacle", "base", "timing")
@@ -21,6 +22,8 @@ OWN = {
     "keep": ("waypoints",),
     "within": ("obstacle", "base"),
     "turn": ("obstacle", "base"),
+    "keep_tool": ("waypoints",),
+    "tool": ("waypoints", "base"),
 }
 """Which kinds what is named is of; of others it would be passed over."""
 
@@ -42,6 +45,7 @@ class Asked:
         most_delay: [s].
         within: how far a shift may go along x, y and z, ends of both signs or 0 [m]; None for anywhere.
         turn: that is allowed beside a shift.
+        keep_tool: moments at which the tool stays about where it is. tool: the link that it is.
     """
 
     kind: str
@@ -53,6 +57,8 @@ class Asked:
     most_delay: float = MOST_DELAY
     within: tuple[Range, ...] | None = None
     turn: Turn | None = None
+    keep_tool: tuple[ToolKeep, ...] = ()
+    tool: str | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -67,6 +73,8 @@ class Asked:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
             raise BadInput(f"a delay of {self.most_delay!r:.60} s", valid="a time, 0 or more")
+        if self.tool is not None and not self.keep_tool:
+            raise BadInput("a tool is named of which nothing is to be kept", valid="keep_tool")
         if self.within is not None:
             _require_room(self.within, self.turn)
         for start, end in self.keep:

@@ -5,12 +5,15 @@ Not for: what is plain before any search (`blocked`).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from clearance.gains.blocked import Blocked
 from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.programme import Box
 from clearance.gains.shortfalls import State
+from clearance.gains.tool_poses import ToolMove
 from clearance.world.case import PlacedRobot
 
 CLOSE = 1e-5
@@ -39,6 +42,15 @@ def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
         f"{name} is as far as it may go"
         for name, value, low, high in zip(names, x, *box, strict=False)
         if low < high and (value > high - CLOSE or value < low + CLOSE)
+    )
+
+
+def tools_held(moves: Iterable[ToolMove]) -> tuple[str, ...]:
+    """The moments at which a tool has moved or turned as far as it may."""
+    return tuple(
+        f"tool {one.link} has no more to give at {one.keep.time:.3f} s"
+        for one in moves
+        if one.far > one.keep.far - CLOSE or one.turn > one.keep.turn - CLOSE
     )
 
 

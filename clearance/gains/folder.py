@@ -102,6 +102,17 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "margin": asked.margin,
         "keep": [list(window) for window in asked.keep],
         "keep_ends": asked.keep_ends,
+        "tool": [
+            {
+                "link": one.link,
+                "time": one.keep.time,
+                "far": one.far,
+                "turn": one.turn,
+                "most_far": one.keep.far,
+                "most_turn": one.keep.turn,
+            }
+            for one in gain.tool_moves
+        ],
         "within": None if asked.within is None else [list(ends) for ends in asked.within],
         "turn": None if asked.turn is None else vars(asked.turn),
         "size": gain.size,

@@ -15,13 +15,15 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
+from clearance.gains.between_samples import values_between
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
+from clearance.gains.tool import tool_of
+from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.cubic import Cubics, position_on
 
 SLIDE = 2.0
 """[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""
@@ -45,11 +47,14 @@ class JointOffsets:
 
     Attributes:
         i_robot: which robot. basis: the splines.
+        tool_keeps: moments at which the tool stays about where it is. tool: its link; None for the usual one.
     """
 
     case: Case
     i_robot: int
     basis: Basis
+    tool_keeps: tuple[ToolKeep, ...] = ()
+    tool: str | None = None
     price: float = 100.0
     weights: np.ndarray = field(init=False)
 
@@ -135,17 +140,9 @@ class JointOffsets:
 
     def _between_samples(self, times: np.ndarray) -> np.ndarray:
         """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""
-        asked, samples = self.placed.asked, self._samples
-        held = np.clip(times, asked.times[0], asked.times[-1])
-        row = np.clip(np.searchsorted(asked.times, held, side="right") - 1, 0, asked.n_steps - 2)
-        length = (asked.times[row + 1] - asked.times[row])[:, None]
-        share = (held - asked.times[row])[:, None] / length
-        step = samples[row + 1] - samples[row]
-        if asked.velocities is None:
-            return np.asarray(samples[row] + share * step)
-        rates = length[..., None] * self.basis.at(asked.times, 1)[np.stack([row, row + 1], axis=1)]
-        cubics = Cubics(samples[row], step, rates[:, 0] - step, rates[:, 1] - step)
-        return np.asarray(position_on(cubics, share))
+        asked = self.placed.asked
+        rates = None if asked.velocities is None else self.basis.at(asked.times, 1)
+        return values_between(asked, times, self._samples, rates)
 
     @cached_property
     def columns(self) -> list[int]:
@@ -161,6 +158,21 @@ class JointOffsets:
     def size(self, x: np.ndarray) -> float:
         offsets = self._sized @ x.reshape(self.n_joints, -1).T
         return float((np.abs(offsets) * self.weights).max(initial=0.0))
+
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        return None if self.tool_poses is None else self.tool_poses.rows(x, beyond)
+
+    @cached_property
+    def tool_poses(self) -> ToolPoses | None:
+        """What is kept of the tool's poses; None for nothing."""
+        if not self.tool_keeps:
+            return None
+        placed, asked = self.placed, self.placed.asked
+        times = np.array([one.time for one in self.tool_keeps])
+        own = (times - placed.timing.start) * placed.timing.rate
+        positions = values_between(asked, own, asked.positions, asked.velocities)
+        tool = tool_of(placed, self.tool)
+        return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))
 
     def swing(self, reach: np.ndarray) -> float:
         return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())
@@ -208,9 +220,17 @@ class JointOffsets:
 
 
 def joint_offsets(
-    case: Case, i_robot: int, n_intervals: int, kept: tuple[tuple[float, float], ...]
+    case: Case,
+    i_robot: int,
+    n_intervals: int,
+    kept: tuple[tuple[float, float], ...],
+    tool_keeps: tuple[ToolKeep, ...] = (),
+    tool: str | None = None,
 ) -> JointOffsets:
     """Offsets of a robot's joints, 0 in some windows of its table's times [s].
+
+    Args:
+        tool_keeps, tool: as of `JointOffsets`.
 
     Raises:
         BadInput: it has no table, or one that it goes through again and again.
@@ -223,7 +243,9 @@ def joint_offsets(
             f"robot {placed.robot.name!r} goes through its path again and again",
             valid="a path that ends",
         )
-    return JointOffsets(case, i_robot, Basis(placed.asked.times, n_intervals, kept))
+    return JointOffsets(
+        case, i_robot, Basis(placed.asked.times, n_intervals, kept), tool_keeps, tool
+    )
 
 
 def columns_of(case: Case, i_robot: int) -> list[int]:

@@ -70,6 +70,13 @@ class Change(Protocol):
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
 
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        """What is kept beside clearances, as it is measured; None for nothing.
+
+        Args:
+            beyond: [m] that is to cover rounding.
+        """
+
     def swing(self, reach: np.ndarray) -> float:
         """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
 
@@ -127,7 +134,8 @@ class Search:
 
     def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
         self.n_measured += 1
-        return measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+        found = measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+        return replace(found, beside=self.change.beside(x, self.wanted.beyond))
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""

@@ -98,6 +98,9 @@ class Shift:
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         return least_norm(rows, x, box)
 
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        return None
+
     def swing(self, reach: np.ndarray) -> float:
         turned = 0.0 if self.pivot is None else float(reach[3]) / ARM * self.radius
         return float(np.linalg.norm(reach[:3])) + turned

@@ -60,6 +60,7 @@ class State:
 
     Attributes:
         x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
+        beside: what is kept beside clearances; None for nothing.
     """
 
     x: np.ndarray
@@ -67,6 +68,7 @@ class State:
     record: Record
     beyond: float
     wanted: Wanted
+    beside: Rows | None = None
 
     @cached_property
     def near(self) -> Sequence[Approach]:
@@ -83,8 +85,11 @@ class State:
 
     @cached_property
     def worst(self) -> float:
-        """[m] How far the worst pair is below what is wanted; 0 where none is."""
-        return max((float(self.missing(one).max(initial=0.0)) for one in self.near), default=0.0)
+        """[m] How far the worst pair, or what else is kept, is below what is wanted; 0 where none is."""
+        found = [float(self.missing(one).max(initial=0.0)) for one in self.near]
+        if self.beside is not None:
+            found.append(float(self.beside.missing.max(initial=0.0)))
+        return max(found, default=0.0)
 
     def missing(self, approach: Approach) -> np.ndarray:
         """(k,) [m] how far an approach is below what is wanted; negative above it."""
@@ -102,6 +107,9 @@ class State:
             kept = (own > 0.0) | found.any(axis=1)
             missing.append(own[kept])
             gradients.append(found[kept])
+        if self.beside is not None:
+            missing.append(self.beside.missing)
+            gradients.append(self.beside.gradients)
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 

@@ -40,6 +40,7 @@ def lines_of(gain: Gain) -> Iterator[Line]:
 def _kept(gain: Gain) -> Iterator[Line]:
     """A change with which every rule holds, and what else the verdict of the changed case says."""
     yield from (("changed", line) for line in changed_lines(gain))
+    yield from (("tool", line) for line in tool_lines(gain))
     yield "after", _worst(gain.after)
     yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
     if not gain.after.passed:
@@ -51,6 +52,7 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
     yield "not kept", _not_kept_text(gain)
     if gain.size > 0.0:
         yield from (("best", line) for line in changed_lines(gain))
+        yield from (("tool", line) for line in tool_lines(gain))
         yield "reached", _worst(gain.after)
     if gain.blocked is not None:
         yield "blocked", str(gain.blocked)
@@ -87,6 +89,15 @@ def _about(gain: Gain) -> str:
         through = ", ".join(f"{1e3 * one:g}" for one in turn.about) + " mm"
     counted = 1e3 * math.radians(1.0) * ARM
     return f" about {turn.axis} through {through} (1 deg counts as {counted:.2f} mm)"
+
+
+def tool_lines(gain: Gain) -> Iterator[str]:
+    """How far a tool is off where it was at each moment at which it is to stay about there, rounded up."""
+    for one in gain.tool_moves:
+        yield (
+            f"{one.link} at {one.keep.time:.3f} s is moved {_up(one.far * 1e3)} mm of {one.keep.far * 1e3:g} and "
+            f"turned {_up(math.degrees(one.turn))} deg of {math.degrees(one.keep.turn):g}"
+        )
 
 
 def amount_text(part: Moved) -> str:
@@ -170,6 +181,11 @@ def _figure(value: float) -> str:
     if abs(value) < 5e-5:
         return "0"
     return f"{value:.{max(0, min(4, 3 - math.floor(math.log10(abs(value)))))}f}"
+
+
+def _up(value: float) -> str:
+    """Four places, rounded up; 0 for what is rounding."""
+    return "0" if value < 1e-9 else f"{math.ceil(value * 1e4) / 1e4:.4f}"
 
 
 def _down(value: float) -> str:

@@ -41,6 +41,13 @@ def test_a_shift_keeps_within_its_room(slot, capsys):
     assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
 
 
+def test_how_far_the_tool_is_moved_is_told(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep-tool", "1.0s=21mm,0.1deg")
+    assert (
+        code == 0 and "tool      tool at 1.000 s is moved 20.0005 mm of 21 and turned 0 deg" in text
+    )
+
+
 def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
     path, out = slot.parent / "turned.yaml", tmp_path / "out"
     path.write_text(slot.read_text().replace("[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
@@ -103,6 +110,8 @@ def test_a_delay_is_told(tmp_path, capsys):
         (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),
         (["--kind", "obstacle", "--robot", "bar"], "robot with kind waypoints or base or timing"),
         (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
+        (["--kind", "waypoints", "--keep-tool", "1=2,1"], "is no moment with a tolerance"),
+        (["--kind", "waypoints", "--keep-tool", "1=2mm,1deg", "--tool", "toll"], "mean 'tool'?"),
         (["--kind", "base", "--within-mm", "0,0,0"], "a box of zero leaves nothing to move"),
         (["--kind", "base", "--within-mm", "5,5"], "is no room for a shift"),
         (["--kind", "base", "--within-mm", "5,5,3:9"], "along z from 3 to 9 mm leaves out where"),
