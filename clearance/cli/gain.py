@@ -83,6 +83,11 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
 @click.option(
     "--most-turn-deg", metavar="DEG", type=float, help="Of the turn, either way; else 180."
 )
+@click.option(
+    "--tool-path",
+    type=click.Choice(("moved", "kept")),
+    help="Of a base: its joints as they are; or its tool where it was, by joints that make up for the base.",
+)
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.

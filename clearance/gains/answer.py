@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.asked import MOST_DELAY, Asked, Range, ranges_of
-from clearance.gains.binding import bound_by, ends_reached, tools_held
+from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
     NOT_FOUND,
     TOO_FAR,
@@ -32,9 +32,11 @@ from clearance.gains.programme import Box
 from clearance.gains.search import Change, Found, Search
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
+from clearance.gains.tool_path import ToolPathKept, tool_path_kept
+from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolKeep, ToolMove
 from clearance.gains.turn import Turn
-from clearance.gains.unreachable import least_offset, least_shift
+from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case, PlacedRobot
 
@@ -67,6 +69,7 @@ class Gain:
             a line each.
         n_measured: how many cases were measured.
         tool_moves: how far the tool is moved where it is to stay about where it is.
+        tool_path: how far it is off where its path is kept; else None.
         joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
     """
 
@@ -85,6 +88,7 @@ class Gain:
     binding: tuple[str, ...] = field(default=())
     case_file: Path | None = None
     tool_moves: tuple[ToolMove, ...] = ()
+    tool_path: ToolPathError | None = None
 
     @property
     def unit(self) -> str:
@@ -106,6 +110,7 @@ def gain(
     turn: Turn | str | None = None,
     keep_tool: Sequence[ToolKeep | tuple[float, float, float]] = (),
     tool: str | None = None,
+    tool_path: str | None = None,
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -122,6 +127,8 @@ def gain(
             "z", or a `Turn`.
         keep_tool: (time [s of the run], [m], [rad]): how far the tool may move and turn then.
         tool: the link that it is; else the first that all joints of the path move.
+        tool_path: of a base that is moved: "moved", joints as they are, or "kept", the tool where it was in the
+            world.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
@@ -133,7 +140,18 @@ def gain(
     allowed = Turn(turn) if isinstance(turn, str) else turn
     keeps = tuple(one if isinstance(one, ToolKeep) else ToolKeep(*one) for one in keep_tool)
     asked = Asked(
-        kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed, keeps, tool
+        kind,
+        margin,
+        robot,
+        obstacle,
+        kept,
+        keep_ends,
+        most_delay,
+        room,
+        allowed,
+        keeps,
+        tool,
+        tool_path,
     )
     if isinstance(case, Case):
         return gained(case, asked)
@@ -157,6 +175,8 @@ def gained(case: Case, asked: Asked) -> Gain:
 
 def _by_shift(case: Case, asked: Asked) -> Gain:
     shift, who = _shift(case, asked)
+    if asked.tool_path == "kept":
+        return _by_base_alone(case, asked, shift)
     search = Search(shift, asked.margin)
     first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_shift(shift, first, asked.margin)
@@ -169,13 +189,39 @@ def _by_shift(case: Case, asked: Asked) -> Gain:
     return _gain(case, asked, found, shift.change_of(found.state.x), shift, at_least, who, blocked)
 
 
-def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> Found:
+def _by_base_alone(case: Case, asked: Asked, shift: Shift) -> Gain:
+    """A base that is moved while its tool goes the same way."""
+    i_robot = _robot(case, asked.robot)
+    before = case.robots[i_robot]
+    require_within_limits(before)
+    way = tool_path_kept(shift, i_robot, asked.tool)
+    search = Search(way, asked.margin)
+    first = search.state_at(np.zeros(shift.size_of_x))
+    at_least = least_base(way, first, asked.margin)
+    blocked = blocked_by(first, way.gradient, way.handed)
+    found = Found(first, None, 1)
+    if blocked is None:
+        found = _least_of_several(search, way, first, at_least)
+    x = found.state.x
+    who = before.robot.name
+    told = _gain(case, asked, found, shift.change_of(x), way, at_least, who, blocked)
+    after = found.state.case.robots[i_robot]
+    return replace(
+        told,
+        joint_names=before.asked.joint_names,
+        tool_path=tool_path_error(before, after, way.tool),
+    )
+
+
+def _least_of_several(
+    search: Search, shift: Shift | ToolPathKept, first: State, at_least: float
+) -> Found:
     """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
     far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
-    for side in (*np.eye(shift.size_of_x), *-np.eye(shift.size_of_x)):
+    for side in (*np.eye(len(first.x)), *-np.eye(len(first.x))):
         x = np.clip(far * side, *shift.box)
         if not x.any():
             continue
@@ -274,16 +320,23 @@ def _gain(
         at_least = min(at_least, size)
     elif blocked is None:
         blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, asked.margin)
-        robot = found.state.case.robots[_robot(case, who)] if asked.kind == "waypoints" else None
-        binding = bound_by(found.state, blocked, robot)
-        if isinstance(way, Shift):
-            binding += ends_reached(found.state.x, way.box)
-        if isinstance(way, JointOffsets) and way.tool_poses is not None:
-            binding += tools_held(way.tool_poses.moves(found.state.x))
+        binding = _binding(found, way, blocked)
     return Gain(
         asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
         found.n_measured, binding=binding,
     )  # fmt: skip
+
+
+def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
+    """What the best that was reached is up against."""
+    x, robots = found.state.x, found.state.case.robots
+    if isinstance(way, JointOffsets):
+        told = bound_by(found.state, blocked, robots[way.i_robot])
+        return told if way.tool_poses is None else told + tools_held(way.tool_poses.moves(x))
+    told = bound_by(found.state, blocked, None)
+    if isinstance(way, ToolPathKept):
+        told += joints_held(robots[way.i_robot])
+    return told + ends_reached(x, way.box)
 
 
 def _by_delay(case: Case, asked: Asked) -> Gain:

@@ -24,8 +24,12 @@ OWN = {
     "turn": ("obstacle", "base"),
     "keep_tool": ("waypoints",),
     "tool": ("waypoints", "base"),
+    "tool_path": ("base",),
 }
 """Which kinds what is named is of; of others it would be passed over."""
+
+TOOL_PATHS = ("moved", "kept")
+"""Joints as they are, so that the tool moves along with the base; or joints that make up for the base."""
 
 Range = tuple[float, float]
 """The least and the greatest that something may be."""
@@ -46,6 +50,7 @@ class Asked:
         within: how far a shift may go along x, y and z, ends of both signs or 0 [m]; None for anywhere.
         turn: that is allowed beside a shift.
         keep_tool: moments at which the tool stays about where it is. tool: the link that it is.
+        tool_path: of `TOOL_PATHS`, what a base that is moved does to the path of its tool; None as "moved".
     """
 
     kind: str
@@ -59,6 +64,7 @@ class Asked:
     turn: Turn | None = None
     keep_tool: tuple[ToolKeep, ...] = ()
     tool: str | None = None
+    tool_path: str | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -73,8 +79,14 @@ class Asked:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
             raise BadInput(f"a delay of {self.most_delay!r:.60} s", valid="a time, 0 or more")
-        if self.tool is not None and not self.keep_tool:
-            raise BadInput("a tool is named of which nothing is to be kept", valid="keep_tool")
+        if self.tool_path not in (None, *TOOL_PATHS):
+            valid = f"one of {', '.join(TOOL_PATHS)}"
+            raise BadInput(f"a tool path that is {self.tool_path!r:.60}", valid=valid)
+        if self.tool is not None and not self.keep_tool and self.tool_path != "kept":
+            raise BadInput(
+                "a tool is named of which nothing is to be kept",
+                valid="kind waypoints with keep_tool, or base with a tool path that is kept",
+            )
         if self.within is not None:
             _require_room(self.within, self.turn)
         for start, end in self.keep:

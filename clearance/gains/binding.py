@@ -35,6 +35,17 @@ def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tupl
     )
 
 
+def joints_held(placed: PlacedRobot) -> tuple[str, ...]:
+    """The joints of a path that are at a limit at any moment, with the first of those at which they are most so."""
+    told = []
+    for one in joint_ranges(placed):
+        worst = int(one.room.argmin())
+        if one.room[worst] < CLOSE:
+            time = placed.timing.start + one.times[worst] / placed.timing.rate
+            told.append(f"joint {one.joint} is at its {one.what} at {time:.3f} s")
+    return tuple(told[:MOST])
+
+
 def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
     """The variables of a shift that are at an end of what they may be."""
     names = [*(f"the shift along {axis}" for axis in "xyz"), "the turn"]

@@ -12,7 +12,7 @@ from typing import Any
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
-from clearance.gains.moved import moved_parts, proven_after, proven_bound
+from clearance.gains.moved import joint_parts, moved_parts, proven_after, proven_bound
 from clearance.gains.page import page_of
 from clearance.gains.written import OWN as OF_CASE
 from clearance.gains.written import written_case
@@ -113,6 +113,8 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
             }
             for one in gain.tool_moves
         ],
+        "tool_path": None if gain.tool_path is None else vars(gain.tool_path),
+        "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
         "within": None if asked.within is None else [list(ends) for ends in asked.within],
         "turn": None if asked.turn is None else vars(asked.turn),
         "size": gain.size,

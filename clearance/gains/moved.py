@@ -36,7 +36,7 @@ class Moved(NamedTuple):
 def moved_parts(gain: Gain) -> list[Moved]:
     """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
     if gain.asked.kind == "waypoints":
-        return _joints(gain)
+        return _joints(gain, gain.change)
     change = gain.change.tolist()
     if gain.asked.kind == "timing":
         return [Moved("start", change[0], "s")]
@@ -45,12 +45,21 @@ def moved_parts(gain: Gain) -> list[Moved]:
     return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
 
 
-def _joints(gain: Gain) -> list[Moved]:
+def joint_parts(gain: Gain) -> list[Moved]:
+    """The joints of a robot whose base is moved and whose tool path is kept."""
+    i_robot = index_of_robot(gain.case.robots, gain.who)
+    before, after = (
+        one.record.case.robots[i_robot].asked.positions for one in (gain.before, gain.after)
+    )
+    return _joints(gain, after - before)
+
+
+def _joints(gain: Gain, change: np.ndarray) -> list[Moved]:
     placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     times = placed.timing.run_times(placed.asked.times)
     found = []
-    for name, offsets in zip(gain.joint_names, gain.change.T, strict=True):
+    for name, offsets in zip(gain.joint_names, change.T, strict=True):
         rows = np.flatnonzero(np.abs(offsets) > STILL)
         if len(rows):
             most = int(np.argmax(np.abs(offsets)))

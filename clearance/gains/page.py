@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
-from clearance.gains.moved import Moved, moved_parts, proven_after, proven_bound
+from clearance.gains.moved import Moved, joint_parts, moved_parts, proven_after, proven_bound
 from clearance.gains.told import lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
@@ -85,8 +85,7 @@ def _moved(gain: Gain) -> Markup:
     if not parts or gain.size == 0.0:
         return section("What is changed", element("p", "Nothing is changed."))
     if gain.asked.kind == "waypoints":
-        heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
-        return section("What is changed", table(heads, [_joint(part) for part in parts]))
+        return section("What is changed", _joints(parts))
     rows = [
         element("tr", element("td", _what(gain, part)), _number(signed_text(part)))
         for part in parts
@@ -99,7 +98,15 @@ def _moved(gain: Gain) -> Markup:
                 _number(size_text(gain)),
             )
         )
-    return section("What is changed", table((f"{gain.who}", ">By"), rows))
+    shifted = table((f"{gain.who}", ">By"), rows)
+    if gain.tool_path is None:
+        return section("What is changed", shifted)
+    return section("What is changed", shifted, _joints(joint_parts(gain)))
+
+
+def _joints(parts: Sequence[Moved]) -> Markup:
+    heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
+    return table(heads, [_joint(part) for part in parts])
 
 
 def _what(gain: Gain, part: Moved) -> str:

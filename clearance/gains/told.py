@@ -11,7 +11,7 @@ from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
 from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
-from clearance.gains.moved import Moved, moved_parts, size_unit, sliding, turning
+from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
@@ -74,9 +74,11 @@ def changed_lines(gain: Gain) -> list[str]:
     who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
     axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts if part.unit == "m")
     turned = [f", turned {signed_text(part)}{_about(gain)}" for part in parts if part.unit == "rad"]
-    joints = (
-        "; its joints as they are, so its tool moves along" if gain.asked.kind == "base" else ""
-    )
+    joints = ""
+    if gain.asked.kind == "base":
+        joints = "; its joints as they are, so its tool moves along"
+    if gain.tool_path is not None:
+        joints = f"; its joints make up for it, so that {gain.tool_path.link} goes the same way"
     return [f"{who} moved {size_text(gain)}: {axes}{''.join(turned)}{joints}"]
 
 
@@ -92,7 +94,16 @@ def _about(gain: Gain) -> str:
 
 
 def tool_lines(gain: Gain) -> Iterator[str]:
-    """How far a tool is off where it was at each moment at which it is to stay about there, rounded up."""
+    """How far a tool is off where it is to stay, rounded up, and what joints do for that."""
+    off = gain.tool_path
+    if off is not None:
+        yield (
+            f"{off.link} is off its path by up to {_up(off.far * 1e3)} mm and {_up(math.degrees(off.turn))} deg "
+            f"at its samples, by no more than {_up(off.far_between * 1e3)} mm and "
+            f"{_up(math.degrees(off.turn_between))} deg between them"
+        )
+        for part in joint_parts(gain):
+            yield f"joint {part.name} changes by up to {signed_text(part)} at {part.time:.3f} s"
     for one in gain.tool_moves:
         yield (
             f"{one.link} at {one.keep.time:.3f} s is moved {_up(one.far * 1e3)} mm of {one.keep.far * 1e3:g} and "

@@ -120,6 +120,8 @@ class _Files:
             robot["base"] = self._pose(robot.get("base", {}), before, after)
 
         self._changes.append(change)
+        if self.gain.tool_path is not None and self.gain.size > 0.0:
+            self.path()
 
     def obstacle(self) -> None:
         """A place of an obstacle, in the case file or in a scene's file of ours."""
