@@ -88,14 +88,15 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
     type=click.Choice(("moved", "kept")),
     help="Of a base: its joints as they are; or its tool where it was, by joints that make up for the base.",
 )
+@click.option("--slow-down", is_flag=True, help="Of timing: go slower in place of beginning later.")
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
 
     waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
-    all joints as they are. timing: a robot begins later. all: each of them that applies, and the obstacle of the
-    worst pair. DIR gets the changed case, ready to be checked, gain.html and gain.json. Exit code: 0 if every
-    rule is proven to hold then, 1 if not, 2 for bad input.
+    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, and
+    the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and gain.json. Exit
+    code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
     from clearance.gains.every_kind import SUB_FOLDERS

@@ -19,13 +19,14 @@ from clearance.gains.blocked import (
     NOT_FOUND,
     TOO_FAR,
     TOO_LATE,
+    TOO_SLOW,
     Blocked,
     blocked_by,
     kept_still,
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import least_delay
+from clearance.gains.delay import least_delay, least_slowing
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.programme import Box
@@ -61,7 +62,8 @@ class Gain:
         asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
         case: the changed case; the best that was reached where it is not kept.
         change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
-            samples of a path; (1,) [s] of a delay.
+            samples of a path; (1,) [s] of a delay, or the share
+            by which a path takes longer.
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
@@ -93,6 +95,8 @@ class Gain:
     @property
     def unit(self) -> str:
         """Of `size` and `lower_bound`."""
+        if self.asked.slow_down:
+            return "share"
         return {"waypoints": "rad", "timing": "s"}.get(self.asked.kind, "m")
 
 
@@ -111,6 +115,7 @@ def gain(
     keep_tool: Sequence[ToolKeep | tuple[float, float, float]] = (),
     tool: str | None = None,
     tool_path: str | None = None,
+    slow_down: bool = False,
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -129,6 +134,7 @@ def gain(
         tool: the link that it is; else the first that all joints of the path move.
         tool_path: of a base that is moved: "moved", joints as they are, or "kept", the tool where it was in the
             world.
+        slow_down: of timing: the robot goes slower in place of beginning later.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
@@ -152,6 +158,7 @@ def gain(
         keeps,
         tool,
         tool_path,
+        slow_down,
     )
     if isinstance(case, Case):
         return gained(case, asked)
@@ -341,11 +348,15 @@ def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
 
 def _by_delay(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
-    found = least_delay(case, i_robot, asked.margin, asked.most_delay)
+    if asked.slow_down:
+        found = least_slowing(case, i_robot, asked.margin)
+    else:
+        found = least_delay(case, i_robot, asked.margin, asked.most_delay)
     before, after = answer(Question(case)), answer(Question(found.state.case))
     blocked = None
     if not found.kept:
-        blocked = worst_pair(found.state, TOO_LATE) or unproven(after.record, asked.margin)
+        why = TOO_SLOW if asked.slow_down else TOO_LATE
+        blocked = worst_pair(found.state, why) or unproven(after.record, asked.margin)
     return Gain(
         asked, found.kept, found.state.case, np.array([found.delay]), found.delay, found.at_least,
         case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,

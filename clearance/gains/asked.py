@@ -25,6 +25,7 @@ OWN = {
     "keep_tool": ("waypoints",),
     "tool": ("waypoints", "base"),
     "tool_path": ("base",),
+    "slow_down": ("timing",),
 }
 """Which kinds what is named is of; of others it would be passed over."""
 
@@ -51,6 +52,7 @@ class Asked:
         turn: that is allowed beside a shift.
         keep_tool: moments at which the tool stays about where it is. tool: the link that it is.
         tool_path: of `TOOL_PATHS`, what a base that is moved does to the path of its tool; None as "moved".
+        slow_down: a robot goes slower in place of beginning later.
     """
 
     kind: str
@@ -65,6 +67,7 @@ class Asked:
     keep_tool: tuple[ToolKeep, ...] = ()
     tool: str | None = None
     tool_path: str | None = None
+    slow_down: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:

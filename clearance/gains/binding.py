@@ -36,7 +36,7 @@ def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tupl
 
 
 def joints_held(placed: PlacedRobot) -> tuple[str, ...]:
-    """The joints of a path that are at a limit at any moment, with the first of those at which they are most so."""
+    """The joints of a path that are at a limit at any moment, with the one at which they are most so."""
     told = []
     for one in joint_ranges(placed):
         worst = int(one.room.argmin())

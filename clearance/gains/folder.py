@@ -117,6 +117,7 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
         "within": None if asked.within is None else [list(ends) for ends in asked.within],
         "turn": None if asked.turn is None else vars(asked.turn),
+        "slow_down": asked.slow_down,
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,

@@ -19,10 +19,10 @@ class Moved(NamedTuple):
     """A part of a change.
 
     Attributes:
-        name: a joint, "x", "y", "z", "turn about z", or "start". amount: the greatest one, with its sign [rad],
-            [m] or [s].
-        unit: "rad", "m" or "s". time: when that is; start, end: from when until when it is moved [s of the run];
-            None for what is so throughout.
+        name: a joint, "x", "y", "z", "turn about z", "start" or "duration". amount: the greatest one, with its
+            sign [rad], [m] or [s].
+        unit: "rad", "m", "s" or "share". time: when that is; start, end: from when until when it is moved [s of
+            the run]; None for what is so throughout.
     """
 
     name: str
@@ -38,6 +38,8 @@ def moved_parts(gain: Gain) -> list[Moved]:
     if gain.asked.kind == "waypoints":
         return _joints(gain, gain.change)
     change = gain.change.tolist()
+    if gain.asked.slow_down:
+        return [Moved("duration", change[0], "share")]
     if gain.asked.kind == "timing":
         return [Moved("start", change[0], "s")]
     parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
@@ -74,6 +76,8 @@ def _joints(gain: Gain, change: np.ndarray) -> list[Moved]:
 
 def size_unit(gain: Gain) -> tuple[float, str]:
     """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
+    if gain.asked.slow_down:
+        return 100.0, "%"
     if gain.asked.kind != "waypoints":
         return (1.0, "s") if gain.asked.kind == "timing" else (1e3, "mm")
     from clearance.gains.offsets import SLIDE

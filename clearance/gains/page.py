@@ -112,6 +112,8 @@ def _joints(parts: Sequence[Moved]) -> Markup:
 def _what(gain: Gain, part: Moved) -> str:
     if part.unit == "rad":
         return part.name
+    if gain.asked.slow_down:
+        return "takes longer"
     return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
 
 

@@ -11,6 +11,7 @@ from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
 from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
+from clearance.gains.delay import MOST_SLOWER
 from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
@@ -69,6 +70,12 @@ def changed_lines(gain: Gain) -> list[str]:
     parts = moved_parts(gain)
     if gain.asked.kind == "waypoints":
         return [_joint(part) for part in parts] or ["no joint moves"]
+    if gain.asked.slow_down:
+        rate = 1.0 / (1.0 + gain.size)
+        return [
+            f"robot {gain.who} takes {amount_text(parts[0])} longer for its path: {rate:.4f} times as fast, "
+            "from its table's time 0 on"
+        ]
     if gain.asked.kind == "timing":
         return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
     who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
@@ -113,7 +120,13 @@ def tool_lines(gain: Gain) -> Iterator[str]:
 
 def amount_text(part: Moved) -> str:
     """How far a part moves, without a sign."""
-    factor, unit = {"rad": (math.degrees(1.0), "deg"), "m": (1e3, "mm"), "s": (1.0, "s")}[part.unit]
+    units = {
+        "rad": (math.degrees(1.0), "deg"),
+        "m": (1e3, "mm"),
+        "s": (1.0, "s"),
+        "share": (100.0, "%"),
+    }
+    factor, unit = units[part.unit]
     return f"{_figure(abs(part.amount) * factor)} {unit}"
 
 
@@ -157,6 +170,8 @@ def _counted(gain: Gain) -> str:
 def _not_kept_text(gain: Gain) -> str:
     if _is_hopeless(gain):
         return "no change of this kind can make every rule hold"
+    if gain.asked.slow_down:
+        return f"no slow-down to {1.0 + MOST_SLOWER:g} times its duration was found with which every rule holds"
     if gain.asked.kind == "timing":
         return f"no delay up to {gain.asked.most_delay:g} s was found with which every rule holds"
     return "no change of this kind was found with which every rule is proven to hold"

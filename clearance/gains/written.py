@@ -106,7 +106,10 @@ class _Files:
         self._table({"file": TRAJECTORY})
 
     def delay(self) -> None:
-        """A start in place of another."""
+        """A start, or a rate, in place of another."""
+        if self.gain.asked.slow_down:
+            self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate})
+            return
         self._table({"start": self.gain.case.robots[self._i_robot].timing.start})
 
     def base(self) -> None:

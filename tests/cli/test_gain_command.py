@@ -97,6 +97,15 @@ def test_a_delay_is_told(tmp_path, capsys):
     assert code == 1 and "no delay up to 0.01 s" in text
 
 
+def test_a_slow_down_is_told(tmp_path, capsys):
+    path = write_cell(tmp_path, CROSSING)
+    options = ("--kind", "timing", "--robot", "other", "--slow-down", "--out", tmp_path / "out")
+    code, text, _ = said(capsys, path, *options)
+    assert code == 0 and " % longer for its path: 0." in text and "bound     less than " in text
+    assert "takes longer" in (tmp_path / "out" / "gain.html").read_text()
+    assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
+
+
 @pytest.mark.parametrize(
     "options, told",
     [

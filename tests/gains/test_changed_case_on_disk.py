@@ -89,6 +89,11 @@ CASES = {
     ),
     "turned base": (lambda folder: write_cell(folder, SLOT), "base", {"turn": "z"}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
+    "slowed": (
+        lambda folder: write_cell(folder, CROSSING),
+        "timing",
+        {"robot": "other", "slow_down": True},
+    ),
     "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),
 }
 

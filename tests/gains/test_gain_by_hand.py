@@ -11,6 +11,7 @@ from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Mimic
+from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
 FINE = 1e-6
@@ -60,6 +61,32 @@ def test_the_least_delay_of_two_that_cross(fail):
     least = 2.0 * 0.5 * (0.1 + fail / np.sqrt(2.0))  # at 2 m/s
     assert found.kept and found.after.passed
     assert found.lower_bound <= least * (1.0 + 1e-9) and least <= found.size <= least + 2e-3
+
+
+@pytest.mark.parametrize("fail", [0.02, 0.1])
+def test_the_least_slow_down_of_two_that_cross(fail):
+    found = gain(crossing(fail), "timing", robot="one", slow_down=True)
+    assert found.kept and found.after.passed and found.unit == "share"
+    slowed = found.case.robots[0].timing.rate
+    assert slowed == 1.0 / (1.0 + found.size)
+    quicker = crossing(fail).robots[0]
+    almost = replace(quicker, timing=replace(quicker.timing, rate=1.0 / (0.998 + found.size)))
+    case = crossing(fail)
+    assert not cl.check(replace(case, robots=(almost, case.robots[1]))).passed
+    assert 0.5 * found.size < found.lower_bound <= found.size
+
+
+def test_a_table_that_begins_late_or_never_moves_is_slowed_as_it_should():
+    case = crossing(0.1)
+    early = replace(case.robots[0], timing=Timing(-0.3, 1.0))
+    asked = replace(early.trajectory, times=early.trajectory.times + 0.3)
+    late = replace(case, robots=(replace(early, trajectory=asked), case.robots[1]))
+    found = gain(late, "timing", robot="one", slow_down=True)
+    assert found.kept and 0.0 < found.lower_bound <= found.size
+    asked = replace(early.trajectory, times=early.trajectory.times - 0.3)
+    with pytest.raises(BadInput, match="begins before its time 0"):
+        both = (replace(early, trajectory=asked), case.robots[1])
+        gain(replace(case, robots=both), "timing", robot="one", slow_down=True)
 
 
 def test_a_margin_is_kept_and_costs_more():
