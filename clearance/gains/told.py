@@ -12,11 +12,13 @@ from decimal import ROUND_FLOOR, Decimal
 from clearance.gains.answer import Gain
 from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
 from clearance.gains.delay import MOST_SLOWER
+from clearance.gains.joint_ranges import too_fast
 from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
+from clearance.world.case import index_of_robot
 
 Line = tuple[str, str]
 """A label and what it says."""
@@ -34,8 +36,21 @@ def lines_of(gain: Gain) -> Iterator[Line]:
     yield from _kept(gain) if gain.kept else _not_kept(gain)
     if not _is_hopeless(gain):
         yield "bound", bound_text(gain)
+    fast = _too_fast(gain)
+    if fast:
+        yield (
+            "note",
+            f"faster than the robot's own file allows as it is, and made no faster: {fast}",
+        )
     if gain.asked.margin:
         yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _too_fast(gain: Gain) -> str:
+    if not gain.joint_names:
+        return ""
+    robots = gain.before.record.case.robots
+    return too_fast(robots[index_of_robot(robots, gain.who)])
 
 
 def _kept(gain: Gain) -> Iterator[Line]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.joint_ranges import ACCELERATION, OWN_SPEED, SPEED, joint_ranges
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM
 from clearance.world.case import PlacedRobot
@@ -72,11 +72,11 @@ def _rates(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
     asked, rate = placed.asked, placed.timing.rate
     lengths = np.diff(asked.times)[:, None]
     for one in joint_ranges(placed):
-        if one.what not in ("speed limit", "acceleration limit"):
+        if one.what not in (SPEED, OWN_SPEED, ACCELERATION):
             continue
         column = asked.joint_names.index(one.joint)
         signs = np.sign(np.diff(asked.positions[:, column]))[:, None]
         by_unit = -signs * np.diff(followed[:, column], axis=0) / lengths * rate
-        if one.what == "acceleration limit":
+        if one.what == ACCELERATION:
             by_unit = 0.0 * by_unit
         yield WEIGHT * (ARM if one.unit.startswith("rad") else 1.0), one.room, by_unit

@@ -9,6 +9,7 @@ import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.told import lines_of
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Mimic
 from clearance.world.timing import Timing
@@ -198,6 +199,37 @@ def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     assert "joint limits" not in found.after.verdict.text()
     ranges = joint_ranges(found.case.robots[0])
     assert all(one.room.min() > -1e-9 for one in ranges)
+
+
+def with_own_speed(case, speed):
+    """The same with a speed of y that the robot's own file gives, and no other limits."""
+    placed = case.robots[0]
+    x, y = placed.robot.joints
+    robot = replace(placed.robot, joints=(x, replace(y, velocity=speed)))
+    return replace(case, robots=(replace(placed, robot=robot, motion_limits={}),))
+
+
+@pytest.mark.parametrize("speed, is_kept", [(0.06, True), (0.004, False)])
+def test_speeds_of_the_robots_own_file_are_kept(speed, is_kept):
+    found = gain(with_own_speed(quick(41, 1.0), speed), "waypoints")
+    worst = {one.what: one.room.min() for one in joint_ranges(found.case.robots[0])}
+    assert found.kept == is_kept and worst["speed limit of the robot's own file"] > -1e-9
+    assert is_kept or any("limit of the robot's own file" in line for line in found.binding)
+
+
+def test_what_is_too_fast_for_its_own_file_is_told_and_made_no_faster():
+    case = quick(41, 1.0)
+    at = case.robots[0].asked.positions.copy()
+    at[:, 1] = 0.02 * np.sin(20.0 * case.robots[0].asked.times)
+    path = cl.Trajectory(case.robots[0].asked.times, ("x", "y"), at)
+    case = replace(case, robots=(replace(case.robots[0], trajectory=path),))
+    case = with_own_speed(case, 0.3)
+    found = gain(case, "waypoints")
+    speeds = [
+        np.abs(np.diff(one.robots[0].asked.positions[:, 1])) / 0.05 for one in (case, found.case)
+    ]
+    assert speeds[0].max() > 0.3 and (speeds[1] <= np.maximum(speeds[0], 0.3) + 1e-9).all()
+    assert any(label == "note" and "y by " in line for label, line in lines_of(found))
 
 
 def test_a_joint_that_follows_is_kept_within_its_limits():
