@@ -101,7 +101,7 @@ def unproven(record: Record, margin: float) -> Blocked:
 
 
 def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
-    missing, by_unit = state.missing(approach), gradient(approach)
+    missing, by_unit = state.missing(approach), gradient(approach, None)
     stays = missing > 0.0
     if by_unit is not None:
         stays &= ~by_unit.any(axis=1)

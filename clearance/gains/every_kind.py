@@ -52,6 +52,8 @@ def every_kind(
     """
     for kind in SUB_FOLDERS:
         own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
+        if not own.get("keep_tool") and own.get("tool_path") != "kept":
+            own.pop("tool", None)
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:

@@ -16,6 +16,7 @@ import numpy as np
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
 from clearance.gains.between_samples import values_between
+from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
@@ -23,7 +24,11 @@ from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
+from clearance.simulate.point_motion import motion_of_frame
 from clearance.world.case import Case, PlacedRobot
+from clearance.world.forest import link_poses_at
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 SLIDE = 2.0
 """[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""
@@ -131,12 +136,27 @@ class JointOffsets:
         robots[self.i_robot] = replace(self.placed, trajectory=changed)
         return replace(self.case, robots=tuple(robots))
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        if timeline is not None and self.handed.has(approach):
+            size = self.n_joints * self.n_splines
+            return Grasps(timeline, self._of_frame, size).gradient(approach)
         by_joint = approach.by_columns()[:, self.columns]
         if not by_joint.any():
             return None
         splines = self._between_samples(self._table_times(approach))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
+
+    def _of_frame(
+        self, phase: Phase, frame: int, steps: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """(k, m, 3) how points that a link carries move with the variables."""
+        poses = link_poses_at(phase.case, phase.motions, steps)
+        by_joint = motion_of_frame(phase.case, poses, frame, points)[:, self.columns]
+        timing = self.placed.timing
+        times = (phase.times[steps] - timing.start) * timing.rate
+        splines = self._between_samples(times)
+        moved = by_joint[:, :, None, :] * splines[:, None, :, None]
+        return np.asarray(moved.reshape(len(points), -1, 3))
 
     def _between_samples(self, times: np.ndarray) -> np.ndarray:
         """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_name
+from clearance.gains.grasp import Grasps
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
@@ -23,7 +24,10 @@ from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robo
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of
+from clearance.world.forest import carried_by, forest_of
 from clearance.world.pairs import BodyIndex
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 FIRST_REACH = 0.02
 """[m] How far the first step may go along each axis."""
@@ -48,6 +52,7 @@ class Shift:
     pose_in: Callable[[Case], np.ndarray]
     box: Box
     radius: float
+    moved_frame: Callable[[Case, int], bool] | None = None
     pivot: Pivot | None = None
     price: float = 30.0
     kept: None = None
@@ -73,7 +78,9 @@ class Shift:
     def case_of(self, x: np.ndarray) -> Case:
         return self.place(self.case, x)
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        if timeline is not None and self.moved_frame is not None and self.handed.has(approach):
+            return Grasps(timeline, self._of_frame, self.size_of_x).gradient(approach)
         case = approach.case
         a, b = (self.moved(case, body) for body in approach.pair)
         if a == b:
@@ -83,6 +90,18 @@ class Shift:
             return along
         moved = self.pivot.by_unit(approach.points[:, int(b)], self.pose_in(case))
         return np.column_stack([along, np.einsum("ki,ki->k", moved, along)])
+
+    def _of_frame(
+        self, phase: Phase, frame: int, steps: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """(k, m, 3) how points that a link carries move with the variables."""
+        assert self.moved_frame is not None
+        moved = np.zeros((len(points), self.size_of_x, 3))
+        if self.moved_frame(phase.case, frame):
+            moved[:, :3] = np.eye(3)
+            if self.pivot is not None:
+                moved[:, 3] = self.pivot.by_unit(points, self.pose_in(phase.case))
+        return moved
 
     def factors(self, approach: Approach) -> np.ndarray | float:
         """[-] How far both bodies move against each other at most, as a multiple of the size of a change."""
@@ -178,8 +197,14 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = N
     def pose_in(plain: Case) -> np.ndarray:
         return plain.robots[i_robot].world_from_base
 
+    def moved_frame(plain: Case, frame: int) -> bool:
+        forest = forest_of(plain)
+        return forest.robot_starts[i_robot] in carried_by(forest, frame)
+
     handed = Handed(case, (False, i_robot))
-    return _shift(Shift(case, handed, moved, place, pose_in, box, reach_of(asked)), pivot)
+    radius = reach_of(asked)
+    plain = Shift(case, handed, moved, place, pose_in, box, radius, moved_frame)
+    return _shift(plain, pivot)
 
 
 def _shift(plain: Shift, pivot: Pivot | None) -> Shift:

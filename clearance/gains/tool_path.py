@@ -28,6 +28,7 @@ from clearance.simulate.handed import Handed
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex
+from clearance.world.timeline import Timeline
 from clearance.world.trajectory import Trajectory
 
 STILL = 1e-7
@@ -149,7 +150,7 @@ class ToolPathKept:
             by_unit[:, 3:, 3] = self.shift.pivot.turn.direction / ARM
         return by_unit
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if all(self._stays(approach.case, body) for body in approach.pair):
             return None
         solved = self.solved(self.shift.pose_in(approach.case))
