@@ -101,7 +101,9 @@ def changed_lines(gain: Gain) -> list[str]:
         joints = "; its joints as they are, so its tool moves along"
     if gain.tool_path is not None:
         joints = f"; its joints make up for it, so that {gain.tool_path.link} goes the same way"
-    return [f"{who} moved {size_text(gain)}: {axes}{''.join(turned)}{joints}"]
+    moved = f"{who} moved {size_text(gain)}: {axes}{''.join(turned)}{joints}"
+    followed = [] if gain.tool_path is None else joint_parts(gain)
+    return [moved, *(_joint(part) for part in followed)]
 
 
 def _about(gain: Gain) -> str:
@@ -116,7 +118,7 @@ def _about(gain: Gain) -> str:
 
 
 def tool_lines(gain: Gain) -> Iterator[str]:
-    """How far a tool is off where it is to stay, rounded up, and what joints do for that."""
+    """How far a tool is off where it is to stay, rounded up."""
     off = gain.tool_path
     if off is not None:
         yield (
@@ -124,8 +126,6 @@ def tool_lines(gain: Gain) -> Iterator[str]:
             f"at its samples, by no more than {_up(off.far_between * 1e3)} mm and "
             f"{_up(math.degrees(off.turn_between))} deg between them"
         )
-        for part in joint_parts(gain):
-            yield f"joint {part.name} changes by up to {signed_text(part)} at {part.time:.3f} s"
     for one in gain.tool_moves:
         yield (
             f"{one.link} at {one.keep.time:.3f} s is moved {_up(one.far * 1e3)} mm of {one.keep.far * 1e3:g} and "
