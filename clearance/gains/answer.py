@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
-from clearance.gains.asked import MOST_DELAY, Asked, Range, ranges_of
+from clearance.gains.asked import MOST_DELAY, Asked, Range, keeps_of, ranges_of
 from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
     NOT_FOUND,
@@ -27,6 +27,7 @@ from clearance.gains.blocked import (
     worst_pair,
 )
 from clearance.gains.delay import least_delay, least_slowing
+from clearance.gains.held_back import held_back
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.programme import Box
@@ -144,22 +145,10 @@ def gain(
     kept = tuple((start, end) for start, end in keep)
     room = None if within is None else ranges_of(within)
     allowed = Turn(turn) if isinstance(turn, str) else turn
-    keeps = tuple(one if isinstance(one, ToolKeep) else ToolKeep(*one) for one in keep_tool)
     asked = Asked(
-        kind,
-        margin,
-        robot,
-        obstacle,
-        kept,
-        keep_ends,
-        most_delay,
-        room,
-        allowed,
-        keeps,
-        tool,
-        tool_path,
-        slow_down,
-    )
+        kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed, keeps_of(keep_tool),
+        tool, tool_path, slow_down,
+    )  # fmt: skip
     if isinstance(case, Case):
         return gained(case, asked)
     if not isinstance(case, str | PathLike):
@@ -256,6 +245,7 @@ def _by_path(case: Case, asked: Asked) -> Gain:
         blocked = blocked_by(first, offsets.gradient, offsets.handed)
         if blocked is not None:
             blocked = kept_still(blocked, _windows(case, i_robot, asked))
+        blocked = blocked or held_back(first, offsets)
         found = Found(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break

@@ -5,7 +5,7 @@ Not for: whether a case has what is named (`answer`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,13 +100,37 @@ class Asked:
 
 
 def ranges_of(within: Sequence[float | Range]) -> tuple[Range, ...]:
-    """Each range by its ends; a number is as far either way."""
-    return tuple(
-        (-float(one), float(one))
-        if isinstance(one, int | float)
-        else (float(one[0]), float(one[1]))
-        for one in within
-    )
+    """Each range by its ends; a number is as far either way.
+
+    Raises:
+        BadDimension: neither numbers nor pairs of them.
+    """
+    try:
+        pairs = [(-one, one) if isinstance(one, int | float) else one for one in within]
+        return tuple((float(low), float(high)) for low, high in pairs)
+    except (TypeError, ValueError):
+        raise BadDimension(
+            f"{within!r:.60} is no room for a shift", valid="a number or two for each of x, y and z"
+        ) from None
+
+
+def keeps_of(given: Iterable[ToolKeep | tuple[float, float, float]]) -> tuple[ToolKeep, ...]:
+    """Moments at which a tool is kept, from three numbers each.
+
+    Raises:
+        BadInput: as `ToolKeep`; not three numbers.
+    """
+    return tuple(one if isinstance(one, ToolKeep) else _keep(one) for one in given)
+
+
+def _keep(given: Sequence[float]) -> ToolKeep:
+    try:
+        time, far, turn = map(float, given)
+    except (TypeError, ValueError):
+        raise BadInput(
+            f"{given!r:.60} is no tolerance of a tool", valid="(time [s], way [m], angle [rad])"
+        ) from None
+    return ToolKeep(time, far, turn)
 
 
 def _require_room(within: Sequence[Range], turn: Turn | None) -> None:

@@ -41,8 +41,9 @@ class Shift:
         moved: whether a body moves with it. place: the case with it moved by (3,) [m], or (4,) with its angle
             times `turn.ARM`. pose_in: (4, 4) where it stands in a case [m].
         box: [m] how far it may be moved. handed: the parts that it hands over elsewhere.
-        radius: [m] from its origin to the farthest that moves with it, roughly. pivot: None where it is not
-            turned.
+        radius: [m] from its origin to the farthest that moves with it, roughly.
+        moved_frame: whether a link moves with it; None for what carries no part.
+        pivot: None where it is not turned.
     """
 
     case: Case

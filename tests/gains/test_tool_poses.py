@@ -25,9 +25,16 @@ def test_a_tool_that_may_move_far_enough_does_and_no_farther(time):
 
 
 def test_what_the_tool_keeps_from_is_said():
-    found = cl.gain(posted(), keep_tool=[(0.5, 0.01, 1e-3)])
+    found = cl.gain(posted(), keep_tool=[(0.49, 0.01, 1e-3)])
     assert not found.kept and found.tool_moves[0].far <= 0.011
-    assert any("tool tool has no more to give at 0.500 s" in line for line in found.binding)
+    assert any("tool tool has no more to give at 0.490 s" in line for line in found.binding)
+
+
+@pytest.mark.parametrize("far, turn, n", [(0.0199, 1e-6, 1), (0.01, 0.05, 1), (0.02001, 1e-6, 2)])
+def test_a_tolerance_that_holds_the_violation_is_said_at_once(far, turn, n):
+    found = cl.gain(posted(), keep_tool=[(0.5, far, turn)])
+    assert found.kept == (n == 2) and (found.n_measured == 1) == (n == 1)
+    assert n == 2 or "that moment is to be kept" in str(found.blocked)
 
 
 def test_a_tool_that_is_kept_elsewhere_costs_more():
@@ -93,6 +100,8 @@ def test_the_usual_tool_is_the_first_that_all_joints_move():
         (cl.BadInput, "no joint of the path", {"keep_tool": [(0.5, 0.01, 0.1)], "tool": "base"}),
         (cl.BadInput, "at which its path is not", {"keep_tool": [(1.5, 0.01, 0.1)]}),
         (cl.BadInput, "0.001 mm", {"keep_tool": [(0.5, 0.0, 0.1)]}),
+        (cl.BadInput, "no tolerance of a tool", {"keep_tool": [(0.5, "a")]}),
+        (cl.BadInput, "no room for a shift", {"kind": "base", "within": ("a", 1, 2)}),
         (cl.BadInput, "nothing is to be kept", {"tool": "tool"}),
     ],
 )
