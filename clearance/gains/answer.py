@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
-from clearance.gains.asked import MOST_DELAY, Asked, Range, keeps_of, ranges_of
+from clearance.gains.asked import Asked, Options, asked_as
 from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
     NOT_FOUND,
@@ -37,7 +38,6 @@ from clearance.gains.shortfalls import State
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolKeep, ToolMove
-from clearance.gains.turn import Turn
 from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case, PlacedRobot
@@ -102,21 +102,7 @@ class Gain:
 
 
 def gain(
-    case: Case | str | PathLike[str],
-    kind: str = "waypoints",
-    *,
-    margin: float = 0.0,
-    robot: str | None = None,
-    obstacle: str | None = None,
-    keep: Sequence[tuple[float, float]] = (),
-    keep_ends: bool = True,
-    most_delay: float = MOST_DELAY,
-    within: Sequence[float | Range] | None = None,
-    turn: Turn | str | None = None,
-    keep_tool: Sequence[ToolKeep | tuple[float, float, float]] = (),
-    tool: str | None = None,
-    tool_path: str | None = None,
-    slow_down: bool = False,
+    case: Case | str | PathLike[str], kind: str = "waypoints", **options: Unpack[Options]
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -124,31 +110,15 @@ def gain(
         case: or the path of a case file.
         kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
             joints as they are; "timing": a robot begins later.
-        margin: [m] above the fail limits.
-        robot, obstacle: what is changed; where there is one, it need not be named.
-        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
-        most_delay: [s] that is looked at.
-        within: [m] how far a shift may go along x, y and z: a number for either way, or both ends.
-        turn: that is allowed beside a shift: an axis of the world through the origin of what is moved, "x", "y" or
-            "z", or a `Turn`.
-        keep_tool: (time [s of the run], [m], [rad]): how far the tool may move and turn then.
-        tool: the link that it is; else the first that all joints of the path move.
-        tool_path: of a base that is moved: "moved", joints as they are, or "kept", the tool where it was in the
-            world.
-        slow_down: of timing: the robot goes slower in place of beginning later.
+        options: by name, each as `asked.Options` says: margin, robot, obstacle, keep, keep_ends, most_delay,
+            within, turn, keep_tool, tool, tool_path, slow_down.
 
     Raises:
-        BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
+        BadInput: what cannot be changed. UnknownRobot, UnknownObstacle, UnknownLink: with the nearest name.
     """
     from clearance.load.case_file import load_case
 
-    kept = tuple((start, end) for start, end in keep)
-    room = None if within is None else ranges_of(within)
-    allowed = Turn(turn) if isinstance(turn, str) else turn
-    asked = Asked(
-        kind, margin, robot, obstacle, kept, keep_ends, most_delay, room, allowed, keeps_of(keep_tool),
-        tool, tool_path, slow_down,
-    )  # fmt: skip
+    asked = asked_as(kind, options)
     if isinstance(case, Case):
         return gained(case, asked)
     if not isinstance(case, str | PathLike):

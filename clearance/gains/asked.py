@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any, TypedDict
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
 from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
 
@@ -97,6 +98,58 @@ class Asked:
                 raise BadInput(
                     f"from {start:g} s to {end:g} s is kept", valid="a start before its end"
                 )
+
+
+class Options(TypedDict, total=False):
+    """What a change may be given by name; each has the value of `Asked` where it is not given.
+
+    Attributes:
+        margin: [m] above the fail limits.
+        robot, obstacle: what is changed; where there is one, it need not be named.
+        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
+        most_delay: [s] that is looked at.
+        within: [m] how far a shift may go along x, y and z: a number for either way, or both ends.
+        turn: that is allowed beside a shift: an axis of the world through the origin of what is moved, "x", "y" or
+            "z", or a `Turn`.
+        keep_tool: (time [s of the run], [m], [rad]): how far the tool may move and turn then.
+        tool: the link that it is; else the first that all joints of the path move.
+        tool_path: of a base that is moved: "moved", joints as they are, or "kept", the tool where it was.
+        slow_down: of timing: the robot goes slower in place of beginning later.
+    """
+
+    margin: float
+    robot: str | None
+    obstacle: str | None
+    keep: Sequence[Range]
+    keep_ends: bool
+    most_delay: float
+    within: Sequence[float | Range] | None
+    turn: Turn | str | None
+    keep_tool: Sequence[ToolKeep | tuple[float, float, float]]
+    tool: str | None
+    tool_path: str | None
+    slow_down: bool
+
+
+def asked_as(kind: str, options: Options) -> Asked:
+    """What is asked for by name.
+
+    Raises:
+        BadInput: as `Asked`; an option that there is not, or that is none of its sort.
+    """
+    given: dict[str, Any] = dict(options)
+    unknown = sorted(given.keys() - Options.__annotations__.keys())
+    if unknown:
+        raise UnknownKey(
+            f"there is no option {unknown[0]!r}",
+            valid=nearest_name(unknown[0], [*Options.__annotations__]),
+        )
+    given["keep"] = tuple((start, end) for start, end in options.get("keep", ()))
+    given["keep_tool"] = keeps_of(options.get("keep_tool", ()))
+    within, turn = options.get("within"), options.get("turn")
+    given["within"] = None if within is None else ranges_of(within)
+    given["turn"] = Turn(turn) if isinstance(turn, str) else turn
+    return Asked(kind, **given)
 
 
 def ranges_of(within: Sequence[float | Range]) -> tuple[Range, ...]:

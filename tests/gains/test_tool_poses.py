@@ -102,6 +102,7 @@ def test_the_usual_tool_is_the_first_that_all_joints_move():
         (cl.BadInput, "0.001 mm", {"keep_tool": [(0.5, 0.0, 0.1)]}),
         (cl.BadInput, "no tolerance of a tool", {"keep_tool": [(0.5, "a")]}),
         (cl.BadInput, "no room for a shift", {"kind": "base", "within": ("a", 1, 2)}),
+        (cl.BadInput, "did you mean 'margin'", {"margins": 0.1}),
         (cl.BadInput, "nothing is to be kept", {"tool": "tool"}),
     ],
 )
