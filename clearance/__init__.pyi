@@ -1,6 +1,7 @@
 from .errors import BadInput, ClearanceError
 from .findings.finding import Finding
 from .gains.answer import Gain, gain
+from .gains.turn import Turn
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
@@ -84,6 +85,7 @@ __all__ = [
     "SketchResult",
     "Timing",
     "Trajectory",
+    "Turn",
     "Undecided",
     "Verification",
     "Waiver",

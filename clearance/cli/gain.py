@@ -12,37 +12,18 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.gain_options import Place, Pose, Room, Stretch
 from clearance.cli.notices import say_notices
 from clearance.cli.options import Millimetres, OutputPath
-from clearance.errors import shown
+from clearance.errors import BadInput, shown
 
 if TYPE_CHECKING:
     from clearance.gains.answer import Gain
     from clearance.world.case import Case
 
+AXES = ("x", "y", "z")
+
 _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
-
-
-class _Stretch(click.ParamType):
-    """A stretch of time, START:END."""
-
-    name = "start:end"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """Start and end [s]."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            start, end = (float(part) for part in value.split(":"))
-        except ValueError:
-            start, end = math.nan, math.nan
-        if not (math.isfinite(start) and math.isfinite(end) and start <= end):
-            self.fail(
-                f"{value!r} is no stretch of time; START:END in seconds, as 1.2:1.5", param, ctx
-            )
-        return start, end
 
 
 @click.command()
@@ -58,11 +39,21 @@ class _Stretch(click.ParamType):
     "--keep",
     metavar="START:END",
     multiple=True,
-    type=_Stretch(),
+    type=Stretch(),
     help="[s of the run] In which a path stays as it is, with the samples next to it; may be given again.",
 )
 @click.option(
     "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."
+)
+@click.option(
+    "--keep-tool",
+    metavar="TIME=MM,DEG",
+    multiple=True,
+    type=Pose(),
+    help="How far the tool may move and turn at a time of the run, as 12.0=2mm,1deg; may be given again.",
+)
+@click.option(
+    "--tool", metavar="LINK", help="Which; else the first link that all joints of the path move."
 )
 @click.option(
     "--most-delay",
@@ -72,14 +63,40 @@ class _Stretch(click.ParamType):
     show_default=True,
     help="[s] That is looked at.",
 )
+@click.option(
+    "--within-mm",
+    "within",
+    metavar="X,Y,Z",
+    type=Room(),
+    help="How far a shift may go, either way; as LOW:HIGH one way more than the other, as 50,0:100,0.",
+)
+@click.option(
+    "--turn", type=click.Choice(AXES), help="A turn beside the shift, about an axis of the world."
+)
+@click.option(
+    "--about-mm",
+    "about",
+    metavar="X,Y,Z",
+    type=Place(),
+    help="A point of that axis in the world; else the origin of what is moved.",
+)
+@click.option(
+    "--most-turn-deg", metavar="DEG", type=float, help="Of the turn, either way; else 180."
+)
+@click.option(
+    "--tool-path",
+    type=click.Choice(("moved", "kept")),
+    help="Of a base: its joints as they are; or its tool where it was, by joints that make up for the base.",
+)
+@click.option("--slow-down", is_flag=True, help="Of timing: go slower in place of beginning later.")
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
 
-    waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, all joints as they
-    are. timing: a robot begins later. all: each of them that applies, and the obstacle of the worst pair. DIR gets
-    the changed case, ready to be checked, gain.html and gain.json. Exit code: 0 if every rule is proven to hold
-    then, 1 if not, 2 for bad input.
+    waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
+    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, and
+    the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and gain.json. Exit
+    code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
     from clearance.gains.every_kind import SUB_FOLDERS
@@ -87,6 +104,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.gains.written import OWN
     from clearance.load.case_file import load_case
 
+    options = _with_turn(options)
     require_folder_place(out)
     if out is not None:
         for folder in [out / name for name in SUB_FOLDERS] if kind == "all" else [out]:
@@ -100,6 +118,23 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     _say(found)
     _save(found, out, force=force)
     return _code(found)
+
+
+def _with_turn(options: dict[str, Any]) -> dict[str, Any]:
+    """The options with the turn that some of them say.
+
+    Raises:
+        BadInput: more is said of a turn that is not asked for.
+    """
+    from clearance.gains.turn import Turn
+
+    axis, about, most = (options.pop(name) for name in ("turn", "about", "most_turn_deg"))
+    if axis is None:
+        if about is not None or most is not None:
+            raise BadInput("a turn is spoken of that is not asked for", valid="--turn x, y or z")
+        return {**options, "turn": None}
+    most = math.pi if most is None else math.radians(most)
+    return {**options, "turn": Turn(axis, about, most)}
 
 
 def _code(found: Gain) -> int:

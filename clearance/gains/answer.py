@@ -9,38 +9,38 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
+from typing import Unpack
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, UnknownRobot, nearest_name
-from clearance.gains.binding import bound_by
+from clearance.errors import BadInput, UnknownRobot, nearest_name
+from clearance.gains.asked import Asked, Options, asked_as
+from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
     NOT_FOUND,
+    TOO_FAR,
     TOO_LATE,
+    TOO_SLOW,
     Blocked,
     blocked_by,
     kept_still,
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import least_delay
+from clearance.gains.delay import least_delay, least_slowing
+from clearance.gains.held_back import held_back
 from clearance.gains.joint_ranges import require_within_limits
-from clearance.gains.offsets import joint_offsets
+from clearance.gains.offsets import JointOffsets, joint_offsets
+from clearance.gains.programme import Box
 from clearance.gains.search import Change, Found, Search
-from clearance.gains.shift import Shift, base_shift, obstacle_shift
+from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
-from clearance.gains.unreachable import least_offset, least_shift
+from clearance.gains.tool_path import ToolPathKept, tool_path_kept
+from clearance.gains.tool_path_error import ToolPathError, tool_path_error
+from clearance.gains.tool_poses import ToolKeep, ToolMove
+from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.run import Question, Run, answer
-from clearance.world.case import Case
-
-KINDS = ("waypoints", "obstacle", "base", "timing")
-
-OWN = {
-    "robot": ("waypoints", "base", "timing"),
-    "obstacle": ("obstacle",),
-    "keep": ("waypoints",),
-}
-"""Which kinds what is named is of; of others it would be passed over."""
+from clearance.world.case import Case, PlacedRobot
 
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
@@ -54,48 +54,6 @@ INSIDE = 0.8
 FARTHER = 0.05
 """[m] From how far, where the first search found none."""
 
-MOST_DELAY = 60.0
-"""[s] That is looked at, if nothing is given."""
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What may be changed.
-
-    Attributes:
-        kind: one of `KINDS`. margin: [m] above the fail limits.
-        robot, obstacle: names; where there is one, it need not be given.
-        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
-        most_delay: [s].
-    """
-
-    kind: str
-    margin: float = 0.0
-    robot: str | None = None
-    obstacle: str | None = None
-    keep: tuple[tuple[float, float], ...] = ()
-    keep_ends: bool = True
-    most_delay: float = MOST_DELAY
-
-    def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
-        for name, kinds in OWN.items():
-            if getattr(self, name) and self.kind not in kinds:
-                raise BadInput(
-                    f"{name} is given, of which a change of kind {self.kind} knows nothing",
-                    valid=f"{name} with kind {' or '.join(kinds)}",
-                )
-        if not 0.0 <= self.margin < np.inf:
-            raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
-        if not 0.0 <= self.most_delay < np.inf:
-            raise BadInput(f"a delay of {self.most_delay!r:.60} s", valid="a time, 0 or more")
-        for start, end in self.keep:
-            if not start <= end:
-                raise BadInput(
-                    f"from {start:g} s to {end:g} s is kept", valid="a start before its end"
-                )
-
 
 @dataclass(frozen=True, eq=False)
 class Gain:
@@ -104,13 +62,17 @@ class Gain:
     Attributes:
         asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
         case: the changed case; the best that was reached where it is not kept.
-        change: (3,) [m] of a shift; (n, k) [rad or m] of the samples of a path; (1,) [s] of a delay.
+        change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
+            samples of a path; (1,) [s] of a delay, or the share
+            by which a path takes longer.
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
         before, after: certified runs of both cases, by their own limits.
         blocked: what stays too near, where it is not kept. binding: what the best that was reached is up against,
             a line each.
         n_measured: how many cases were measured.
+        tool_moves: how far the tool is moved where it is to stay about where it is.
+        tool_path: how far it is off where its path is kept; else None.
         joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
     """
 
@@ -128,23 +90,19 @@ class Gain:
     joint_names: tuple[str, ...] = field(default=())
     binding: tuple[str, ...] = field(default=())
     case_file: Path | None = None
+    tool_moves: tuple[ToolMove, ...] = ()
+    tool_path: ToolPathError | None = None
 
     @property
     def unit(self) -> str:
         """Of `size` and `lower_bound`."""
+        if self.asked.slow_down:
+            return "share"
         return {"waypoints": "rad", "timing": "s"}.get(self.asked.kind, "m")
 
 
 def gain(
-    case: Case | str | PathLike[str],
-    kind: str = "waypoints",
-    *,
-    margin: float = 0.0,
-    robot: str | None = None,
-    obstacle: str | None = None,
-    keep: Sequence[tuple[float, float]] = (),
-    keep_ends: bool = True,
-    most_delay: float = MOST_DELAY,
+    case: Case | str | PathLike[str], kind: str = "waypoints", **options: Unpack[Options]
 ) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
@@ -152,18 +110,15 @@ def gain(
         case: or the path of a case file.
         kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
             joints as they are; "timing": a robot begins later.
-        margin: [m] above the fail limits.
-        robot, obstacle: what is changed; where there is one, it need not be named.
-        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
-        most_delay: [s] that is looked at.
+        options: by name, each as `asked.Options` says: margin, robot, obstacle, keep, keep_ends, most_delay,
+            within, turn, keep_tool, tool, tool_path, slow_down.
 
     Raises:
-        BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
+        BadInput: what cannot be changed. UnknownRobot, UnknownObstacle, UnknownLink: with the nearest name.
     """
     from clearance.load.case_file import load_case
 
-    kept = tuple((start, end) for start, end in keep)
-    asked = Asked(kind, margin, robot, obstacle, kept, keep_ends, most_delay)
+    asked = asked_as(kind, options)
     if isinstance(case, Case):
         return gained(case, asked)
     if not isinstance(case, str | PathLike):
@@ -186,24 +141,57 @@ def gained(case: Case, asked: Asked) -> Gain:
 
 def _by_shift(case: Case, asked: Asked) -> Gain:
     shift, who = _shift(case, asked)
+    if asked.tool_path == "kept":
+        return _by_base_alone(case, asked, shift)
     search = Search(shift, asked.margin)
-    first = search.state_at(np.zeros(3))
+    first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_shift(shift, first, asked.margin)
     blocked = blocked_by(first, shift.gradient, shift.handed)
-    if blocked is not None:
-        return _gain(case, asked, Found(first, None, 1), np.zeros(3), shift, at_least, who, blocked)
-    found = _least_of_several(search, shift, first, at_least)
-    return _gain(case, asked, found, found.state.x, shift, at_least, who, None)
+    if blocked is None and at_least > shift.farthest:
+        blocked = worst_pair(first, TOO_FAR)
+    found = Found(first, None, 1)
+    if blocked is None:
+        found = _least_of_several(search, shift, first, at_least)
+    return _gain(case, asked, found, shift.change_of(found.state.x), shift, at_least, who, blocked)
 
 
-def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> Found:
-    """The least of a search from where it is, and, where that may be beaten, from six sides."""
+def _by_base_alone(case: Case, asked: Asked, shift: Shift) -> Gain:
+    """A base that is moved while its tool goes the same way."""
+    i_robot = _robot(case, asked.robot)
+    before = case.robots[i_robot]
+    require_within_limits(before)
+    way = tool_path_kept(shift, i_robot, asked.tool)
+    search = Search(way, asked.margin)
+    first = search.state_at(np.zeros(shift.size_of_x))
+    at_least = least_base(way, first, asked.margin)
+    blocked = blocked_by(first, way.gradient, way.handed)
+    found = Found(first, None, 1)
+    if blocked is None:
+        found = _least_of_several(search, way, first, at_least)
+    x = found.state.x
+    who = before.robot.name
+    told = _gain(case, asked, found, shift.change_of(x), way, at_least, who, blocked)
+    after = found.state.case.robots[i_robot]
+    return replace(
+        told,
+        joint_names=before.asked.joint_names,
+        tool_path=tool_path_error(before, after, way.tool),
+    )
+
+
+def _least_of_several(
+    search: Search, shift: Shift | ToolPathKept, first: State, at_least: float
+) -> Found:
+    """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
     far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
-    for side in (*np.eye(3), *-np.eye(3)):
-        start = search.state_at(far * side)
+    for side in (*np.eye(len(first.x)), *-np.eye(len(first.x))):
+        x = np.clip(far * side, *shift.box)
+        if not x.any():
+            continue
+        start = search.state_at(x)
         if start.record.nearest.touches:
             continue
         found = search.from_state(start, shift.size(best.state.x) if best.kept else np.inf)
@@ -216,20 +204,43 @@ def _by_path(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
     who = case.robots[i_robot].robot.name
     require_within_limits(case.robots[i_robot])
+    _require_in_path(case.robots[i_robot], asked.keep_tool)
     for n_intervals in INTERVALS:
-        offsets = joint_offsets(case, i_robot, n_intervals, _kept(case, i_robot, asked))
+        offsets = joint_offsets(
+            case, i_robot, n_intervals, _kept(case, i_robot, asked), asked.keep_tool, asked.tool
+        )
         search = Search(offsets, asked.margin)
         first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
         at_least = least_offset(offsets, first, asked.margin)
         blocked = blocked_by(first, offsets.gradient, offsets.handed)
         if blocked is not None:
             blocked = kept_still(blocked, _windows(case, i_robot, asked))
+        blocked = blocked or held_back(first, offsets)
         found = Found(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
     change = offsets.offsets(found.state.x)
     told = _gain(case, asked, found, change, offsets, at_least, who, blocked)
-    return replace(told, joint_names=offsets.placed.asked.joint_names)
+    poses = offsets.tool_poses
+    moves = () if poses is None else tuple(poses.moves(found.state.x))
+    return replace(told, joint_names=offsets.placed.asked.joint_names, tool_moves=moves)
+
+
+def _require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
+    """Nothing, if the moments at which a tool is kept are of its robot's path.
+
+    Raises:
+        BadInput: which is not.
+    """
+    if placed.trajectory is None:
+        return
+    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
+    for one in keeps:
+        if not start <= one.time <= end:
+            raise BadInput(
+                f"a tool is to be kept at {one.time:g} s, at which its path is not",
+                valid=f"a time from {start:g} to {end:g} s",
+            )
 
 
 def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
@@ -276,21 +287,36 @@ def _gain(
         at_least = min(at_least, size)
     elif blocked is None:
         blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, asked.margin)
-        robot = found.state.case.robots[_robot(case, who)] if asked.kind == "waypoints" else None
-        binding = bound_by(found.state, blocked, robot)
+        binding = _binding(found, way, blocked)
     return Gain(
         asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
         found.n_measured, binding=binding,
     )  # fmt: skip
 
 
+def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
+    """What the best that was reached is up against."""
+    x, robots = found.state.x, found.state.case.robots
+    if isinstance(way, JointOffsets):
+        told = bound_by(found.state, blocked, robots[way.i_robot])
+        return told if way.tool_poses is None else told + tools_held(way.tool_poses.moves(x))
+    told = bound_by(found.state, blocked, None)
+    if isinstance(way, ToolPathKept):
+        told += joints_held(robots[way.i_robot])
+    return told + ends_reached(x, way.box)
+
+
 def _by_delay(case: Case, asked: Asked) -> Gain:
     i_robot = _robot(case, asked.robot)
-    found = least_delay(case, i_robot, asked.margin, asked.most_delay)
+    if asked.slow_down:
+        found = least_slowing(case, i_robot, asked.margin)
+    else:
+        found = least_delay(case, i_robot, asked.margin, asked.most_delay)
     before, after = answer(Question(case)), answer(Question(found.state.case))
     blocked = None
     if not found.kept:
-        blocked = worst_pair(found.state, TOO_LATE) or unproven(after.record, asked.margin)
+        why = TOO_SLOW if asked.slow_down else TOO_LATE
+        blocked = worst_pair(found.state, why) or unproven(after.record, asked.margin)
     return Gain(
         asked, found.kept, found.state.case, np.array([found.delay]), found.delay, found.at_least,
         case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
@@ -298,14 +324,15 @@ def _by_delay(case: Case, asked: Asked) -> Gain:
 
 
 def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
+    box = ANYWHERE if asked.within is None else Box(*np.array(asked.within).T)
     if asked.kind == "base":
         who = case.robots[_robot(case, asked.robot)].robot.name
-        return base_shift(case, who), who
+        return base_shift(case, who, box, asked.turn), who
     if asked.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
         raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")
     who = asked.obstacle or case.obstacles[0].name
-    return obstacle_shift(case, who), who
+    return obstacle_shift(case, who, box, asked.turn), who
 
 
 def _robot(case: Case, name: str | None) -> int:

@@ -5,11 +5,15 @@ Not for: what is plain before any search (`blocked`).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from clearance.gains.blocked import Blocked
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.programme import Box
 from clearance.gains.shortfalls import State
+from clearance.gains.tool_poses import ToolMove
 from clearance.world.case import PlacedRobot
 
 CLOSE = 1e-5
@@ -28,6 +32,36 @@ def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tupl
     return (
         *_pairs(state, blocked)[:MOST],
         *(_joints(placed, blocked.time) if placed else [])[:MOST],
+    )
+
+
+def joints_held(placed: PlacedRobot) -> tuple[str, ...]:
+    """The joints of a path that are at a limit at any moment, with the one at which they are most so."""
+    told = []
+    for one in joint_ranges(placed):
+        worst = int(one.room.argmin())
+        if one.room[worst] < CLOSE:
+            time = placed.timing.start + one.times[worst] / placed.timing.rate
+            told.append(f"joint {one.joint} is at its {one.what} at {time:.3f} s")
+    return tuple(told[:MOST])
+
+
+def ends_reached(x: np.ndarray, box: Box) -> tuple[str, ...]:
+    """The variables of a shift that are at an end of what they may be."""
+    names = [*(f"the shift along {axis}" for axis in "xyz"), "the turn"]
+    return tuple(
+        f"{name} is as far as it may go"
+        for name, value, low, high in zip(names, x, *box, strict=False)
+        if low < high and (value > high - CLOSE or value < low + CLOSE)
+    )
+
+
+def tools_held(moves: Iterable[ToolMove]) -> tuple[str, ...]:
+    """The moments at which a tool has moved or turned as far as it may."""
+    return tuple(
+        f"tool {one.link} has no more to give at {one.keep.time:.3f} s"
+        for one in moves
+        if one.far > one.keep.far - CLOSE or one.turn > one.keep.turn - CLOSE
     )
 
 

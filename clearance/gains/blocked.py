@@ -20,6 +20,8 @@ KEPT_STILL = "that moment is to be kept"
 NOT_APART = "small changes of this kind do not part them there"
 NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
+TOO_FAR = "no change within what is allowed is large enough"
+TOO_SLOW = "no slow-down that was looked at gives more"
 TOO_LATE = "no delay that was looked at gives more"
 
 
@@ -99,7 +101,7 @@ def unproven(record: Record, margin: float) -> Blocked:
 
 
 def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
-    missing, by_unit = state.missing(approach), gradient(approach)
+    missing, by_unit = state.missing(approach), gradient(approach, None)
     stays = missing > 0.0
     if by_unit is not None:
         stays &= ~by_unit.any(axis=1)

@@ -1,11 +1,15 @@
-"""A change of time: a robot begins later. The least delay is gone up to from below, and never past.
+"""A change of time: a robot begins later, or goes slower. The least is gone up to from below, and never past.
 
 Where at a delay a pair is `missing` short, no point that the robot carries moves faster than `speed`, so no delay
-that is longer by less than missing / speed is enough. Not for: changes of place (`search`).
+that is longer by less than missing / speed is enough. A robot that takes 1 + s times as long is at the time T
+after its start where its table is at T / (1 + s): none is enough that takes it back by less than missing / speed
+there.
+Not for: changes of place (`search`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +27,17 @@ from clearance.world.pairs import BodyIndex
 FINEST = 1e-3
 """[s] Delays are sought this finely: controllers run at some milliseconds."""
 
+FINEST_SHARE = 1e-3
+"""[-] So finely it is sought how much longer a path takes."""
+
+MOST_SLOWER = 9.0
+"""[-] A path that takes ten times as long is not slowed further."""
+
 MOST_DELAYS = 400
 """That are measured."""
+
+Longer = Callable[[State, Approach, np.ndarray], np.ndarray]
+"""(k,) how much more must be changed at least, so that bodies have come some way (k,) [m] from where they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +45,10 @@ class Delayed:
     """Where the search ended.
 
     Attributes:
-        delay: [s] the least found that keeps the rules, else the last looked at.
-        at_least: [s] no shorter one does.
-        n_measured: how many delays were measured.
+        delay: [s], or by what share a path takes longer: the least found that keeps the rules, else the last
+            looked at.
+        at_least: no less does.
+        n_measured: how many were measured.
     """
 
     state: State
@@ -57,6 +71,15 @@ def case_later(case: Case, i_robot: int, delay: float) -> Case:
     return replace(case, robots=tuple(robots))
 
 
+def case_slower(case: Case, i_robot: int, more: float) -> Case:
+    """The case with one robot whose path takes `more` of its time longer, from its table's time 0 on."""
+    robots = list(case.robots)
+    timing = robots[i_robot].timing
+    slowed = replace(timing, rate=timing.rate / (1.0 + more))
+    robots[i_robot] = replace(robots[i_robot], timing=slowed)
+    return replace(case, robots=tuple(robots))
+
+
 def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed:
     """The least delay up to `most` [s] at which the rules hold by a margin [m].
 
@@ -65,21 +88,83 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     """
     _require_another(case, i_robot)
     speed = greatest_speed(case, i_robot)
+
+    def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
+        found = _over(ways, speed)
+        return np.minimum(found, _since_it_came(state.case.robots[i_robot], approach))
+
+    return _least(
+        lambda delay: case_later(case, i_robot, delay), longer, i_robot, margin, (FINEST, most)
+    )
+
+
+def least_slowing(case: Case, i_robot: int, margin: float) -> Delayed:
+    """By what share a robot's path takes longer at least, up to `MOST_SLOWER`, so that the rules hold.
+
+    Raises:
+        BadInput: as `least_delay`; a table that begins before its time 0.
+    """
+    _require_another(case, i_robot)
+    placed = case.robots[i_robot]
+    if placed.asked.times[0] < 0.0:
+        raise BadInput(
+            f"the table of robot {placed.robot.name!r} begins before its time 0, about which it would be slowed",
+            valid="a table that begins at 0 or later",
+        )
+    speed = greatest_speed(case, i_robot) / placed.timing.rate
+
+    def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
+        now = state.case.robots[i_robot]
+        at = np.maximum((_times(approach) - now.timing.start) * now.timing.rate, 0.0)
+        then = np.maximum(at - _over(ways, speed), 0.0)
+        if now.timing.after == "absent":
+            then = np.maximum(then, now.asked.times[0])
+        slower = np.divide(at, then, out=np.full(len(at), np.inf), where=then > 0.0)
+        taken = placed.timing.rate / now.timing.rate
+        return np.maximum(slower - 1.0, 0.0) * taken
+
+    return _least(
+        lambda more: case_slower(case, i_robot, more),
+        longer,
+        i_robot,
+        margin,
+        (FINEST_SHARE, MOST_SLOWER),
+    )
+
+
+def _over(ways: np.ndarray, speed: float) -> np.ndarray:
+    """(k,) [s] that ways (k,) [m] take at least; infinite where nothing moves."""
+    return np.divide(ways, speed, out=np.where(ways > 0.0, np.inf, 0.0), where=speed > 0.0)
+
+
+def _least(
+    case_of: Callable[[float], Case],
+    longer: Longer,
+    i_robot: int,
+    margin: float,
+    steps: tuple[float, float],
+) -> Delayed:
+    """The least change of time found.
+
+    Args:
+        steps: how finely it is sought, and up to what.
+    """
+    finest, most = steps
     wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
     n_measured = 0
     while n_measured < MOST_DELAYS:
         n_measured += 1
-        state = measured(case_later(case, i_robot, delay), np.zeros(0), wanted, 0.0)
+        state = measured(case_of(delay), np.zeros(0), wanted, 0.0)
         if state.worst <= 0.0:
             record = proven(state.case, margin)
             if keeps(record):
                 break
-        excluded = delay + _excluded(state, i_robot, margin, speed)
+        excluded = delay + _excluded(state, i_robot, margin, longer)
         at_least = max(at_least, excluded) if at_least >= delay else at_least
-        if max(excluded, delay + FINEST) > most:
+        if max(excluded, delay + finest) > most:
             break
-        delay = max(excluded, delay + FINEST)
+        delay = max(excluded, delay + finest)
     return Delayed(state, record, delay, min(at_least, delay), n_measured)
 
 
@@ -106,8 +191,8 @@ def greatest_speed(case: Case, i_robot: int) -> float:
     return max(float(one[moving] @ fastest[moving]) for one in radii)
 
 
-def _excluded(state: State, i_robot: int, margin: float, speed: float) -> float:
-    """[s] No delay that is longer by less is enough.
+def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> float:
+    """No change that is greater by less is enough.
 
     Of a robot that is absent before its path begins a moment tells of no longer delay than brings it to that.
     """
@@ -118,19 +203,22 @@ def _excluded(state: State, i_robot: int, margin: float, speed: float) -> float:
         if not any(radii) or all(radii) or handed.has(approach):
             continue
         ways = np.maximum(way_needed(approach, margin), 0.0)
-        longer = np.divide(ways, speed, out=np.where(ways > 0.0, np.inf, 0.0), where=speed > 0.0)
-        longer = np.minimum(longer, _since_it_came(state.case.robots[i_robot], approach))
-        most = max(most, float(longer.max(initial=0.0)))
+        most = max(most, float(longer(state, approach, ways).max(initial=0.0)))
     return INWARD * most
 
 
 def _since_it_came(placed: PlacedRobot, approach: Approach) -> np.ndarray:
     """(k,) [s] since when a robot is in the cell at the steps of an approach; infinite if always."""
-    phase = approach.section.phase
-    times = phase.motions[0].times[approach.steps - phase.first]
+    times = _times(approach)
     if placed.timing.after != "absent":
         return np.full(len(times), np.inf)
     return np.asarray(times - placed.timing.run_times(placed.asked.times)[0])
+
+
+def _times(approach: Approach) -> np.ndarray:
+    """(k,) [s of the run] of the steps of an approach."""
+    phase = approach.section.phase
+    return np.asarray(phase.motions[0].times[approach.steps - phase.first])
 
 
 def _require_another(case: Case, i_robot: int) -> None:

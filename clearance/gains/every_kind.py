@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
-from clearance.gains.answer import OWN, Gain, gain
+from clearance.gains.answer import Gain, gain
+from clearance.gains.asked import OWN
 from clearance.gains.told import bound_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case
@@ -51,6 +52,8 @@ def every_kind(
     """
     for kind in SUB_FOLDERS:
         own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
+        if not own.get("keep_tool") and own.get("tool_path") != "kept":
+            own.pop("tool", None)
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:

@@ -12,7 +12,7 @@ from typing import Any
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
-from clearance.gains.moved import moved_parts, proven_after, proven_bound
+from clearance.gains.moved import joint_parts, moved_parts, proven_after, proven_bound
 from clearance.gains.page import page_of
 from clearance.gains.written import OWN as OF_CASE
 from clearance.gains.written import written_case
@@ -102,6 +102,22 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "margin": asked.margin,
         "keep": [list(window) for window in asked.keep],
         "keep_ends": asked.keep_ends,
+        "tool": [
+            {
+                "link": one.link,
+                "time": one.keep.time,
+                "far": one.far,
+                "turn": one.turn,
+                "most_far": one.keep.far,
+                "most_turn": one.keep.turn,
+            }
+            for one in gain.tool_moves
+        ],
+        "tool_path": None if gain.tool_path is None else vars(gain.tool_path),
+        "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
+        "within": None if asked.within is None else [list(ends) for ends in asked.within],
+        "turn": None if asked.turn is None else vars(asked.turn),
+        "slow_down": asked.slow_down,
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,

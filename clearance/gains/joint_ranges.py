@@ -12,9 +12,17 @@ from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
 from clearance.world.joint_speeds import greatest_rates
+from clearance.world.motion_limits import MotionLimit
+from clearance.world.notice import listed
 
 ROUNDING = 1e-9
 """[rad], [m], or that a second: what is less beyond a limit is at it."""
+
+
+SPEED, OWN_SPEED = "speed limit", "speed limit of the robot's own file"
+ACCELERATION = "acceleration limit"
+
+NO_LIMIT = MotionLimit()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,21 +55,35 @@ def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
             yield JointRange(name, "upper limit", times, joint.upper - own, unit)
         if np.isfinite(joint.lower):
             yield JointRange(name, "lower limit", times, own - joint.lower, unit)
-        limit = placed.motion_limits.get(name)
-        if limit is None or len(times) < 2:
+        limit = placed.motion_limits.get(name, NO_LIMIT)
+        if len(times) < 2:
             continue
         speed, acceleration = greatest_rates(JointCourse(joint, own, i), asked)
         for what, most, given, unit_of in (
-            ("speed limit", limit.velocity, speed * rate, f"{unit}/s"),
-            ("acceleration limit", limit.acceleration, acceleration * rate**2, f"{unit}/s²"),
+            (SPEED, limit.velocity, speed * rate, f"{unit}/s"),
+            (OWN_SPEED, joint.velocity, speed * rate, f"{unit}/s"),
+            (ACCELERATION, limit.acceleration, acceleration * rate**2, f"{unit}/s²"),
         ):
             if np.isfinite(most):
                 room = (1.0 + SIX_DIGITS) * most - given
                 yield JointRange(name, what, times[:-1], room, unit_of)
 
 
+def too_fast(placed: PlacedRobot) -> str:
+    """Which joints are faster than the robot's own file lets them be; empty if none is."""
+    beyond = [one for one in joint_ranges(placed) if one.what == OWN_SPEED]
+    told = [
+        f"{one.joint} by {-one.room.min():.3g} {one.unit}"
+        for one in beyond
+        if one.room.min() < -ROUNDING
+    ]
+    return listed(told, 4)
+
+
 def require_within_limits(placed: PlacedRobot) -> None:
-    """Nothing, if a robot's table keeps the limits of its joints.
+    """Nothing, if a robot's table keeps the limits of its joints, but for the speeds of the robot's own file.
+
+    These are often no more than a placeholder: `too_fast` tells of them.
 
     Raises:
         BadInput: which joint is beyond which limit, when and by how much.
@@ -70,7 +92,7 @@ def require_within_limits(placed: PlacedRobot) -> None:
         return
     for one in joint_ranges(placed):
         worst = int(np.argmin(one.room))
-        if one.room[worst] < -ROUNDING:
+        if one.what != OWN_SPEED and one.room[worst] < -ROUNDING:
             raise BadInput(
                 f"joint {one.joint!r} is {-one.room[worst]:.6g} {one.unit} beyond its {one.what} at "
                 f"{one.times[worst]:.3f} s of its table already",

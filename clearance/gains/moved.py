@@ -19,9 +19,10 @@ class Moved(NamedTuple):
     """A part of a change.
 
     Attributes:
-        name: a joint, "x", "y", "z", or "start". amount: the greatest one, with its sign [rad], [m] or [s].
-        unit: "rad", "m" or "s". time: when that is; start, end: from when until when it is moved [s of the run];
-            None for what is so throughout.
+        name: a joint, "x", "y", "z", "turn about z", "start" or "duration". amount: the greatest one, with its
+            sign [rad], [m] or [s].
+        unit: "rad", "m", "s" or "share". time: when that is; start, end: from when until when it is moved [s of
+            the run]; None for what is so throughout.
     """
 
     name: str
@@ -33,21 +34,34 @@ class Moved(NamedTuple):
 
 
 def moved_parts(gain: Gain) -> list[Moved]:
-    """All joints that move, in their table's order; the three components of a shift; the delay."""
+    """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
     if gain.asked.kind == "waypoints":
-        return _joints(gain)
+        return _joints(gain, gain.change)
     change = gain.change.tolist()
+    if gain.asked.slow_down:
+        return [Moved("duration", change[0], "share")]
     if gain.asked.kind == "timing":
         return [Moved("start", change[0], "s")]
-    return [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=True)]
+    parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
+    turn = gain.asked.turn
+    return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
 
 
-def _joints(gain: Gain) -> list[Moved]:
+def joint_parts(gain: Gain) -> list[Moved]:
+    """The joints of a robot whose base is moved and whose tool path is kept."""
+    i_robot = index_of_robot(gain.case.robots, gain.who)
+    before, after = (
+        one.record.case.robots[i_robot].asked.positions for one in (gain.before, gain.after)
+    )
+    return _joints(gain, after - before)
+
+
+def _joints(gain: Gain, change: np.ndarray) -> list[Moved]:
     placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     times = placed.timing.run_times(placed.asked.times)
     found = []
-    for name, offsets in zip(gain.joint_names, gain.change.T, strict=True):
+    for name, offsets in zip(gain.joint_names, change.T, strict=True):
         rows = np.flatnonzero(np.abs(offsets) > STILL)
         if len(rows):
             most = int(np.argmax(np.abs(offsets)))
@@ -62,6 +76,8 @@ def _joints(gain: Gain) -> list[Moved]:
 
 def size_unit(gain: Gain) -> tuple[float, str]:
     """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
+    if gain.asked.slow_down:
+        return 100.0, "%"
     if gain.asked.kind != "waypoints":
         return (1.0, "s") if gain.asked.kind == "timing" else (1e3, "mm")
     from clearance.gains.offsets import SLIDE

@@ -15,13 +15,20 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.basis import Basis
+from clearance.gains.between_samples import values_between
+from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable
 from clearance.gains.shortfalls import Rows
+from clearance.gains.tool import tool_of
+from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
+from clearance.simulate.point_motion import motion_of_frame
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.cubic import Cubics, position_on
+from clearance.world.forest import link_poses_at
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 SLIDE = 2.0
 """[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""
@@ -45,11 +52,14 @@ class JointOffsets:
 
     Attributes:
         i_robot: which robot. basis: the splines.
+        tool_keeps: moments at which the tool stays about where it is. tool: its link; None for the usual one.
     """
 
     case: Case
     i_robot: int
     basis: Basis
+    tool_keeps: tuple[ToolKeep, ...] = ()
+    tool: str | None = None
     price: float = 100.0
     weights: np.ndarray = field(init=False)
 
@@ -126,26 +136,33 @@ class JointOffsets:
         robots[self.i_robot] = replace(self.placed, trajectory=changed)
         return replace(self.case, robots=tuple(robots))
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        if timeline is not None and self.handed.has(approach):
+            size = self.n_joints * self.n_splines
+            return Grasps(timeline, self._of_frame, size).gradient(approach)
         by_joint = approach.by_columns()[:, self.columns]
         if not by_joint.any():
             return None
         splines = self._between_samples(self._table_times(approach))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
 
+    def _of_frame(
+        self, phase: Phase, frame: int, steps: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """(k, m, 3) how points that a link carries move with the variables."""
+        poses = link_poses_at(phase.case, phase.motions, steps)
+        by_joint = motion_of_frame(phase.case, poses, frame, points)[:, self.columns]
+        timing = self.placed.timing
+        times = (phase.times[steps] - timing.start) * timing.rate
+        splines = self._between_samples(times)
+        moved = by_joint[:, :, None, :] * splines[:, None, :, None]
+        return np.asarray(moved.reshape(len(points), -1, 3))
+
     def _between_samples(self, times: np.ndarray) -> np.ndarray:
         """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""
-        asked, samples = self.placed.asked, self._samples
-        held = np.clip(times, asked.times[0], asked.times[-1])
-        row = np.clip(np.searchsorted(asked.times, held, side="right") - 1, 0, asked.n_steps - 2)
-        length = (asked.times[row + 1] - asked.times[row])[:, None]
-        share = (held - asked.times[row])[:, None] / length
-        step = samples[row + 1] - samples[row]
-        if asked.velocities is None:
-            return np.asarray(samples[row] + share * step)
-        rates = length[..., None] * self.basis.at(asked.times, 1)[np.stack([row, row + 1], axis=1)]
-        cubics = Cubics(samples[row], step, rates[:, 0] - step, rates[:, 1] - step)
-        return np.asarray(position_on(cubics, share))
+        asked = self.placed.asked
+        rates = None if asked.velocities is None else self.basis.at(asked.times, 1)
+        return values_between(asked, times, self._samples, rates)
 
     @cached_property
     def columns(self) -> list[int]:
@@ -161,6 +178,21 @@ class JointOffsets:
     def size(self, x: np.ndarray) -> float:
         offsets = self._sized @ x.reshape(self.n_joints, -1).T
         return float((np.abs(offsets) * self.weights).max(initial=0.0))
+
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        return None if self.tool_poses is None else self.tool_poses.rows(x, beyond)
+
+    @cached_property
+    def tool_poses(self) -> ToolPoses | None:
+        """What is kept of the tool's poses; None for nothing."""
+        if not self.tool_keeps:
+            return None
+        placed, asked = self.placed, self.placed.asked
+        times = np.array([one.time for one in self.tool_keeps])
+        own = (times - placed.timing.start) * placed.timing.rate
+        positions = values_between(asked, own, asked.positions, asked.velocities)
+        tool = tool_of(placed, self.tool)
+        return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))
 
     def swing(self, reach: np.ndarray) -> float:
         return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())
@@ -208,9 +240,17 @@ class JointOffsets:
 
 
 def joint_offsets(
-    case: Case, i_robot: int, n_intervals: int, kept: tuple[tuple[float, float], ...]
+    case: Case,
+    i_robot: int,
+    n_intervals: int,
+    kept: tuple[tuple[float, float], ...],
+    tool_keeps: tuple[ToolKeep, ...] = (),
+    tool: str | None = None,
 ) -> JointOffsets:
     """Offsets of a robot's joints, 0 in some windows of its table's times [s].
+
+    Args:
+        tool_keeps, tool: as of `JointOffsets`.
 
     Raises:
         BadInput: it has no table, or one that it goes through again and again.
@@ -223,7 +263,9 @@ def joint_offsets(
             f"robot {placed.robot.name!r} goes through its path again and again",
             valid="a path that ends",
         )
-    return JointOffsets(case, i_robot, Basis(placed.asked.times, n_intervals, kept))
+    return JointOffsets(
+        case, i_robot, Basis(placed.asked.times, n_intervals, kept), tool_keeps, tool
+    )
 
 
 def columns_of(case: Case, i_robot: int) -> list[int]:

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
-from clearance.gains.moved import Moved, moved_parts, proven_after, proven_bound
-from clearance.gains.told import amount_text, lines_of, size_text
+from clearance.gains.moved import Moved, joint_parts, moved_parts, proven_after, proven_bound
+from clearance.gains.told import lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
@@ -85,29 +85,42 @@ def _moved(gain: Gain) -> Markup:
     if not parts or gain.size == 0.0:
         return section("What is changed", element("p", "Nothing is changed."))
     if gain.asked.kind == "waypoints":
-        heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
-        return section("What is changed", table(heads, [_joint(part) for part in parts]))
+        return section("What is changed", _joints(parts))
     rows = [
-        element("tr", element("td", _what(gain, part)), _number(_with_sign(part))) for part in parts
+        element("tr", element("td", _what(gain, part)), _number(signed_text(part)))
+        for part in parts
     ]
     if gain.asked.kind != "timing":
-        rows.append(element("tr", element("td", "length"), _number(size_text(gain))))
-    return section("What is changed", table((f"{gain.who}", ">By"), rows))
+        rows.append(
+            element(
+                "tr",
+                element("td", "length" if gain.asked.turn is None else "size"),
+                _number(size_text(gain)),
+            )
+        )
+    shifted = table((f"{gain.who}", ">By"), rows)
+    if gain.tool_path is None:
+        return section("What is changed", shifted)
+    return section("What is changed", shifted, _joints(joint_parts(gain)))
+
+
+def _joints(parts: Sequence[Moved]) -> Markup:
+    heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
+    return table(heads, [_joint(part) for part in parts])
 
 
 def _what(gain: Gain, part: Moved) -> str:
+    if part.unit == "rad":
+        return part.name
+    if gain.asked.slow_down:
+        return "takes longer"
     return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
 
 
 def _joint(part: Moved) -> Markup:
     times = [part.time, part.start, part.end]
     cells = [_number(seconds(time)) for time in times if time is not None]
-    return element("tr", element("td", part.name), _number(_with_sign(part)), *cells)
-
-
-def _with_sign(part: Moved) -> str:
-    text = amount_text(part)
-    return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
+    return element("tr", element("td", part.name), _number(signed_text(part)), *cells)
 
 
 def _number(text: str) -> Markup:

@@ -12,10 +12,20 @@ from typing import Protocol
 import numpy as np
 
 from clearance.gains.programme import Box, Inequalities, least_missing
-from clearance.gains.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
+from clearance.gains.shortfalls import (
+    Rows,
+    State,
+    Wanted,
+    keeps,
+    looked_into,
+    measured,
+    proven,
+    raised,
+)
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
 from clearance.world.case import Case
+from clearance.world.timeline import Timeline
 
 MOST_STEPS = 40
 """Of one search; most need 4 to 10."""
@@ -61,14 +71,25 @@ class Change(Protocol):
     def case_of(self, x: np.ndarray) -> Case:
         """The changed case."""
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
-        """(k, m) what clearances grow by; None where nothing of it changes them."""
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        """(k, m) what clearances grow by; None where nothing of it changes them.
+
+        Args:
+            timeline: of the run, for parts that change hands; None where they are not asked about.
+        """
 
     def size(self, x: np.ndarray) -> float:
         """How large a change is, in its unit."""
 
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
+
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        """What is kept beside clearances, as it is measured; None for nothing.
+
+        Args:
+            beyond: [m] that is to cover rounding.
+        """
 
     def swing(self, reach: np.ndarray) -> float:
         """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
@@ -120,14 +141,18 @@ class Search:
             record = proven(state.case, self.margin)
             if keeps(record):
                 break
-            extra, record = with_extra(self.wanted.extra, record), None
-            self.wanted = replace(self.wanted, extra=extra)
+            self.wanted = raised(self.wanted, record)
+            unproven, record = record, None
             state = self._state(state.x, self.change.first_reach)
+            if state.worst <= FINE:
+                self.wanted = looked_into(self.wanted, unproven)
+                state = self._state(state.x, self.change.first_reach)
         return Found(state, record, self.n_measured)
 
     def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
         self.n_measured += 1
-        return measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+        found = measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+        return replace(found, beside=self.change.beside(x, self.wanted.beyond))
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""

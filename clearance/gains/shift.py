@@ -1,4 +1,7 @@
-"""A change of place: an obstacle or a robot's base is moved along x, y and z of the world.
+"""A change of place: an obstacle or a robot's base is moved along x, y and z of the world, and turned if that is
+allowed.
+
+A change is as large as the root of the sum of the squares of its shift and of its angle, half a metre for one rad.
 
 Not for: by how much (`search`).
 """
@@ -11,14 +14,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_name
+from clearance.gains.grasp import Grasps
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
+from clearance.gains.turn import ARM, Pivot, Turn
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.world.body import Obstacle
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
+from clearance.world.extents import reach_of
+from clearance.world.forest import carried_by, forest_of
 from clearance.world.pairs import BodyIndex
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 FIRST_REACH = 0.02
 """[m] How far the first step may go along each axis."""
@@ -26,32 +35,82 @@ FIRST_REACH = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Shift:
-    """Something that is moved along x, y and z.
+    """Something that is moved along x, y and z, and turned.
 
     Attributes:
-        moved: whether a body moves with it. place: the case with it moved by (3,) [m].
+        moved: whether a body moves with it. place: the case with it moved by (3,) [m], or (4,) with its angle
+            times `turn.ARM`. pose_in: (4, 4) where it stands in a case [m].
         box: [m] how far it may be moved. handed: the parts that it hands over elsewhere.
+        radius: [m] from its origin to the farthest that moves with it, roughly.
+        moved_frame: whether a link moves with it; None for what carries no part.
+        pivot: None where it is not turned.
     """
 
     case: Case
     handed: Handed
     moved: Callable[[Case, BodyIndex], bool]
     place: Callable[[Case, np.ndarray], Case]
+    pose_in: Callable[[Case], np.ndarray]
     box: Box
+    radius: float
+    moved_frame: Callable[[Case, int], bool] | None = None
+    pivot: Pivot | None = None
     price: float = 30.0
     kept: None = None
 
     @property
+    def size_of_x(self) -> int:
+        """Number of the variables."""
+        return 3 if self.pivot is None else 4
+
+    @property
+    def farthest(self) -> float:
+        """[m] The size of the largest change in the box."""
+        return self.size(np.maximum(-self.box.low, self.box.high))
+
+    def change_of(self, x: np.ndarray) -> np.ndarray:
+        """The shift [m] and, where a turn is allowed, the angle [rad]."""
+        return np.append(x[:3], x[3:] / ARM)
+
+    @property
     def first_reach(self) -> np.ndarray:
-        return np.full(3, FIRST_REACH)
+        return np.full(self.size_of_x, FIRST_REACH)
 
     def case_of(self, x: np.ndarray) -> Case:
         return self.place(self.case, x)
 
-    def gradient(self, approach: Approach) -> np.ndarray | None:
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        if timeline is not None and self.moved_frame is not None and self.handed.has(approach):
+            return Grasps(timeline, self._of_frame, self.size_of_x).gradient(approach)
         case = approach.case
         a, b = (self.moved(case, body) for body in approach.pair)
-        return None if a == b else approach.directions * (1.0 if b else -1.0)
+        if a == b:
+            return None
+        along = approach.directions * (1.0 if b else -1.0)
+        if self.pivot is None:
+            return along
+        moved = self.pivot.by_unit(approach.points[:, int(b)], self.pose_in(case))
+        return np.column_stack([along, np.einsum("ki,ki->k", moved, along)])
+
+    def _of_frame(
+        self, phase: Phase, frame: int, steps: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """(k, m, 3) how points that a link carries move with the variables."""
+        assert self.moved_frame is not None
+        moved = np.zeros((len(points), self.size_of_x, 3))
+        if self.moved_frame(phase.case, frame):
+            moved[:, :3] = np.eye(3)
+            if self.pivot is not None:
+                moved[:, 3] = self.pivot.by_unit(points, self.pose_in(phase.case))
+        return moved
+
+    def factors(self, approach: Approach) -> np.ndarray | float:
+        """[-] How far both bodies move against each other at most, as a multiple of the size of a change."""
+        if self.pivot is None:
+            return 1.0
+        case, pair = approach.case, approach.pair
+        body = pair.b if self.moved(case, pair.b) else pair.a
+        return self.pivot.factors(approach, body, self.pose_in(case))
 
     def size(self, x: np.ndarray) -> float:
         return float(np.linalg.norm(x))
@@ -59,18 +118,23 @@ class Shift:
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         return least_norm(rows, x, box)
 
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        return None
+
     def swing(self, reach: np.ndarray) -> float:
-        return float(np.linalg.norm(reach))
+        turned = 0.0 if self.pivot is None else float(reach[3]) / ARM * self.radius
+        return float(np.linalg.norm(reach[:3])) + turned
 
 
 ANYWHERE = Box(np.full(3, -np.inf), np.full(3, np.inf))
 
 
-def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
+def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = None) -> Shift:
     """The shift of an obstacle, and of what stands on it.
 
     Raises:
-        UnknownObstacle: with the nearest name. BadInput: it is carried, or rides on something.
+        UnknownObstacle: with the nearest name. BadInput: it is carried, or rides on something; it moves by a table
+            and is to be turned.
     """
     names = [obstacle.name for obstacle in case.obstacles]
     if name not in names:
@@ -82,18 +146,31 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
             valid="what stands in the world, or moves by a table of its own",
         )
 
+    asked = case.obstacles[i_obstacle]
+    if turn is not None and asked.moves is not None:
+        raise BadInput(
+            f"obstacle {name!r} moves by a table, which is shifted and not turned",
+            valid="a turn of an obstacle that stands",
+        )
+    pivot = None if turn is None else Pivot(turn, asked.world_from_body)
+
     def place(whole: Case, x: np.ndarray) -> Case:
         obstacles = list(whole.obstacles)
-        obstacles[i_obstacle] = _moved_obstacle(obstacles[i_obstacle], x)
+        obstacles[i_obstacle] = _moved_obstacle(obstacles[i_obstacle], x, pivot)
         return replace(whole, obstacles=tuple(obstacles))
 
     def moved(plain: Case, body: BodyIndex) -> bool:
         return moves_with_obstacle(plain, body, i_obstacle)
 
-    return Shift(case, Handed(case, (True, i_obstacle)), moved, place, box)
+    def pose_in(plain: Case) -> np.ndarray:
+        return plain.obstacles[i_obstacle].world_from_body
+
+    radius = float(np.linalg.norm(np.abs(asked.body.shape.bounds).max(axis=0)))
+    handed = Handed(case, (True, i_obstacle))
+    return _shift(Shift(case, handed, moved, place, pose_in, box, radius), pivot)
 
 
-def base_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
+def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = None) -> Shift:
     """The shift of a robot's base, its joints as they are.
 
     Raises:
@@ -106,29 +183,50 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
     if case.robots[i_robot].mount is not None:
         raise BadInput(f"robot {name!r} stands on something", valid="one that stands in the world")
 
+    asked = case.robots[i_robot]
+    pivot = None if turn is None else Pivot(turn, asked.world_from_base)
+
     def place(whole: Case, x: np.ndarray) -> Case:
         robots = list(whole.robots)
-        robots[i_robot] = _moved_base(robots[i_robot], x)
+        moved_base = _moved(robots[i_robot].world_from_base, x, pivot)
+        robots[i_robot] = replace(robots[i_robot], world_from_base=moved_base)
         return replace(whole, robots=tuple(robots))
 
     def moved(plain: Case, body: BodyIndex) -> bool:
         return moves_with_robot(plain, body, i_robot)
 
-    return Shift(case, Handed(case, (False, i_robot)), moved, place, box)
+    def pose_in(plain: Case) -> np.ndarray:
+        return plain.robots[i_robot].world_from_base
+
+    def moved_frame(plain: Case, frame: int) -> bool:
+        forest = forest_of(plain)
+        return forest.robot_starts[i_robot] in carried_by(forest, frame)
+
+    handed = Handed(case, (False, i_robot))
+    radius = reach_of(asked)
+    plain = Shift(case, handed, moved, place, pose_in, box, radius, moved_frame)
+    return _shift(plain, pivot)
 
 
-def _moved_obstacle(obstacle: Obstacle, x: np.ndarray) -> Obstacle:
+def _shift(plain: Shift, pivot: Pivot | None) -> Shift:
+    """The shift with a turn, which is one more variable."""
+    if pivot is None:
+        return plain
+    most = ARM * pivot.turn.most
+    box = Box(np.append(plain.box.low, -most), np.append(plain.box.high, most))
+    return replace(plain, pivot=pivot, box=box)
+
+
+def _moved_obstacle(obstacle: Obstacle, x: np.ndarray, pivot: Pivot | None) -> Obstacle:
     if obstacle.moves is None:
-        return replace(obstacle, world_from_body=_moved(obstacle.world_from_body, x))
+        return replace(obstacle, world_from_body=_moved(obstacle.world_from_body, x, pivot))
     table = obstacle.moves
     return replace(obstacle, moves=replace(table, positions=table.positions + x))
 
 
-def _moved_base(placed: PlacedRobot, x: np.ndarray) -> PlacedRobot:
-    return replace(placed, world_from_base=_moved(placed.world_from_base, x))
-
-
-def _moved(pose: np.ndarray, x: np.ndarray) -> np.ndarray:
+def _moved(pose: np.ndarray, x: np.ndarray, pivot: Pivot | None) -> np.ndarray:
+    if pivot is not None:
+        return pivot.moved(x)
     moved = pose.copy()
     moved[:3, 3] += x
     return moved

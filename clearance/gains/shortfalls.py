@@ -6,13 +6,14 @@ Not for: what may be changed (`shift`, `offsets`), nor by how much it then is (`
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.findings.standing import code_of
+from clearance.gains.moments import with_moments
 from clearance.run import Question, answer
 from clearance.simulate.approaches import Approach, approaches
 from clearance.simulate.certificate import motion_codes
@@ -21,11 +22,24 @@ from clearance.simulate.status import STATUSES, Status
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.rules import Rule
+from clearance.world.timeline import Timeline
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 
-Gradient = Callable[[Approach], np.ndarray | None]
-"""(k, m) [m] what the clearances of an approach grow by for each unit of the m variables; None for nothing."""
+Gradient = Callable[[Approach, Timeline | None], np.ndarray | None]
+"""(k, m) [m] what the clearances of an approach grow by for each unit of the m variables; None for nothing.
+
+With the run's timeline that of parts that change hands as well."""
+
+
+SAME = 1e-9
+"""[s] Times that are less apart are of one step."""
+
+MOMENTS = 7
+"""Of each interval that is looked into."""
+
+MOST_INTERVALS = 32
+"""That are looked into at a time, those that fall short by most."""
 
 
 class Rows(NamedTuple):
@@ -46,12 +60,26 @@ class Wanted:
 
     Attributes:
         margin: [m] above the fail limit of each rule. beyond: [m] that is to cover rounding.
-        extra: (n,) [m] beyond that at each step, so that the motion between them keeps it too.
+        extra: (n,) [m] beyond that at each step, so that the motion between them keeps it too. times: (n,) [s] of
+            these steps.
+        moments: (k,) [s] times between them that are steps as well. more: (k,) [m] beyond at these.
     """
 
     margin: float
     beyond: float
     extra: np.ndarray
+    times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    moments: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    more: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    def extra_at(self, times: np.ndarray) -> np.ndarray:
+        """(n,) [m] beyond what is wanted at steps (n,) [s]."""
+        found = np.zeros(len(times))
+        for own, extra in ((self.times, self.extra), (self.moments, self.more)):
+            if len(own):
+                place = np.clip(np.searchsorted(own, times - SAME), 0, len(own) - 1)
+                found = np.where(np.abs(own[place] - times) <= SAME, extra[place], found)
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +88,7 @@ class State:
 
     Attributes:
         x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
+        beside: what is kept beside clearances; None for nothing.
     """
 
     x: np.ndarray
@@ -67,11 +96,12 @@ class State:
     record: Record
     beyond: float
     wanted: Wanted
+    beside: Rows | None = None
 
     @cached_property
     def near(self) -> Sequence[Approach]:
         """All that comes near, at the steps."""
-        extra = float(self.wanted.extra.max(initial=0.0))
+        extra = float(self._extra.max(initial=0.0))
         return [
             *approaches(self.record.rules, self.margin + self.wanted.beyond + extra + self.beyond)
         ]
@@ -83,33 +113,42 @@ class State:
 
     @cached_property
     def worst(self) -> float:
-        """[m] How far the worst pair is below what is wanted; 0 where none is."""
-        return max((float(self.missing(one).max(initial=0.0)) for one in self.near), default=0.0)
+        """[m] How far the worst pair, or what else is kept, is below what is wanted; 0 where none is."""
+        found = [float(self.missing(one).max(initial=0.0)) for one in self.near]
+        if self.beside is not None:
+            found.append(float(self.beside.missing.max(initial=0.0)))
+        return max(found, default=0.0)
 
     def missing(self, approach: Approach) -> np.ndarray:
         """(k,) [m] how far an approach is below what is wanted; negative above it."""
         level = approach.rule.limits.fail + self.wanted.margin + self.wanted.beyond
-        return level + self.wanted.extra[approach.steps] - approach.clearances
+        return level + self._extra[approach.steps] - approach.clearances
+
+    @cached_property
+    def _extra(self) -> np.ndarray:
+        return self.wanted.extra_at(self.record.motions[0].times)
 
     def rows(self, gradient: Gradient) -> Rows:
         """All that is near, and what it grows by; what nothing changes is left out where it is kept."""
         missing, gradients = [np.empty(0)], [np.empty((0, len(self.x)))]
         for approach in self.near:
-            found = gradient(approach)
+            found = gradient(approach, self.record.timeline)
             own = self.missing(approach)
             if found is None:
                 found = np.zeros((len(own), len(self.x)))
             kept = (own > 0.0) | found.any(axis=1)
             missing.append(own[kept])
             gradients.append(found[kept])
+        if self.beside is not None:
+            missing.append(self.beside.missing)
+            gradients.append(self.beside.gradients)
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
 def measured(case: Case, x: np.ndarray, wanted: Wanted, beyond: float) -> State:
-    """A case with all that comes within `beyond` [m] of what is wanted, at its steps."""
-    record = answer(Question(case, certify=False, contact="none")).record
-    if len(wanted.extra) != len(record.motions[0].times):
-        wanted = replace(wanted, extra=np.zeros(len(record.motions[0].times)))
+    """A case with all that comes within `beyond` [m] of what is wanted, at its steps and the moments wanted."""
+    finer = with_moments(case, wanted.moments)
+    record = answer(Question(finer, certify=False, contact="none")).record
     return State(x, case, record, beyond, wanted)
 
 
@@ -124,18 +163,45 @@ def keeps(record: Record) -> bool:
     return all(code_of(rule) < VIOLATED for rule in record.rules)
 
 
-def with_extra(extra: np.ndarray, record: Record) -> np.ndarray:
-    """(n,) [m] what is wanted beyond the margin at each step, raised where the motion from it is not proven."""
-    more = np.zeros(len(record.motions[0].times))
+def raised(wanted: Wanted, record: Record) -> Wanted:
+    """What is wanted, with more at both ends of each motion that is not proven, and at the moments in it."""
+    times = record.motions[0].times
+    short = _short(record)
+    extra = np.maximum(short, np.append(0.0, short[:-1])) + wanted.extra_at(times)
+    more = wanted.more + short[_intervals(times, wanted.moments)]
+    return replace(wanted, extra=extra, times=times, more=more)
+
+
+def looked_into(wanted: Wanted, record: Record) -> Wanted:
+    """What is wanted, at moments too in the motions that are farthest from being proven."""
+    times, short = record.motions[0].times, _short(record)
+    short[_intervals(times, wanted.moments)] = 0.0
+    chosen = np.argsort(-short, kind="stable")[:MOST_INTERVALS]
+    chosen = np.sort(chosen[(short[chosen] > 0.0) & (chosen < len(times) - 1)])
+    shares = np.arange(1, MOMENTS + 1) / (MOMENTS + 1)
+    new = (times[chosen, None] + np.diff(times)[chosen, None] * shares).ravel()
+    order = np.argsort(np.concatenate([wanted.moments, new]), kind="stable")
+    moments = np.concatenate([wanted.moments, new])[order]
+    more = np.concatenate([wanted.more, np.zeros(len(new))])[order]
+    return replace(wanted, moments=moments, more=more)
+
+
+def _intervals(times: np.ndarray, moments: np.ndarray) -> np.ndarray:
+    """(k,) the step after which each moment is."""
+    return np.asarray(np.searchsorted(times, moments, side="right") - 1)
+
+
+def _short(record: Record) -> np.ndarray:
+    """(n,) [m] how far the motion after each step is from being proven; 0 where it is."""
+    short = np.zeros(len(record.motions[0].times))
     for rule in record.rules:
         if rule.certificate is None:
             continue
         codes = motion_codes(rule.certificate, rule.limits, slice(None))
         below = np.flatnonzero(codes >= VIOLATED)
-        short = rule.limits.fail - rule.certificate.lower_bound[below] + CERTIFY_GAP * 1e-3
-        for ends in (below, np.minimum(below + 1, len(more) - 1)):
-            np.maximum.at(more, ends, short)
-    return extra + more if len(extra) == len(more) else more
+        missing = rule.limits.fail - rule.certificate.lower_bound[below] + CERTIFY_GAP * 1e-3
+        np.maximum.at(short, below, missing)
+    return short
 
 
 def _raised(limits: Limits, margin: float) -> Limits:

@@ -10,11 +10,15 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
-from clearance.gains.blocked import KEPT_STILL, NOT_MOVED
-from clearance.gains.moved import Moved, moved_parts, size_unit, sliding, turning
+from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
+from clearance.gains.delay import MOST_SLOWER
+from clearance.gains.joint_ranges import too_fast
+from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
+from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
+from clearance.world.case import index_of_robot
 
 Line = tuple[str, str]
 """A label and what it says."""
@@ -32,13 +36,27 @@ def lines_of(gain: Gain) -> Iterator[Line]:
     yield from _kept(gain) if gain.kept else _not_kept(gain)
     if not _is_hopeless(gain):
         yield "bound", bound_text(gain)
+    fast = _too_fast(gain)
+    if fast:
+        yield (
+            "note",
+            f"faster than the robot's own file allows as it is, and made no faster: {fast}",
+        )
     if gain.asked.margin:
         yield "margin", "it is not written into the changed case, whose limits are as they were"
+
+
+def _too_fast(gain: Gain) -> str:
+    if not gain.joint_names:
+        return ""
+    robots = gain.before.record.case.robots
+    return too_fast(robots[index_of_robot(robots, gain.who)])
 
 
 def _kept(gain: Gain) -> Iterator[Line]:
     """A change with which every rule holds, and what else the verdict of the changed case says."""
     yield from (("changed", line) for line in changed_lines(gain))
+    yield from (("tool", line) for line in tool_lines(gain))
     yield "after", _worst(gain.after)
     yield "proven", f"every rule holds at every moment{_by_margin(gain)}"
     if not gain.after.passed:
@@ -50,6 +68,7 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
     yield "not kept", _not_kept_text(gain)
     if gain.size > 0.0:
         yield from (("best", line) for line in changed_lines(gain))
+        yield from (("tool", line) for line in tool_lines(gain))
         yield "reached", _worst(gain.after)
     if gain.blocked is not None:
         yield "blocked", str(gain.blocked)
@@ -58,7 +77,7 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
 
 def _is_hopeless(gain: Gain) -> bool:
     """True if no change of the kind, however large, can make every rule hold."""
-    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL)
+    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL, TOO_FAR)
 
 
 def changed_lines(gain: Gain) -> list[str]:
@@ -66,20 +85,70 @@ def changed_lines(gain: Gain) -> list[str]:
     parts = moved_parts(gain)
     if gain.asked.kind == "waypoints":
         return [_joint(part) for part in parts] or ["no joint moves"]
+    if gain.asked.slow_down:
+        rate = 1.0 / (1.0 + gain.size)
+        return [
+            f"robot {gain.who} takes {amount_text(parts[0])} longer for its path: {rate:.4f} times as fast, "
+            "from its table's time 0 on"
+        ]
     if gain.asked.kind == "timing":
         return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
     who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
-    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts)
-    joints = (
-        "; its joints as they are, so its tool moves along" if gain.asked.kind == "base" else ""
-    )
-    return [f"{who} moved {size_text(gain)}: {axes}{joints}"]
+    axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts if part.unit == "m")
+    turned = [f", turned {signed_text(part)}{_about(gain)}" for part in parts if part.unit == "rad"]
+    joints = ""
+    if gain.asked.kind == "base":
+        joints = "; its joints as they are, so its tool moves along"
+    if gain.tool_path is not None:
+        joints = f"; its joints make up for it, so that {gain.tool_path.link} goes the same way"
+    moved = f"{who} moved {size_text(gain)}: {axes}{''.join(turned)}{joints}"
+    followed = [] if gain.tool_path is None else joint_parts(gain)
+    return [moved, *(_joint(part) for part in followed)]
+
+
+def _about(gain: Gain) -> str:
+    """What a turn is about, and how it counts."""
+    turn = gain.asked.turn
+    assert turn is not None
+    through = "its origin"
+    if turn.about is not None:
+        through = ", ".join(f"{1e3 * one:g}" for one in turn.about) + " mm"
+    counted = 1e3 * math.radians(1.0) * ARM
+    return f" about {turn.axis} through {through} (1 deg counts as {counted:.2f} mm)"
+
+
+def tool_lines(gain: Gain) -> Iterator[str]:
+    """How far a tool is off where it is to stay, rounded up."""
+    off = gain.tool_path
+    if off is not None:
+        yield (
+            f"{off.link} is off its path by up to {_up(off.far * 1e3)} mm and {_up(math.degrees(off.turn))} deg "
+            f"at its samples, by no more than {_up(off.far_between * 1e3)} mm and "
+            f"{_up(math.degrees(off.turn_between))} deg between them"
+        )
+    for one in gain.tool_moves:
+        yield (
+            f"{one.link} at {one.keep.time:.3f} s is moved {_up(one.far * 1e3)} mm of {one.keep.far * 1e3:g} and "
+            f"turned {_up(math.degrees(one.turn))} deg of {math.degrees(one.keep.turn):g}"
+        )
 
 
 def amount_text(part: Moved) -> str:
     """How far a part moves, without a sign."""
-    factor, unit = {"rad": (math.degrees(1.0), "deg"), "m": (1e3, "mm"), "s": (1.0, "s")}[part.unit]
+    units = {
+        "rad": (math.degrees(1.0), "deg"),
+        "m": (1e3, "mm"),
+        "s": (1.0, "s"),
+        "share": (100.0, "%"),
+    }
+    factor, unit = units[part.unit]
     return f"{_figure(abs(part.amount) * factor)} {unit}"
+
+
+def signed_text(part: Moved) -> str:
+    """The same with its sign; none where that is nothing in the digits told."""
+    text = amount_text(part)
+    return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
 
 
 def size_text(gain: Gain) -> str:
@@ -116,6 +185,8 @@ def _counted(gain: Gain) -> str:
 def _not_kept_text(gain: Gain) -> str:
     if _is_hopeless(gain):
         return "no change of this kind can make every rule hold"
+    if gain.asked.slow_down:
+        return f"no slow-down to {1.0 + MOST_SLOWER:g} times its duration was found with which every rule holds"
     if gain.asked.kind == "timing":
         return f"no delay up to {gain.asked.most_delay:g} s was found with which every rule holds"
     return "no change of this kind was found with which every rule is proven to hold"
@@ -137,7 +208,7 @@ def _worst(run: Run) -> str:
 
 
 def _joint(part: Moved) -> str:
-    told = f"joint {part.name} by up to {amount_text(part)}"
+    told = f"joint {part.name} by up to {signed_text(part)}"
     return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 
@@ -151,6 +222,11 @@ def _figure(value: float) -> str:
     if abs(value) < 5e-5:
         return "0"
     return f"{value:.{max(0, min(4, 3 - math.floor(math.log10(abs(value)))))}f}"
+
+
+def _up(value: float) -> str:
+    """Four places, rounded up; 0 for what is rounding."""
+    return "0" if value < 1e-9 else f"{math.ceil(value * 1e4) / 1e4:.4f}"
 
 
 def _down(value: float) -> str:

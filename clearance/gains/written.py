@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.answer import Gain
+from clearance.gains.turn import ARM, Pivot
 from clearance.load import schema
 from clearance.load.case_file import read_case
 from clearance.load.case_schema import ScenePlace, read_schema
@@ -105,19 +106,25 @@ class _Files:
         self._table({"file": TRAJECTORY})
 
     def delay(self) -> None:
-        """A start in place of another."""
+        """A start, or a rate, in place of another."""
+        if self.gain.asked.slow_down:
+            self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate})
+            return
         self._table({"start": self.gain.case.robots[self._i_robot].timing.start})
 
     def base(self) -> None:
         """A place of a robot's base."""
         i_robot = self._i_robot
-        xyz = self.gain.case.robots[i_robot].world_from_base[:3, 3].tolist()
+        robots = [one.record.case.robots for one in (self.gain.before, self.gain.after)]
+        before, after = (one[i_robot].world_from_base for one in robots)
 
         def change(node: Node) -> None:
             robot = robots_of(node)[i_robot]
-            robot["base"] = {**robot.get("base", {}), "xyz": xyz}
+            robot["base"] = self._pose(robot.get("base", {}), before, after)
 
         self._changes.append(change)
+        if self.gain.tool_path is not None and self.gain.size > 0.0:
+            self.path()
 
     def obstacle(self) -> None:
         """A place of an obstacle, in the case file or in a scene's file of ours."""
@@ -168,13 +175,24 @@ class _Files:
         row = next(row for row in rows if row["name"] == name)
         made = next(one for one in self.gain.case.obstacles if one.name == name)
         if made.moves is None:
-            row["pose"] = {**row.get("pose", {}), "xyz": made.world_from_body[:3, 3].tolist()}
+            was = self.gain.before.record.case.obstacles
+            before = next(one for one in was if one.name == name).world_from_body
+            row["pose"] = self._pose(row.get("pose", {}), before, made.world_from_body)
             return
         self.contents[MOVES] = self._poses(made.moves.positions)
         old = row["moves"]
         kept = {} if isinstance(old, str) else {key: old[key] for key in WHEN if key in old}
         file = MOVES if not written_out else str(self.folder.absolute() / MOVES)
         row["moves"] = {"file": file, **kept}
+
+    def _pose(self, given: Node, before: np.ndarray, after: np.ndarray) -> Node:
+        """A pose of a file in another place; where it is turned with the quaternion that it was made of."""
+        turn, change = self.gain.asked.turn, self.gain.change
+        if turn is None or change[3] == 0.0:
+            return {**given, "xyz": after[:3, 3].tolist()}
+        place, quaternion = Pivot(turn, before).placed(np.append(change[:3], change[3] * ARM))
+        kept = {key: one for key, one in given.items() if key not in ("rpy", "quat_xyzw")}
+        return {**kept, "xyz": place, "quat_xyzw": quaternion}
 
     def _poses(self, positions: np.ndarray) -> bytes:
         """The obstacle's table with other places; turns as they stand in its file."""

@@ -80,6 +80,7 @@ def _joint(element: Element) -> Joint:
         lower=lower,
         upper=upper,
         mimic=_mimic(element.find("mimic"), kind),
+        velocity=_velocity(element.find("limit")),
     )
 
 
@@ -106,6 +107,17 @@ def _limits(element: Element | None, kind: JointKind) -> tuple[float, float]:
     if lower > upper:
         raise BadInput(f"lower limit {lower:g} is above upper limit {upper:g}")
     return lower, upper
+
+
+def _velocity(element: Element | None) -> float:
+    """The greatest speed; infinite where none is written, or what many exporters write for none: 0, or no
+    number.
+    """
+    try:
+        given = float("" if element is None else element.get("velocity", ""))
+    except ValueError:
+        return np.inf
+    return given if 0.0 < given < np.inf else np.inf
 
 
 def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:

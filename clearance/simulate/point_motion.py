@@ -27,10 +27,14 @@ def motion_by_columns(
     Returns:
         (n, columns, 3) [m] for each rad or m of a column; 0 for the columns of tables of poses.
     """
+    return motion_of_frame(case, poses, body.frame_in(case), points)
+
+
+def motion_of_frame(case: Case, poses: np.ndarray, frame: int, points: np.ndarray) -> np.ndarray:
+    """The same of points that a link of the forest carries; of `WORLD` they stand."""
     forest = forest_of(case)
     links = forest.links
     moved = np.zeros((len(points), int(links.columns.max(initial=-1)) + 1, 3))
-    frame = body.frame_in(case)
     if frame == WORLD:
         return moved
     for link in carried_by(forest, frame):

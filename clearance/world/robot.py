@@ -41,6 +41,7 @@ class Joint:
         axis: (3,) unit vector in the joint frame.
         lower, upper: limits [rad] or [m]; infinite where there are none.
         part_of: kind and name of the joint of several degrees of freedom that it is a part of.
+        velocity: the greatest that the robot's own file gives [rad/s] or [m/s]; infinite where it gives none.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Joint:
     upper: float = np.inf
     mimic: Mimic | None = None
     part_of: tuple[str, str] | None = None
+    velocity: float = field(default=np.inf, repr=False)  # decides no clearance, so no fingerprint
 
 
 @dataclass(frozen=True, eq=False)

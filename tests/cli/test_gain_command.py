@@ -34,10 +34,40 @@ def test_a_margin_is_kept_and_said_not_to_be_in_the_case(slot, capsys):
     assert "not written into the changed case" in text
 
 
+def test_a_shift_keeps_within_its_room(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,19,0")
+    assert code == 1 and "no change within what is allowed is large enough" in text
+    code, text, _ = said(capsys, slot, "--kind", "base", "--within-mm", "0,-21:0,0")
+    assert code == 0 and "moved 20.00 mm: x 0, y -20.00, z 0" in text
+
+
+def test_how_far_the_tool_is_moved_is_told(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep-tool", "1.0s=21mm,0.1deg")
+    assert (
+        code == 0 and "tool      tool at 1.000 s is moved 20.0005 mm of 21 and turned 0 deg" in text
+    )
+
+
+def test_a_turn_is_told_and_written(slot, tmp_path, capsys):
+    path, out = slot.parent / "turned.yaml", tmp_path / "out"
+    path.write_text(slot.read_text().replace("[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
+                    "[0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0], rpy: [0, 0, 0.1]}"))  # fmt: skip
+    options = ("--kind", "obstacle", "--obstacle", "left", "--within-mm", "0,30,0", "--turn", "z")
+    code, text, _ = said(capsys, path, *options, "--out", out)
+    assert code == 0 and " deg about z through its origin (1 deg counts as 8.73 mm)" in text
+    assert "turn about z" in (out / "gain.html").read_text()
+    assert run(["check", str(out / "case.yaml")]) == 0
+
+
 def test_nothing_to_change_is_said(tmp_path, capsys):
     path = write_cell(tmp_path, SLOT.replace("fail: 0.04", "fail: 0.01"))
     code, text, _ = said(capsys, path, "--kind", "waypoints")
     assert code == 0 and "nothing had to be changed" in text
+
+
+def test_a_joint_is_told_with_the_sign_of_its_offset(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints")
+    assert code == 0 and "joint y by up to -20.00 mm at " in text
 
 
 def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
@@ -67,6 +97,15 @@ def test_a_delay_is_told(tmp_path, capsys):
     assert code == 1 and "no delay up to 0.01 s" in text
 
 
+def test_a_slow_down_is_told(tmp_path, capsys):
+    path = write_cell(tmp_path, CROSSING)
+    options = ("--kind", "timing", "--robot", "other", "--slow-down", "--out", tmp_path / "out")
+    code, text, _ = said(capsys, path, *options)
+    assert code == 0 and " % longer for its path: 0." in text and "bound     less than " in text
+    assert "takes longer" in (tmp_path / "out" / "gain.html").read_text()
+    assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
+
+
 @pytest.mark.parametrize(
     "options, told",
     [
@@ -80,6 +119,14 @@ def test_a_delay_is_told(tmp_path, capsys):
         (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),
         (["--kind", "obstacle", "--robot", "bar"], "robot with kind waypoints or base or timing"),
         (["--kind", "base", "--margin-mm", "-1"], "is not a length"),
+        (["--kind", "waypoints", "--keep-tool", "1=2,1"], "is no moment with a tolerance"),
+        (["--kind", "waypoints", "--keep-tool", "1=2mm,1deg", "--tool", "toll"], "mean 'tool'?"),
+        (["--kind", "base", "--within-mm", "0,0,0"], "a box of zero leaves nothing to move"),
+        (["--kind", "base", "--within-mm", "5,5"], "is no room for a shift"),
+        (["--kind", "base", "--within-mm", "5,5,3:9"], "along z from 3 to 9 mm leaves out where"),
+        (["--kind", "waypoints", "--turn", "z"], "turn is given, of which a change of kind way"),
+        (["--kind", "base", "--about-mm", "1,2,3"], "a turn is spoken of that is not asked for"),
+        (["--kind", "base", "--turn", "z", "--most-turn-deg", "0"], "up to 180 deg"),
     ],
 )
 def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):

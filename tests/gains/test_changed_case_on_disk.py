@@ -7,6 +7,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, Unwritable
 from clearance.gains.folder import save_gain
+from clearance.gains.turn import Turn
 from tests.gains.making_gain import CROSSING, MOVING, SLOT, write_cell
 
 
@@ -76,7 +77,23 @@ CASES = {
     "SDF": (with_sdf, "obstacle", {"obstacle": "left/board/c"}),
     "planning scene": (with_planning_scene, "obstacle", {"obstacle": "left"}),
     "base beside a scene file": (with_scene_file, "base", {}),
+    "turned": (
+        lambda folder: write_cell(folder, SLOT),
+        "obstacle",
+        {"obstacle": "left", "within": (0.0, 0.03, 0.0), "turn": Turn("z", (0.3, 0.1, 0.0))},
+    ),
+    "turned beside a scene file": (
+        with_scene_file,
+        "obstacle",
+        {"obstacle": "left", "within": (0.0, 0.03, 0.0), "turn": Turn("z", (0.3, 0.1, 0.0))},
+    ),
+    "turned base": (lambda folder: write_cell(folder, SLOT), "base", {"turn": "z"}),
     "moving": (lambda folder: write_cell(folder, MOVING), "obstacle", {}),
+    "slowed": (
+        lambda folder: write_cell(folder, CROSSING),
+        "timing",
+        {"robot": "other", "slow_down": True},
+    ),
     "timing": (lambda folder: write_cell(folder, CROSSING), "timing", {"robot": "other"}),
 }
 

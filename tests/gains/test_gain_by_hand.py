@@ -9,8 +9,10 @@ import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.told import lines_of
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Mimic
+from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
 FINE = 1e-6
@@ -60,6 +62,32 @@ def test_the_least_delay_of_two_that_cross(fail):
     least = 2.0 * 0.5 * (0.1 + fail / np.sqrt(2.0))  # at 2 m/s
     assert found.kept and found.after.passed
     assert found.lower_bound <= least * (1.0 + 1e-9) and least <= found.size <= least + 2e-3
+
+
+@pytest.mark.parametrize("fail", [0.02, 0.1])
+def test_the_least_slow_down_of_two_that_cross(fail):
+    found = gain(crossing(fail), "timing", robot="one", slow_down=True)
+    assert found.kept and found.after.passed and found.unit == "share"
+    slowed = found.case.robots[0].timing.rate
+    assert slowed == 1.0 / (1.0 + found.size)
+    quicker = crossing(fail).robots[0]
+    almost = replace(quicker, timing=replace(quicker.timing, rate=1.0 / (0.998 + found.size)))
+    case = crossing(fail)
+    assert not cl.check(replace(case, robots=(almost, case.robots[1]))).passed
+    assert 0.5 * found.size < found.lower_bound <= found.size
+
+
+def test_a_table_that_begins_late_or_never_moves_is_slowed_as_it_should():
+    case = crossing(0.1)
+    early = replace(case.robots[0], timing=Timing(-0.3, 1.0))
+    asked = replace(early.trajectory, times=early.trajectory.times + 0.3)
+    late = replace(case, robots=(replace(early, trajectory=asked), case.robots[1]))
+    found = gain(late, "timing", robot="one", slow_down=True)
+    assert found.kept and 0.0 < found.lower_bound <= found.size
+    asked = replace(early.trajectory, times=early.trajectory.times - 0.3)
+    with pytest.raises(BadInput, match="begins before its time 0"):
+        both = (replace(early, trajectory=asked), case.robots[1])
+        gain(replace(case, robots=both), "timing", robot="one", slow_down=True)
 
 
 def test_a_margin_is_kept_and_costs_more():
@@ -173,6 +201,37 @@ def test_speeds_and_accelerations_are_kept_on_cubics(n, speed, acceleration):
     assert all(one.room.min() > -1e-9 for one in ranges)
 
 
+def with_own_speed(case, speed):
+    """The same with a speed of y that the robot's own file gives, and no other limits."""
+    placed = case.robots[0]
+    x, y = placed.robot.joints
+    robot = replace(placed.robot, joints=(x, replace(y, velocity=speed)))
+    return replace(case, robots=(replace(placed, robot=robot, motion_limits={}),))
+
+
+@pytest.mark.parametrize("speed, is_kept", [(0.06, True), (0.004, False)])
+def test_speeds_of_the_robots_own_file_are_kept(speed, is_kept):
+    found = gain(with_own_speed(quick(41, 1.0), speed), "waypoints")
+    worst = {one.what: one.room.min() for one in joint_ranges(found.case.robots[0])}
+    assert found.kept == is_kept and worst["speed limit of the robot's own file"] > -1e-9
+    assert is_kept or any("limit of the robot's own file" in line for line in found.binding)
+
+
+def test_what_is_too_fast_for_its_own_file_is_told_and_made_no_faster():
+    case = quick(41, 1.0)
+    at = case.robots[0].asked.positions.copy()
+    at[:, 1] = 0.02 * np.sin(20.0 * case.robots[0].asked.times)
+    path = cl.Trajectory(case.robots[0].asked.times, ("x", "y"), at)
+    case = replace(case, robots=(replace(case.robots[0], trajectory=path),))
+    case = with_own_speed(case, 0.3)
+    found = gain(case, "waypoints")
+    speeds = [
+        np.abs(np.diff(one.robots[0].asked.positions[:, 1])) / 0.05 for one in (case, found.case)
+    ]
+    assert speeds[0].max() > 0.3 and (speeds[1] <= np.maximum(speeds[0], 0.3) + 1e-9).all()
+    assert any(label == "note" and "y by " in line for label, line in lines_of(found))
+
+
 def test_a_joint_that_follows_is_kept_within_its_limits():
     robot = gantry()
     follower = replace(
@@ -189,10 +248,13 @@ def test_a_joint_that_follows_is_kept_within_its_limits():
     assert not found.kept and np.abs(jaw).max() <= 0.02 + 1e-9
 
 
-def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one():
+def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one(monkeypatch):
     post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.75, 0.1, 0.0))
     placed = along_x(gantry(), np.linspace(0.0, 2.0, 5))
-    found = gain(cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03)), "waypoints")
+    case = cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03))
+    assert gain(case, "waypoints").kept
+    monkeypatch.setattr("clearance.gains.search.looked_into", lambda wanted, record: wanted)
+    found = gain(case, "waypoints")
     assert not found.kept and "between two steps" in str(found.blocked)
 
 

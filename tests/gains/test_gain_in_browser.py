@@ -29,3 +29,19 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
             page.open(link, "window.clearance", 1400)
             assert "What this clearance changes by" in page.run("document.body.textContent")
         assert not page.errors and all(url.startswith(("file:", "data:")) for url in page.requests)
+
+
+@pytest.mark.parametrize(
+    "kind, how, told",
+    [
+        ("obstacle", {"obstacle": "left", "turn": "z"}, "turn about z"),
+        ("waypoints", {"keep_tool": [(1.0, 0.021, 0.01)]}, "tool at 1.000 s is moved 20.0"),
+        ("base", {"turn": "z", "within": (0.0, 0.03, 0.0)}, "turn about z"),
+    ],
+)
+def test_what_may_be_done_is_told_on_the_page(tmp_path, kind, how, told):
+    out = save_gain(cl.gain(write_cell(tmp_path, SLOT), kind, **how), tmp_path / "out")
+    with chromium() as page:
+        page.open(f"file://{out}/gain.html", "document.readyState === 'complete'", 420)
+        assert page.run("document.documentElement.scrollWidth") <= 420
+        assert told in page.run("document.body.textContent") and not page.errors

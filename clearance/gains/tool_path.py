@@ -1,0 +1,229 @@
+"""A change of place of a robot's base with the path of its tool kept in the world: its joints make up for the
+base.
+
+At each sample the joints are solved for from where they were; where they cannot follow the change is none. Not
+for: how far the tool is off between samples (`tool_path_error`), limits of joints (`tool_limits`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.gains.between_samples import values_between
+from clearance.gains.offsets import columns_of
+from clearance.gains.programme import Box
+from clearance.gains.shift import Shift
+from clearance.gains.shortfalls import Rows
+from clearance.gains.tool import Tool, tool_of
+from clearance.gains.tool_joints import REACHED, joints_for, least_squares
+from clearance.gains.tool_limits import limit_rows
+from clearance.gains.turn import ARM
+from clearance.geometry.pose import inverse
+from clearance.simulate.approaches import Approach
+from clearance.simulate.handed import Handed
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.forest import WORLD, forest_of
+from clearance.world.pairs import BodyIndex
+from clearance.world.timeline import Timeline
+from clearance.world.trajectory import Trajectory
+
+STILL = 1e-7
+"""[m per m] What joints that follow move bodies by less, and what they miss of a pose by less, is rounding."""
+
+UNREACHED = 10.0
+"""[m] What counts as missing where a pose cannot be reached: more than any clearance makes good."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """The joints with the base at another place.
+
+    Attributes:
+        followed: (n, k, m) what each joint moves by with each variable, at the samples.
+        missed: (n, 6, m) what the tool then moves by all the same. left: what is left of the poses at worst.
+    """
+
+    trajectory: Trajectory
+    followed: np.ndarray
+    missed: np.ndarray
+    left: float
+
+
+@dataclass(frozen=True, eq=False)
+class ToolPathKept:
+    """A shift of a base, and a turn, in which the tool goes the same way through the world.
+
+    Attributes:
+        shift: of the base alone. tool: what is kept.
+    """
+
+    shift: Shift
+    i_robot: int
+    tool: Tool
+    price: float = 30.0
+    kept: None = None
+    _known: dict[bytes, Solved] = field(default_factory=dict)
+
+    @property
+    def box(self) -> Box:
+        return self.shift.box
+
+    @property
+    def first_reach(self) -> np.ndarray:
+        return self.shift.first_reach
+
+    @property
+    def handed(self) -> Handed:
+        """The parts that it hands over elsewhere."""
+        return self.shift.handed
+
+    @property
+    def placed(self) -> PlacedRobot:
+        """The robot as it was."""
+        return self.shift.case.robots[self.i_robot]
+
+    def size(self, x: np.ndarray) -> float:
+        return self.shift.size(x)
+
+    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
+        return self.shift.least(rows, x, box)
+
+    def swing(self, reach: np.ndarray) -> float:
+        return 2.0 * self.shift.swing(reach)
+
+    def case_of(self, x: np.ndarray) -> Case:
+        moved = self.shift.case_of(x)
+        robots = list(moved.robots)
+        solved = self.solved(self.shift.pose_in(moved))
+        robots[self.i_robot] = replace(robots[self.i_robot], trajectory=solved.trajectory)
+        return replace(moved, robots=tuple(robots))
+
+    def solved(self, base: np.ndarray) -> Solved:
+        """What the joints come to with the base at a pose (4, 4) [m]."""
+        key = base.tobytes()
+        if key not in self._known:
+            self._known[key] = self._solution(base)
+        return self._known[key]
+
+    def _solution(self, base: np.ndarray) -> Solved:
+        asked, left, rates_kept = self.placed.asked, 0.0, None
+        if not np.array_equal(base, self.placed.world_from_base):
+            at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
+            rates_kept = asked.velocities
+            asked = replace(asked, positions=at)
+        poses, rates = self.tool.poses_and_rates(asked.positions)
+        rates = _seen_from_world(rates, base)
+        if rates_kept is not None:
+            more = self._twists - np.einsum("nij,nj->ni", rates, rates_kept)
+            more = least_squares(rates, more[:, :, None])[:, :, 0]
+            asked = replace(asked, velocities=rates_kept + more)
+        by_base = self._by_base(base @ poses, base)
+        followed = -least_squares(rates, by_base)
+        return Solved(asked, followed, by_base + rates @ followed, left)
+
+    @cached_property
+    def world_from_tool(self) -> np.ndarray:
+        """(n, 4, 4) [m] what is kept."""
+        placed = self.placed
+        return np.asarray(placed.world_from_base @ self.tool.poses(placed.asked.positions))
+
+    @cached_property
+    def _twists(self) -> np.ndarray:
+        """(n, 6) how fast the tool moves and turns at the samples, in the table's time, world."""
+        placed, asked = self.placed, self.placed.asked
+        assert asked.velocities is not None
+        rates = _seen_from_world(
+            self.tool.poses_and_rates(asked.positions)[1], placed.world_from_base
+        )
+        return np.einsum("nij,nj->ni", rates, asked.velocities)
+
+    def _by_base(self, world_from_tool: np.ndarray, base: np.ndarray) -> np.ndarray:
+        """(n, 6, m) how the tool moves and turns with the base, its joints as they are."""
+        by_unit = np.zeros((len(world_from_tool), 6, self.shift.size_of_x))
+        by_unit[:, :3, :3] = np.eye(3)
+        if self.shift.pivot is not None:
+            by_unit[:, :3, 3] = self.shift.pivot.by_unit(world_from_tool[:, :3, 3], base)
+            by_unit[:, 3:, 3] = self.shift.pivot.turn.direction / ARM
+        return by_unit
+
+    def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
+        if all(self._stays(approach.case, body) for body in approach.pair):
+            return None
+        solved = self.solved(self.shift.pose_in(approach.case))
+        timing, phase = self.placed.timing, approach.section.phase
+        times = phase.motions[0].times[approach.steps - phase.first]
+        own = (times - timing.start) * timing.rate
+        n_samples, *each = solved.followed.shape
+        flat = solved.followed.reshape(n_samples, -1)
+        followed = values_between(self.placed.asked, own, flat, None).reshape(len(own), *each)
+        found = np.einsum("kj,kjm->km", self._by_joint(approach), followed)
+        by_base = self.shift.gradient(approach)
+        if by_base is not None:
+            found += by_base
+        found[np.abs(found) < STILL] = 0.0
+        return found
+
+    def _by_joint(self, approach: Approach) -> np.ndarray:
+        return approach.by_columns()[:, columns_of(self.shift.case, self.i_robot)]
+
+    def _stays(self, case: Case, body: BodyIndex) -> bool:
+        """True if a body does not move with the base, or is fixed to the tool."""
+        if not self.shift.moved(case, body):
+            return True
+        forest = forest_of(case)
+        tool, frame = forest.robot_starts[self.i_robot] + self.tool.link, body.frame_in(case)
+        return frame != WORLD and forest.rigid_part(frame) == forest.rigid_part(tool)
+
+    def is_of_base(self, approach: Approach) -> bool:
+        """True if the base alone moves the bodies of an approach against each other, and no joint of its path."""
+        return self.shift.gradient(approach) is not None and not self._by_joint(approach).any()
+
+    def beside(self, x: np.ndarray, beyond: float) -> Rows | None:
+        solved = self.solved(self.shift.pose_in(self.shift.case_of(x)))
+        changed = replace(self.placed, trajectory=solved.trajectory)
+        parts = [limit_rows(self.placed, changed, solved.followed, beyond), _same_poses(solved)]
+        if solved.left > REACHED:
+            parts.append(Rows(np.array([UNREACHED + solved.left]), np.zeros((1, len(x)))))
+        missing, gradients = zip(*parts, strict=True)
+        return Rows(np.concatenate(missing), np.concatenate(gradients))
+
+
+def _same_poses(solved: Solved) -> Rows:
+    """Rows that leave out the directions in which the joints cannot make up for the base."""
+    flat = solved.missed.reshape(-1, solved.missed.shape[2])
+    _, sizes, directions = np.linalg.svd(flat, full_matrices=False)
+    kept = directions[sizes > STILL * np.sqrt(len(flat))]
+    return Rows(np.full(2 * len(kept), -1e-12), np.concatenate([kept, -kept]))
+
+
+def _seen_from_world(rates: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """(n, 6, k) rates of a tool seen from the root, in the axes of the world."""
+    turned = np.zeros((6, 6))
+    turned[:3, :3] = turned[3:, 3:] = base[:3, :3]
+    return np.asarray(turned @ rates)
+
+
+def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept:
+    """The shift of a base with the path of a tool kept.
+
+    Raises:
+        BadInput: the robot has no path, or joints that cannot make up for any change of its base. UnknownLink: no
+            such tool, with the nearest name.
+    """
+    placed = shift.case.robots[i_robot]
+    if placed.trajectory is None or placed.trajectory.n_steps < 2:
+        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+    found = ToolPathKept(shift, i_robot, tool_of(placed, name))
+    free = found.box.low < found.box.high
+    barred = _same_poses(found.solved(placed.world_from_base)).gradients
+    if np.linalg.matrix_rank(np.vstack([barred, np.eye(len(free))[~free]]), 1e-6) == len(free):
+        raise BadInput(
+            f"the joints of robot {placed.robot.name!r} cannot keep the path of {found.tool.name!r} wherever its "
+            "base is moved",
+            valid="a tool path that is moved, or an arm of six joints or more",
+        )
+    return found

@@ -1,0 +1,67 @@
+"""Rows of parts that change hands: through the grasp, as differences of exact distances say."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.gains.offsets import joint_offsets
+from clearance.gains.search import Search
+from clearance.gains.shift import base_shift
+from clearance.gains.turn import Turn
+from tests.gains.gantries import standing
+from tests.gains.test_bounds_that_do_not_follow import cart, part_over_to
+
+
+def ways(case):
+    """A base, one that is turned too, and offsets of the joint."""
+    yield base_shift(case, "table")
+    yield base_shift(case, "table", turn=Turn("z", (0.3, 0.2, 0.0)))
+    yield joint_offsets(case, 0, 12, ())
+
+
+@pytest.mark.parametrize("until", [0.9, np.inf])
+@pytest.mark.parametrize("i_way", [0, 1, 2])
+def test_rows_go_through_the_grasp(until, i_way):
+    ball = standing("ball", cl.PointCloud([[0.0, 0.0, 0.0]], 0.05), (-1.2, 0.05, 0.02))
+    case = replace(part_over_to(ball, until=until), limits=cl.Limits(fail=0.12))
+    way = list(ways(case))[i_way]
+    rng = np.random.default_rng(4)
+    size = len(way.first_reach)
+    x, step = 0.005 * rng.normal(size=size), 1e-6 * rng.normal(size=size)
+    search = Search(way, 0.3)
+    states = [search.state_at(x + side * step) for side in (-1.0, 0.0, 1.0)]
+    n_compared = 0
+    for one in states[1].near:
+        if not way.handed.has(one):
+            continue
+        foretold = way.gradient(one, states[1].record.timeline) @ step
+        for step_of, grows in zip(one.steps.tolist(), foretold, strict=True):
+            both = [clearance_at(state, one, step_of) for state in (states[0], states[2])]
+            if None in both:
+                continue
+            assert (both[1] - both[0]) / 2.0 == pytest.approx(grows, abs=2e-10)
+            n_compared += 1
+    assert n_compared > 5
+
+
+def clearance_at(state, approach, step):
+    """[m] of the same pair and phase at a step; None where it is not near."""
+    for one in state.near:
+        same = one.pair == approach.pair and one.section.number == approach.section.number
+        if same and step in one.steps:
+            return float(one.clearances[list(one.steps).index(step)])
+    return None
+
+
+def test_a_part_that_is_let_go_too_near_is_let_go_elsewhere():
+    ball = standing("ball", cl.PointCloud([[0.0, 0.0, 0.0]], 0.05), (-1.0, -0.12, 0.0))
+    found = cl.gain(part_over_to(ball, until=0.9), "waypoints")
+    assert not found.before.passed and found.kept and found.after.passed
+    assert 0.019 < found.size < 0.03 and found.change[:, 0].min() < -0.019
+
+
+def test_a_base_takes_the_part_that_it_turns_twice_as_far():
+    found = cl.gain(part_over_to(cart(-1.12), until=0.9), "base")
+    assert found.kept and found.size == pytest.approx(0.01, abs=1e-6) and found.n_measured < 12
