@@ -24,6 +24,9 @@ from clearance.world.rules import Rule
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 
+TOUCHING = CERTIFY_GAP
+"""[m] What is wanted beyond, at least, where bodies touch between two steps."""
+
 Gradient = Callable[[Approach], np.ndarray | None]
 """(k, m) [m] what the clearances of an approach grow by for each unit of the m variables; None for nothing."""
 
@@ -77,6 +80,11 @@ class State:
         ]
 
     @property
+    def touches(self) -> bool:
+        """True if bodies are in contact at a step."""
+        return self.record.nearest.touches
+
+    @property
     def margin(self) -> float:
         """[m] Above the fail limit of each rule."""
         return self.wanted.margin
@@ -125,17 +133,24 @@ def keeps(record: Record) -> bool:
 
 
 def with_extra(extra: np.ndarray, record: Record) -> np.ndarray:
-    """(n,) [m] what is wanted beyond the margin at each step, raised where the motion from it is not proven."""
+    """(n,) [m] what is wanted beyond the margin at each step, raised where the motion from it is not proven.
+
+    Where bodies touch between two steps the certificate does not say how deep: three times as much is wanted.
+    """
     more = np.zeros(len(record.motions[0].times))
+    before = extra if len(extra) == len(more) else np.zeros(len(more))
     for rule in record.rules:
         if rule.certificate is None:
             continue
         codes = motion_codes(rule.certificate, rule.limits, slice(None))
         below = np.flatnonzero(codes >= VIOLATED)
-        short = rule.limits.fail - rule.certificate.lower_bound[below] + CERTIFY_GAP * 1e-3
-        for ends in (below, np.minimum(below + 1, len(more) - 1)):
-            np.maximum.at(more, ends, short)
-    return extra + more if len(extra) == len(more) else more
+        bound = rule.certificate.lower_bound[below]
+        short = rule.limits.fail - bound + CERTIFY_GAP * 1e-3
+        ends = (below, np.minimum(below + 1, len(more) - 1))
+        again = np.maximum(2.0 * np.maximum(*(before[end] for end in ends)), TOUCHING)
+        for end in ends:
+            np.maximum.at(more, end, np.where(bound > 0.0, short, np.maximum(short, again)))
+    return before + more
 
 
 def _raised(limits: Limits, margin: float) -> Limits:

@@ -69,8 +69,6 @@ def main() -> None:
         cases = cases_in(asked.made or Path(scratch) / "made", asked.cases, asked.seed)
         rows = _rows(cases, Path(scratch) / "out", asked)
     _print(rows)
-    if asked.csv:
-        write_csv(rows, COLUMNS, asked.csv)
 
 
 def _rows(cases: list[Filed], scratch: Path, asked: argparse.Namespace) -> list[dict[str, Any]]:
@@ -90,6 +88,8 @@ def _rows(cases: list[Filed], scratch: Path, asked: argparse.Namespace) -> list[
             left["drake"] -= 1
         rows.append(row)
         _print_row(i, row)
+        if asked.csv:
+            write_csv(rows, COLUMNS, asked.csv)
     return rows
 
 
