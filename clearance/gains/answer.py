@@ -5,7 +5,7 @@ Not for: how it is written down (`written`), told (`told`) or shown (`page`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -51,7 +51,7 @@ NO_WORSE = 1.05
 INSIDE = 0.8
 """[-] Smaller shifts than the first are sought from so far on the other sides."""
 
-FARTHER = 0.05
+FARTHER = (0.05, 0.1)
 """[m] From how far, where the first search found none."""
 
 MOST_DELAY = 60.0
@@ -197,19 +197,25 @@ def _by_shift(case: Case, asked: Asked) -> Gain:
 
 
 def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> Found:
-    """The least of a search from where it is, and, where that may be beaten, from six sides."""
+    """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
-    far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
-    for side in (*np.eye(3), *-np.eye(3)):
-        start = search.state_at(far * side)
-        if start.record.nearest.touches:
+    for start in _starts(shift.size(best.state.x) if best.kept else None):
+        state = search.state_at(start)
+        if best.kept and state.touches:
             continue
-        found = search.from_state(start, shift.size(best.state.x) if best.kept else np.inf)
+        found = search.from_state(state, shift.size(best.state.x) if best.kept else np.inf)
         if found.kept:
             best = found
     return best
+
+
+def _starts(size: float | None) -> Iterator[np.ndarray]:
+    """(3,) [m] shifts to search from, after one of a size; None for none that was found: from farther away, too."""
+    axes = (*np.eye(3), *-np.eye(3))
+    for far in FARTHER if size is None else (INSIDE * size,):
+        yield from (far * side for side in axes)
 
 
 def _by_path(case: Case, asked: Asked) -> Gain:

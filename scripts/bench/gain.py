@@ -18,7 +18,7 @@ from typing import Any
 import inputs  # first: it sets the number of threads before numpy is loaded
 import numpy as np
 from gain_cases import KINDS, intervals_of
-from gain_drake import drake_path, has_drake
+from gain_drake import DrakePath, drake_path, has_drake, takes
 from gain_files import Filed, cases_in, kept_afresh, kept_by_command, write_proposal
 from gain_general import general_change
 from rich.console import Console
@@ -30,7 +30,7 @@ from clearance.gains.answer import Gain, gain
 
 COLUMNS = (
     "source", "how", "kind", "who", "kept", "size", "known", "lower_bound", "seconds", "measured", "checked", "by",
-    "general", "general_seconds", "drake", "drake_seconds", "blocked",
+    "general", "general_seconds", "drake", "drake_seconds", "drake_samples", "drake_convex", "blocked",
 )  # fmt: skip
 
 
@@ -79,18 +79,26 @@ def _rows(cases: list[Filed], scratch: Path, asked: argparse.Namespace) -> list[
     for i, one in enumerate(cases):
         by_command = asked.commands > 0 and i % every == 0
         row, found = row_of(one, scratch / str(i), by_command=by_command)
+        case, left_of_drake = cl.load_case(one.file), left["drake"] and one.kind == "waypoints"
+        n_intervals = intervals_of(case, found)
         if left[one.kind] and found.kept:
-            n_intervals = intervals_of(cl.load_case(one.file), found)
             row["general"], row["general_seconds"] = general_change(one, n_intervals, asked.seconds)
             left[one.kind] -= 1
-        if left["drake"] and one.kind == "waypoints" and has_drake():
-            row["drake"], row["drake_seconds"] = drake_path(one)
+        if left_of_drake and has_drake() and takes(case):
+            row |= _by_drake(drake_path(one, n_intervals, asked.seconds))
             left["drake"] -= 1
         rows.append(row)
         _print_row(i, row)
         if asked.csv:
             write_csv(rows, COLUMNS, asked.csv)
     return rows
+
+
+def _by_drake(path: DrakePath) -> dict[str, Any]:
+    return {
+        "drake": path.size if path.proven else None, "drake_seconds": path.seconds,
+        "drake_samples": path.sampled, "drake_convex": path.convex,
+    }  # fmt: skip
 
 
 def _first_robot(one: Filed) -> str:

@@ -1,8 +1,8 @@
 """The same paths by Drake: KinematicTrajectoryOptimization, a MinimumDistanceLowerBoundConstraint at each sample.
 
 The control points of Drake's path, of order 2, are the table's samples, so that it is the table itself. They are
-tied to the offsets of our splines, of which the greatest is made least. SNOPT starts from the path as it is. Bodies
-are convex hulls, as Drake takes meshes; pairs are those that we measure. Our exact measure judges what comes out.
+tied to the offsets of our splines, of which the greatest is made least. SNOPT starts from the path as it is.
+Meshes are convex hulls, as Drake takes them; pairs are those that we measure. Our measure judges what comes out.
 Not for: cases with several actors that move.
 """
 
@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from gain_cases import change_of
 from gain_files import Filed
+from inputs import round_shape
 
 import clearance as cl
 from clearance.gains.offsets import JointOffsets
@@ -32,6 +33,9 @@ INFLUENCE = 0.02
 BEYOND = 2e-5
 """[m] Drake is asked for more than the limit: its solver keeps constraints to its own tolerance only."""
 
+PER_INTERVAL = 2
+"""Looks at the lines between samples; on cubics Drake's path is the samples alone."""
+
 TOLERANCE = 1e-6
 """Of SNOPT, for constraints and optimality."""
 
@@ -44,14 +48,16 @@ class DrakePath:
     """What Drake came to.
 
     Attributes:
-        size: as ours; None where our certificate does not prove its path to keep the limit. seconds: of CPU.
-        worst: [m] the least clearance of its path at the samples.
+        size: as ours. seconds: of CPU.
+        sampled: the samples keep the limit, by our exact measure, and the joints theirs.
+        proven: our certificate proves the motion between them as well.
         convex: every body is convex, hence as Drake takes it.
     """
 
-    size: float | None
+    size: float
     seconds: float
-    worst: float
+    sampled: bool
+    proven: bool
     convex: bool
 
 
@@ -86,15 +92,16 @@ def drake_path(one: Filed, n_intervals: int, seconds: float) -> DrakePath:
     found = np.asarray(solver.Solve(program, None, options).GetSolution(x))
     used = time.process_time() - began
     del held
-    kept, worst = _judged(offsets, found)
-    return DrakePath(offsets.size(found) if kept else None, used, worst, _is_convex(case))
+    sampled = _keeps(offsets, found, certify=False)
+    return DrakePath(
+        offsets.size(found), used, sampled, sampled and _keeps(offsets, found), _is_convex(case)
+    )
 
 
-def _judged(offsets: JointOffsets, x: np.ndarray) -> tuple[bool, float]:
-    """Whether our certificate proves the path, within the limits of joints; its least clearance at the samples."""
-    run = cl.check(offsets.case_of(x), contact="none")
-    within = bool((offsets.kept.a @ x - offsets.kept.b <= 1e-6).all())
-    return run.passed and within, float(run.record.worst.clearance)
+def _keeps(offsets: JointOffsets, x: np.ndarray, *, certify: bool = True) -> bool:
+    """Whether a path keeps the limit, by our measure, and the limits of joints."""
+    run = cl.check(offsets.case_of(x), contact="none", certify=certify)
+    return run.passed and bool((offsets.kept.a @ x - offsets.kept.b <= 1e-6).all())
 
 
 def _program(case: Case, offsets: JointOffsets, known: float) -> tuple[Any, np.ndarray, Any]:
@@ -118,8 +125,9 @@ def _program(case: Case, offsets: JointOffsets, known: float) -> tuple[Any, np.n
         plant=cell.plant, bound=case.limits.fail + BEYOND, plant_context=cell.context,
         influence_distance_offset=INFLUENCE,
     )  # fmt: skip
-    for i in range(n):
-        trajopt.AddPathPositionConstraint(apart, i / (n - 1))
+    n_looks = (n - 1) * (PER_INTERVAL if asked.velocities is None else 1)
+    for i in range(n_looks + 1):
+        trajopt.AddPathPositionConstraint(apart, i / n_looks)
     return program, x, (cell, trajopt)
 
 
@@ -200,24 +208,36 @@ class _Cell:
         self.plant.AddJoint(made(joint.name, frame, child.body_frame(), joint.axis))
 
     def _shaped(self) -> dict[BodyIndex, Any]:
-        """Convex hulls of all bodies, by ours."""
+        """All bodies, by ours."""
         found = {}
         robot, found = self.placed.robot, {}
         for i, body in enumerate(robot.bodies):
             carrier = self.plant.GetBodyByName(body.name)
-            found[BodyIndex(0, i)] = self._hull(body, carrier, np.eye(4), f"link {i}")
+            found[BodyIndex(0, i)] = self._added(body, carrier, np.eye(4), f"link {i}")
         for i, one in enumerate(self.case.obstacles):
             carrier, pose = self.plant.world_body(), one.world_from_body
-            found[BodyIndex(OBSTACLE, i)] = self._hull(one.body, carrier, pose, f"obstacle {i}")
+            found[BodyIndex(OBSTACLE, i)] = self._added(one.body, carrier, pose, f"obstacle {i}")
         return found
 
-    def _hull(self, body: Body, carrier: Any, pose: np.ndarray, name: str) -> Any:
-        from pydrake.geometry import Convex
+    def _added(self, body: Body, carrier: Any, pose: np.ndarray, name: str) -> Any:
+        """A body as Drake's own box, sphere or cylinder where it is one, else as the hull of its vertices."""
+        from pydrake.geometry import Box, Convex, Cylinder, Sphere
         from pydrake.multibody.plant import CoulombFriction
 
-        hull = Convex(body.shape.vertices.T, label=name)
+        at, low, high = pose.copy(), *body.shape.bounds
+        round_one = round_shape(body)
+        corners = ((body.shape.vertices == low) | (body.shape.vertices == high)).all()
+        if body.origin == "box" and corners:
+            shape = Box(*(high - low))
+            at[:3, 3] += pose[:3, :3] @ (0.5 * (low + high))
+        elif round_one is not None:
+            radius, length = round_one.radius, round_one.length
+            shape = Sphere(radius) if body.origin == "sphere" else Cylinder(radius, length)
+            at[:3, 3] += pose[:3, :3] @ round_one.centre
+        else:
+            shape = Convex(body.shape.vertices.T, label=name)
         return self.plant.RegisterCollisionGeometry(
-            carrier, _rigid(pose), hull, name, CoulombFriction()
+            carrier, _rigid(at), shape, name, CoulombFriction()
         )
 
     def _leave_out(self, ids: dict[BodyIndex, Any]) -> None:
