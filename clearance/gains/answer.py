@@ -212,7 +212,7 @@ def _least_of_several(search: Search, shift: Shift, first: State, at_least: floa
 
 
 def _starts(size: float | None) -> Iterator[np.ndarray]:
-    """(3,) [m] shifts to search from, after one of a size; None for none that was found: from farther away, too."""
+    """(3,) [m] shifts to search from, after one of a size was found, or, with None, after none was."""
     axes = (*np.eye(3), *-np.eye(3))
     for far in FARTHER if size is None else (INSIDE * size,):
         yield from (far * side for side in axes)

@@ -56,6 +56,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cases", type=int, default=60)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--sources", nargs="*", default=(), help="names of folders; all of them")
     parser.add_argument("--made", type=Path, help="where the cases are, or are put")
     parser.add_argument("--commands", type=int, default=30)
     parser.add_argument("--general", type=int, default=0, help="so many cases of each kind")
@@ -66,7 +67,9 @@ def main() -> None:
     for line in inputs.absent_inputs():
         Console().print(line)
     with tempfile.TemporaryDirectory() as scratch:
-        cases = cases_in(asked.made or Path(scratch) / "made", asked.cases, asked.seed)
+        cases = cases_in(
+            asked.made or Path(scratch) / "made", asked.cases, asked.seed, asked.sources
+        )
         rows = _rows(cases, Path(scratch) / "out", asked)
     _print(rows)
 

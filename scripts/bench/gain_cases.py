@@ -7,7 +7,7 @@ between its least clearance and that of a change of it. Not for: files (`gain_fi
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -91,11 +91,11 @@ class Made:
     known: float
 
 
-def sources() -> Iterator[Source]:
-    """Our scenes and the real cases, with limits that are a little below what is proven of them."""
+def sources(names: Sequence[str] = ()) -> Iterator[Source]:
+    """Our scenes and the real cases of some names, or all; limits are a little below what is proven of them."""
     folders = [SCENES / name for name in OURS] + sorted(SHARED.glob("*/"))
     for folder in folders:
-        if not (folder / "case.yaml").exists():
+        if not (folder / "case.yaml").exists() or (names and folder.name not in names):
             continue
         case = replace(cl.load_case(folder / "case.yaml"), limits=Limits())
         least = _proven(case)
@@ -104,9 +104,9 @@ def sources() -> Iterator[Source]:
             yield Source(folder.name, folder / "case.yaml", limited)
 
 
-def made(n_cases: int, seed: int = 0) -> Iterator[Made]:
-    """So many cases, of each source, kind and way as many as can be."""
-    rng, kept = np.random.default_rng(seed), [*sources()]
+def made(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[Made]:
+    """So many cases, of each source of some names, or of all, each kind and way as many as can be."""
+    rng, kept = np.random.default_rng(seed), [*sources(names)]
     n_made = 0
     for i in range(20 * n_cases):
         source, kind = kept[i % len(kept)], KINDS[(i // len(kept)) % len(KINDS)]

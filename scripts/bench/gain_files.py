@@ -9,6 +9,7 @@ import csv
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -45,10 +46,10 @@ class Filed:
         return {"obstacle" if self.kind == "obstacle" else "robot": self.who}
 
 
-def cases_in(folder: Path, n_cases: int, seed: int) -> list[Filed]:
+def cases_in(folder: Path, n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> list[Filed]:
     """The cases of a folder, which are made and written first where it has none."""
     if not (folder / INDEX).exists():
-        rows = [vars(_filed(one, folder, i)) for i, one in enumerate(made(n_cases, seed))]
+        rows = [vars(_filed(one, folder, i)) for i, one in enumerate(made(n_cases, seed, names))]
         write_csv(rows, COLUMNS, folder / INDEX, digits=17)
     with (folder / INDEX).open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines))
