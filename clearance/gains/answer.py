@@ -5,7 +5,7 @@ Not for: how it is written down (`written`), told (`told`) or shown (`page`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
@@ -51,7 +51,7 @@ NO_WORSE = 1.05
 INSIDE = 0.8
 """[-] Smaller shifts than the first are sought from so far on the other sides."""
 
-FARTHER = 0.05
+FARTHER = (0.05, 0.1)
 """[m] From how far, where the first search found none."""
 
 
@@ -186,18 +186,25 @@ def _least_of_several(
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
         return best
-    far = INSIDE * shift.size(best.state.x) if best.kept else FARTHER
-    for side in (*np.eye(len(first.x)), *-np.eye(len(first.x))):
-        x = np.clip(far * side, *shift.box)
-        if not x.any():
+    size = shift.size(best.state.x) if best.kept else None
+    for start in _starts(size, shift):
+        state = search.state_at(start)
+        if best.kept and state.touches:
             continue
-        start = search.state_at(x)
-        if start.record.nearest.touches:
-            continue
-        found = search.from_state(start, shift.size(best.state.x) if best.kept else np.inf)
+        found = search.from_state(state, shift.size(best.state.x) if best.kept else np.inf)
         if found.kept:
             best = found
     return best
+
+
+def _starts(size: float | None, shift: Shift | ToolPathKept) -> Iterator[np.ndarray]:
+    """(m,) variables to search from, after a change of a size [m] was found, or, with None, after none was."""
+    axes = np.eye(len(shift.box.low))
+    for far in FARTHER if size is None else (INSIDE * size,):
+        for side in (*axes, *-axes):
+            start = np.clip(far * side, *shift.box)
+            if start.any():
+                yield start
 
 
 def _by_path(case: Case, asked: Asked) -> Gain:

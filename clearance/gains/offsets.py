@@ -115,7 +115,7 @@ class JointOffsets:
         return np.concatenate([rows, samples[-1:]])
 
     @cached_property
-    def _few_samples(self) -> np.ndarray:
+    def few_samples(self) -> np.ndarray:
         """The same at some of the rows, as many as the splines can tell apart."""
         n_rows, wanted = len(self._sized), PER_INTERVAL * self.basis.n_intervals + 1
         few = np.unique(np.linspace(0, n_rows - 1, min(n_rows, wanted)).astype(int))
@@ -213,7 +213,7 @@ class JointOffsets:
 
         size = len(x)
         wanted = rows.missing + rows.gradients @ x
-        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self._few_samples))
+        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self.few_samples))
         ones = csr_array(np.ones((offsets.shape[0], 1)))
         unit = eye_array(size)
         kept, most = self.kept

@@ -33,7 +33,10 @@ MOST_STEPS = 40
 PATIENCE, LESS = 6, 0.9
 """A search ends where so many steps have left more than this share of what was missing."""
 
-MOST_PROOFS = 6
+BLIND = 8
+"""Steps from contact to contact that are taken whatever comes of them: depths jump where the way out does."""
+
+MOST_PROOFS = 8
 """Times that the motion between the steps may ask for more."""
 
 FINE = 2e-7
@@ -156,7 +159,7 @@ class Search:
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""
-        reach, missing = self.change.first_reach, [state.worst]
+        reach, missing, blind = self.change.first_reach, [state.worst], BLIND
         rows = state.rows(self.change.gradient)
         for _ in range(MOST_STEPS):
             if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
@@ -168,7 +171,8 @@ class Search:
                 return state
             tried = self._state(x, reach)
             done = self._merit(state.x, state.worst) - self._merit(x, tried.worst)
-            if done < LEAST_SHARE * gain:
+            blind -= tried.touches and state.touches
+            if done < LEAST_SHARE * gain and (blind < 0 or not tried.touches):
                 reach = NARROWER * np.minimum(reach, np.abs(x - state.x).max())
                 if (reach < 1e-6 * self.change.first_reach).all():
                     return state

@@ -5,7 +5,7 @@ Not for: what may be changed (`shift`, `offsets`), nor by how much it then is (`
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -26,11 +26,13 @@ from clearance.world.timeline import Timeline
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 
+TOUCHING = CERTIFY_GAP
+"""[m] What is wanted beyond, at least, where bodies touch between two steps."""
+
 Gradient = Callable[[Approach, Timeline | None], np.ndarray | None]
 """(k, m) [m] what the clearances of an approach grow by for each unit of the m variables; None for nothing.
 
 With the run's timeline that of parts that change hands as well."""
-
 
 SAME = 1e-9
 """[s] Times that are less apart are of one step."""
@@ -107,6 +109,11 @@ class State:
         ]
 
     @property
+    def touches(self) -> bool:
+        """True if bodies are in contact at a step."""
+        return self.record.nearest.touches
+
+    @property
     def margin(self) -> float:
         """[m] Above the fail limit of each rule."""
         return self.wanted.margin
@@ -164,10 +171,16 @@ def keeps(record: Record) -> bool:
 
 
 def raised(wanted: Wanted, record: Record) -> Wanted:
-    """What is wanted, with more at both ends of each motion that is not proven, and at the moments in it."""
+    """What is wanted, with more at both ends of each motion that is not proven, and at the moments in it.
+
+    Where bodies touch between two steps the certificate does not say how deep: three times as much is wanted.
+    """
     times = record.motions[0].times
+    before = wanted.extra_at(times)
     short = _short(record)
-    extra = np.maximum(short, np.append(0.0, short[:-1])) + wanted.extra_at(times)
+    again = np.maximum(2.0 * np.maximum(before, np.append(before[1:], 0.0)), TOUCHING)
+    short = np.where(_touching(record), np.maximum(short, again), short)
+    extra = before + np.maximum(short, np.append(0.0, short[:-1]))
     more = wanted.more + short[_intervals(times, wanted.moments)]
     return replace(wanted, extra=extra, times=times, more=more)
 
@@ -191,17 +204,30 @@ def _intervals(times: np.ndarray, moments: np.ndarray) -> np.ndarray:
     return np.asarray(np.searchsorted(times, moments, side="right") - 1)
 
 
-def _short(record: Record) -> np.ndarray:
-    """(n,) [m] how far the motion after each step is from being proven; 0 where it is."""
-    short = np.zeros(len(record.motions[0].times))
+def _unproven(record: Record) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+    """Of each rule the steps after which the motion is not proven, what of it is [m], and the fail limit [m]."""
     for rule in record.rules:
         if rule.certificate is None:
             continue
         codes = motion_codes(rule.certificate, rule.limits, slice(None))
-        below = np.flatnonzero(codes >= VIOLATED)
-        missing = rule.limits.fail - rule.certificate.lower_bound[below] + CERTIFY_GAP * 1e-3
-        np.maximum.at(short, below, missing)
+        steps = np.flatnonzero(codes >= VIOLATED)
+        yield steps, rule.certificate.lower_bound[steps], rule.limits.fail
+
+
+def _short(record: Record) -> np.ndarray:
+    """(n,) [m] how far the motion after each step is from being proven; 0 where it is."""
+    short = np.zeros(len(record.motions[0].times))
+    for steps, bound, fail in _unproven(record):
+        np.maximum.at(short, steps, fail - bound + CERTIFY_GAP * 1e-3)
     return short
+
+
+def _touching(record: Record) -> np.ndarray:
+    """(n,) True where in the motion after a step contact is not ruled out."""
+    touching = np.zeros(len(record.motions[0].times), dtype=bool)
+    for steps, bound, _ in _unproven(record):
+        touching[steps[bound <= 0.0]] = True
+    return touching
 
 
 def _raised(limits: Limits, margin: float) -> Limits:

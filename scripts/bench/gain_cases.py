@@ -1,48 +1,78 @@
-"""Violated cases that are known to be feasible: a case that keeps its limits, changed by what can be taken back.
+"""Violated cases that are known to be feasible: each has a change that is proven to keep its limits.
 
-A path is bent by smooth offsets, a base or an obstacle is pushed towards what is nearest, until less than the fail
-limit is left, by 1 to 50 mm. Taken back, the limits are kept again. Not for: solving them (`gain`).
+Bent, pushed: a case that keeps its limits, its path bent by smooth offsets, or a base or an obstacle pushed 1 to
+50 mm too far towards what is near; the change that takes it back is known. Raised: the fail limit of a case is set
+between its least clearance and that of a change of it. Not for: files (`gain_files`), solving them (`gain`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from inputs import ROOT
+from inputs import SCENES, SHARED
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.gains.answer import INTERVALS, Gain
 from clearance.gains.joint_ranges import require_within_limits
-from clearance.gains.offsets import joint_offsets
+from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
-from clearance.world.case import Case, Limits
+from clearance.simulate.record import PairMinimum
+from clearance.world.case import Case, Limits, index_of_robot
 
 OURS = (
     "iiwa_pipe_rack",
     "hot_cell",
     "box_box",
+    "box_pipe",
     "dual_arm_handover",
     "turntable_cell",
     "door_and_arm",
 )
-SHARED = (
-    "fetch_cage_planned",
-    "kuka_iiwa_valve_wall",
-    "lbr_puzzle_grinder",
-    "panda_bookshelf_thin_planned",
-)
+
+KINDS = ("waypoints", "obstacle", "base")
+
+HOW = ("taken back", "taken back", "raised")
+"""How often a case is bent or pushed, and how often its limit is raised."""
 
 LEFT = 0.6
-"""[-] Of the least clearance of a case, what its fail limit is set to: the case as it is keeps it."""
+"""[-] Of what is proven of a case, what its fail limit is set to: the case as it is keeps it."""
 
-DEEPEST = 0.05
-"""[m] How far below the fail limit the worst is pushed at most."""
+LEAST = 1e-5
+"""[m] A case of which less is proven is none."""
+
+SHORT = (0.001, 0.05)
+"""[m] How far the worst is pushed below the fail limit."""
+
+NEAR = 0.3
+"""[m] What is pushed towards is no farther, and nothing is pushed farther."""
 
 BENDS = 8
 """Intervals of the splines that a path is bent by; not those that it is mended with."""
+
+MOST_BEND, ARM = 0.5, 0.5
+"""[rad] how far a path is bent at most; [m] about what a radian of it moves."""
+
+TRIED = 6
+"""Changes of which the one that clears most is taken, where a limit is raised."""
+
+OPENED = (0.2, 0.8)
+"""[-] Of the way from the least clearance to that of the change, where a raised limit lies."""
+
+
+Change = JointOffsets | Shift
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A case that keeps its fail limit, with the file that it is from."""
+
+    name: str
+    file: Path
+    case: Case
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,119 +80,199 @@ class Made:
     """A violated case.
 
     Attributes:
-        kind, who: what may be changed to mend it. known: the size of the change that takes it back.
+        how: one of `HOW`. kind, who: what may be changed to mend it. known: the size of a change that does.
     """
 
-    name: str
+    source: Source
+    how: str
     case: Case
     kind: str
     who: str
     known: float
 
 
-def sources() -> Iterator[tuple[str, Case]]:
-    """Cases that keep limits which are set a little below what they come to."""
-    folders = [(name, ROOT / "scenes" / name) for name in OURS]
-    folders += [(name, ROOT.parent / "shared" / "cases" / name) for name in SHARED]
-    for name, folder in folders:
-        if not (Path(folder) / "case.yaml").exists():
+def sources(names: Sequence[str] = ()) -> Iterator[Source]:
+    """Our scenes and the real cases of some names, or all; limits are a little below what is proven of them."""
+    folders = [SCENES / name for name in OURS] + sorted(SHARED.glob("*/"))
+    for folder in folders:
+        if not (folder / "case.yaml").exists() or (names and folder.name not in names):
             continue
-        case = cl.load_case(folder / "case.yaml")
-        case = replace(case, limits=Limits())
-        least = cl.check(case).certificate.lower_bound.min()
-        if least > 1e-3:
-            yield name, replace(case, limits=Limits(fail=LEFT * float(least)))
+        case = replace(cl.load_case(folder / "case.yaml"), limits=Limits())
+        least = _proven(case)
+        if least > LEAST:
+            limited = replace(case, limits=Limits(fail=LEFT * least))
+            yield Source(folder.name, folder / "case.yaml", limited)
 
 
-def made(n_cases: int, seed: int = 0) -> list[Made]:
-    """So many cases, of each source and kind as many as can be."""
-    rng = np.random.default_rng(seed)
-    found: list[Made] = []
-    kept = [*sources()]
-    for i in range(10 * n_cases):
-        name, case = kept[i % len(kept)]
-        kind = ("waypoints", "obstacle", "base")[(i // len(kept)) % 3]
-        one = _bent(name, case, rng) if kind == "waypoints" else _pushed(name, case, kind, rng)
+def made(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[Made]:
+    """So many cases, of each source of some names, or of all, each kind and way as many as can be."""
+    rng, kept = np.random.default_rng(seed), [*sources(names)]
+    n_made = 0
+    for i in range(20 * n_cases):
+        source, kind = kept[i % len(kept)], KINDS[(i // len(kept)) % len(KINDS)]
+        how = HOW[(i // len(kept) // len(KINDS)) % len(HOW)]
+        one = (_raised if how == "raised" else _taken_back)(source, kind, rng)
         if one is not None:
-            found.append(one)
-        if len(found) == n_cases:
-            break
-    return found
+            yield one
+            n_made += 1
+        if n_made == n_cases:
+            return
 
 
-def _below(case: Case) -> float:
-    """[m] How far the least clearance of the steps is below the fail limit."""
+def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Change:
+    """What may be changed of a case; of a path with splines on so many intervals, its ends as they are."""
+    if kind != "waypoints":
+        return (obstacle_shift if kind == "obstacle" else base_shift)(case, who)
+    i_robot = index_of_robot(case.robots, who)
+    times = case.robots[i_robot].asked.times
+    return joint_offsets(case, i_robot, n_intervals, ((times[0], times[0]), (times[-1], times[-1])))
+
+
+def intervals_of(case: Case, found: Gain) -> int:
+    """On how many intervals the splines are that a path was mended with; else the fewest."""
+    for n_intervals in INTERVALS if found.kept and found.asked.kind == "waypoints" else ():
+        change = change_of(case, "waypoints", found.who, n_intervals)
+        assert isinstance(change, JointOffsets)
+        splines = change.basis.at(change.placed.asked.times)
+        x = np.linalg.lstsq(splines, found.change, rcond=None)[0]
+        if np.abs(splines @ x - found.change).max() < 1e-9:
+            return n_intervals
+    return INTERVALS[0]
+
+
+def _proven(case: Case) -> float:
+    """[m] What no clearance of a case is below at any time."""
+    return float(cl.check(case, contact="none").certificate.lower_bound.min())
+
+
+def _above(case: Case) -> float:
+    """[m] The least clearance of the steps."""
     run = cl.check(case, certify=False, contact="none", need="minimum")
-    return case.limits.fail - run.record.worst.clearance
+    return float(run.record.worst.clearance)
 
 
-def _bent(name: str, case: Case, rng: np.random.Generator) -> Made | None:
+def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Made | None:
+    """A case that is changed until it is violated."""
+    case = source.case
+    if kind == "waypoints":
+        offsets = _offsets(case, rng)
+        if offsets is None:
+            return None
+        x = _until_short(offsets, _bend_of_one(offsets, rng), MOST_BEND, ARM, rng)
+        if x is None or not _within_limits(offsets, x):
+            return None
+        who = offsets.placed.robot.name
+        return Made(source, HOW[0], offsets.case_of(x), kind, who, offsets.size(x))
+    found = _near_pair(case, kind, rng)
+    if found is None:
+        return None
+    shift, who, near = found
+    way = np.subtract(near.point_link, near.point_obstacle)
+    way = way / np.linalg.norm(way) + 0.3 * rng.normal(size=3)
+    for sign in (1.0, -1.0):
+        x = _until_short(shift, sign * way / np.linalg.norm(way), NEAR, 1.0, rng)
+        if x is not None:
+            return Made(source, HOW[0], shift.case_of(x), kind, who, shift.size(x))
+    return None
+
+
+def _raised(source: Source, kind: str, rng: np.random.Generator) -> Made | None:
+    """A case whose limit is between what it comes to and what a change of it is proven to come to."""
+    case = source.case
+    if kind == "waypoints":
+        change: Change | None = _offsets(case, rng)
+        who = "" if change is None else change.placed.robot.name
+        ways = [] if change is None else [_random_bend(change, rng) for _ in range(TRIED)]
+        ways = [way for way in ways if _within_limits(change, way)]
+    else:
+        found = _near_pair(case, kind, rng)
+        if found is None:
+            return None
+        change, who, _ = found
+        ways = [_random_shift(rng) for _ in range(TRIED)]
+    if not ways:
+        return None
+    best = max(ways, key=lambda x: _above(change.case_of(x)))
+    low, high = _above(case), _proven(change.case_of(best))
+    if high < low + 1e-4:
+        return None
+    fail = low + float(rng.uniform(*OPENED)) * (high - low)
+    violated = replace(case, limits=Limits(fail=fail))
+    return Made(source, HOW[-1], violated, kind, who, change.size(best))
+
+
+def _near_pair(
+    case: Case, kind: str, rng: np.random.Generator
+) -> tuple[Shift, str, PairMinimum] | None:
+    """What can be shifted, and the pair of it that it is pushed into."""
+    minima = cl.check(case, certify=False, contact="none").record.pair_minima
+    near = [one for one in minima if 0.0 < one.clearance < NEAR]
+    if kind == "base":
+        who = str(rng.choice([one.robot.name for one in case.robots if one.mount is None]))
+        return (base_shift(case, who), who, near[int(rng.integers(len(near)))]) if near else None
+    carried = {carry.part for carry in case.carries}
+    free = {one.name for one in case.obstacles if one.mount is None and one.name not in carried}
+    links = {name for name in (one.link for one in near) if name not in free}
+    near = [one for one in near if one.obstacle in free and one.link in links]
+    if not near:
+        return None
+    pair = near[int(rng.integers(len(near)))]
+    return obstacle_shift(case, pair.obstacle), pair.obstacle, pair
+
+
+def _offsets(case: Case, rng: np.random.Generator) -> JointOffsets | None:
     moving = [
-        i for i, one in enumerate(case.robots) if one.trajectory and one.trajectory.n_steps > 2
+        one.robot.name for one in case.robots if one.trajectory and one.trajectory.n_steps > 2
     ]
     if not moving:
         return None
-    i_robot = int(rng.choice(moving))
-    times = case.robots[i_robot].asked.times
-    ends = ((times[0], times[0]), (times[-1], times[-1]))
-    offsets = joint_offsets(case, i_robot, BENDS, ends)
-    way = rng.normal(size=offsets.n_joints * offsets.n_splines) / np.repeat(
-        offsets.weights, offsets.n_splines
-    )
-    found = _scaled(offsets.case_of, way / offsets.size(way), 0.5, rng)
-    if found is None:
-        return None
-    try:
-        require_within_limits(offsets.case_of(found).robots[i_robot])
-    except BadInput:
-        return None
-    who = case.robots[i_robot].robot.name
-    return Made(name, offsets.case_of(found), "waypoints", who, offsets.size(found))
+    found = change_of(case, "waypoints", str(rng.choice(moving)), BENDS)
+    assert isinstance(found, JointOffsets)
+    return found
 
 
-def _pushed(name: str, case: Case, kind: str, rng: np.random.Generator) -> Made | None:
-    record = cl.check(case, certify=False, contact="none").record
-    shift, who = _shift_of(case, kind, record, rng)
-    if shift is None:
-        return None
+def _random_shift(rng: np.random.Generator) -> np.ndarray:
     way = rng.normal(size=3)
-    found = _scaled(shift.case_of, way / np.linalg.norm(way), 0.3, rng)
-    return None if found is None else Made(name, shift.case_of(found), kind, who, shift.size(found))
+    return np.asarray(rng.uniform(*SHORT) * way / np.linalg.norm(way))
 
 
-def _shift_of(case, kind, record, rng) -> tuple[Shift | None, str]:  # type: ignore[no-untyped-def]
-    if kind == "base":
-        standing = [one.robot.name for one in case.robots if one.mount is None]
-        who = str(rng.choice(standing))
-        return base_shift(case, who), who
-    carried = {carry.part for carry in case.carries}
-    names = [o.name for o in case.obstacles if o.mount is None and o.name not in carried]
-    near = record.worst.obstacle
-    if near not in names:
-        return None, near
-    return obstacle_shift(case, near), near
+def _random_bend(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
+    way = _bend_of_one(offsets, rng)
+    return np.asarray(rng.uniform(0.02, 0.2) * way)
 
 
-def _scaled(case_of, way, most, rng) -> np.ndarray | None:  # type: ignore[no-untyped-def]
-    """The way so far that the least clearance is below the limit by a chosen length; None if it never is."""
-    wanted = float(rng.uniform(0.001, DEEPEST))
-    low, high = 0.0, None
-    scale = most / 16.0
-    while scale <= most:
-        below = _below(case_of(scale * way))
-        if below > 0.0:
-            high = scale
-            break
-        low, scale = scale, 2.0 * scale
-    if high is None:
-        return None
-    for _ in range(6):
-        scale = 0.5 * (low + high)
-        below = _below(case_of(scale * way))
-        if 0.0 < below <= wanted:
-            low = scale
-        elif below > wanted:
-            high = scale
-        else:
-            low = scale
-    return high * way
+def _bend_of_one(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
+    """Random offsets of size 1."""
+    weights = np.repeat(offsets.weights, offsets.n_splines)
+    way = rng.normal(size=len(weights)) / weights
+    return np.asarray(way / offsets.size(way))
+
+
+def _until_short(
+    change: Change, way: np.ndarray, most: float, lever: float, rng: np.random.Generator
+) -> np.ndarray | None:
+    """A change along a way by which the worst falls short by about a chosen length; None if it never does.
+
+    Args:
+        way: a change of size 1. most: no change is larger. lever: [m] about what a unit of it moves.
+    """
+    fail = change.case.limits.fail
+    low, high = 0.0, most / 16.0
+    while _above(change.case_of(high * way)) >= fail:
+        low, high = high, 2.0 * high
+        if high > most:
+            return None
+    for _ in range(4):
+        middle = 0.5 * (low + high)
+        below = _above(change.case_of(middle * way)) < fail
+        low, high = (low, middle) if below else (middle, high)
+    x = (high + rng.uniform(*SHORT) / lever) * way
+    return x if _above(change.case_of(x)) < fail else None
+
+
+def _within_limits(offsets: JointOffsets, x: np.ndarray) -> bool:
+    try:
+        require_within_limits(offsets.case_of(x).robots[offsets.i_robot])
+    except BadInput:
+        return False
+    return True

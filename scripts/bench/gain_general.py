@@ -1,44 +1,161 @@
-"""The same shifts by a general optimiser: scipy's SLSQP from 20 starts on our exact clearances.
+"""The same changes by a general optimiser: scipy's SLSQP from 20 starts, on exact clearances and their gradients.
 
-Not for: ours (`clearance.gains`).
+The problem is that of our search: the same variables, the same size (of a path by a variable that no offset
+exceeds), the same limits of joints. Clearances are one constraint for each stretch of the run: the least in it,
+with the gradient of the pair that has it. Not for: ours (`clearance.gains`).
 """
 
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from gain_cases import Made
+from gain_cases import Change, change_of
+from gain_files import Filed
 
 import clearance as cl
-from clearance.gains.shift import base_shift, obstacle_shift
+from clearance.gains.offsets import JointOffsets
+from clearance.gains.shortfalls import State, Wanted, measured
 
 STARTS = 20
+
+STRETCHES = 24
+"""Of the run; each has one constraint."""
+
+BEYOND = 0.02
+"""[m] Above the limit, what counts as near; a stretch that has nothing near is so far above it."""
 
 ENOUGH = 2e-7
 """[m] Below the limit by no more is kept, as for ours."""
 
+WIDEST = 2.0
+"""[-] Of the size of the known change, how large any variable may be."""
 
-def general_shift(one: Made, seconds: float) -> float | None:
-    """[m] The least shift that it finds within so many seconds of CPU; None if none."""
-    from scipy.optimize import minimize
 
-    shift = (obstacle_shift if one.kind == "obstacle" else base_shift)(one.case, one.who)
-    rng, ends, best = np.random.default_rng(0), time.process_time() + seconds, None
+class OutOfTime(Exception):
+    """The seconds that it was given are over."""
 
-    def above(x: np.ndarray) -> float:
-        run = cl.check(shift.case_of(x), certify=False, contact="none", need="minimum")
-        return float(run.record.worst.clearance - one.case.limits.fail)
 
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """Rows a (x, t) <= b beside the clearances, and bounds of |x|; t is the size of a path, else absent."""
+
+    a: np.ndarray
+    b: np.ndarray
+
+
+def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float | None, float]:
+    """The least size that it finds within so many seconds of CPU, None if none, and the seconds it took.
+
+    Args:
+        n_intervals: of the splines of a path, as ours were.
+    """
+    change = change_of(cl.load_case(one.file), one.kind, one.who, n_intervals)
+    began, rng = time.process_time(), np.random.default_rng(0)
+    problem = _Problem(change, one.known, began + seconds)
     for i in range(STARTS):
-        if time.process_time() > ends:
+        start = np.zeros(problem.n_variables)
+        if i:
+            way = rng.normal(size=problem.n_variables)
+            start = float(rng.uniform(0.0, one.known)) * way / change.size(way)
+        try:
+            problem.solve(start)
+        except OutOfTime:
             break
-        start = np.zeros(3) if i == 0 else rng.normal(size=3) * one.known
-        found = minimize(
-            lambda x: float(x @ x), start, jac=lambda x: 2.0 * x, method="SLSQP",
-            constraints=[{"type": "ineq", "fun": above}], options={"maxiter": 60, "ftol": 1e-12},
+    return problem.best, time.process_time() - began
+
+
+class _Problem:
+    """The programme of one case; the best that was seen of it at any time."""
+
+    def __init__(self, change: Change, known: float, ends: float) -> None:
+        self.change, self.ends = change, ends
+        self.n_variables = len(change.first_reach)
+        self.best: float | None = None
+        self.widest = WIDEST * known * change.first_reach / change.first_reach.max()
+        if isinstance(change, JointOffsets):
+            self.widest = WIDEST * known / np.repeat(change.weights, change.n_splines)
+        self.is_path = isinstance(change, JointOffsets)
+        self.linear = _linear(change, self.widest) if isinstance(change, JointOffsets) else None
+        self.state = lru_cache(maxsize=1)(self._state)
+
+    def solve(self, start: np.ndarray) -> None:
+        """One search from a start."""
+        from scipy.optimize import minimize
+
+        unit = self.is_path
+        z = np.append(start, self.change.size(start)) if unit else start
+        bounds = [(-far, far) for far in self.widest] + ([(0.0, None)] if unit else [])
+        above = {"type": "ineq", "fun": self._clearances, "jac": self._slopes}
+        kept = [above]
+        if self.linear is not None:
+            a, b = self.linear.a, self.linear.b
+            kept.append({"type": "ineq", "fun": lambda z: b - a @ z, "jac": lambda _: -a})
+        last = np.zeros(len(z))
+        last[-1] = 1.0
+        aim, slope = (
+            (lambda z: z[-1], lambda _: last) if unit else (lambda z: z @ z, lambda z: 2.0 * z)
+        )
+        minimize(
+            aim, z, jac=slope, method="SLSQP", bounds=bounds, constraints=kept,
+            options={"maxiter": 100, "ftol": 1e-10},
         )  # fmt: skip
-        size = float(np.linalg.norm(found.x))
-        if above(found.x) >= -ENOUGH and (best is None or size < best):
-            best = size
-    return best
+
+    def _state(self, key: bytes) -> tuple[np.ndarray, np.ndarray]:
+        """[m] What each stretch has above the limit, and what it grows by; a point that keeps all is noted."""
+        if time.process_time() > self.ends:
+            raise OutOfTime
+        x = np.frombuffer(key)
+        found = measured(self.change.case_of(x), x, Wanted(0.0, 0.0, np.zeros(0)), BEYOND + ENOUGH)
+        size = self.change.size(x)
+        if found.worst <= ENOUGH and (self.best is None or size < self.best) and self._keeps(x):
+            self.best = size
+        return _stretches(found, self.change)
+
+    def _keeps(self, x: np.ndarray) -> bool:
+        if not isinstance(self.change, JointOffsets):
+            return True
+        kept = self.change.kept
+        return bool((kept.a @ x - kept.b <= 1e-6).all())
+
+    def _clearances(self, z: np.ndarray) -> np.ndarray:
+        return self.state(z[: self.n_variables].tobytes())[0]
+
+    def _slopes(self, z: np.ndarray) -> np.ndarray:
+        slopes = self.state(z[: self.n_variables].tobytes())[1]
+        return np.hstack([slopes, np.zeros((len(slopes), 1))]) if self.is_path else slopes
+
+
+def _stretches(state: State, change: Change) -> tuple[np.ndarray, np.ndarray]:
+    """(k,) [m] the least above the limit in each stretch of the run, and (k, m) what it grows by."""
+    n_steps = len(state.record.motions[0].times)
+    above, slopes = np.full(STRETCHES, BEYOND), np.zeros((STRETCHES, len(state.x)))
+    for approach in state.near:
+        found = change.gradient(approach)
+        if found is None:
+            continue
+        own = -state.missing(approach)
+        for row in np.argsort(own)[::-1].tolist():
+            k = int(approach.steps[row]) * STRETCHES // n_steps
+            if own[row] < above[k]:
+                above[k], slopes[k] = own[row], found[row]
+    return above, slopes
+
+
+def _linear(offsets: JointOffsets, widest: np.ndarray) -> Linear:
+    """No offset exceeds t, and the limits of joints that can be reached at all."""
+    samples = np.kron(np.diag(offsets.weights), offsets.few_samples)
+    ones = np.ones((len(samples), 1))
+    kept = offsets.kept
+    reached = np.flatnonzero(abs(kept.a) @ widest > kept.b)
+    limits = kept.a[reached].toarray() if len(reached) else np.zeros((0, len(widest)))
+    a = np.vstack(
+        [
+            np.hstack([samples, -ones]),
+            np.hstack([-samples, -ones]),
+            np.hstack([limits, np.zeros((len(limits), 1))]),
+        ]
+    )
+    return Linear(a, np.concatenate([np.zeros(2 * len(samples)), kept.b[reached]]))

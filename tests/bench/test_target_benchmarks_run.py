@@ -53,6 +53,16 @@ def test_needs_are_held_against_steps(tmp_path):
     assert {"pairs", "limit", "minimum", "certificate to 0.1 mm", "steps, 2 threads"} <= set(ratios)
 
 
+@pytest.mark.slow  # three cases are made, mended and checked, one in a process of its own
+def test_gains_are_kept_when_they_are_checked_anew(tmp_path):
+    given = ("--sources", "box_box", "--cases", 3, "--commands", 1, "--general", 1, "--seconds", 1)
+    rows = rows_of("gain.py", tmp_path / "rows.csv", *given)
+    assert [row["kind"] for row in rows] == ["waypoints", "obstacle", "base"]
+    assert all(row["kept"] == row["checked"] == "True" for row in rows)
+    assert [row["by"] for row in rows] == ["command", "reading", "reading"]
+    assert all(float(row["general"]) > 0.0 for row in rows if row["general"])
+
+
 def test_growth_counts_more_work_for_more_triangles(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "growth.svg"

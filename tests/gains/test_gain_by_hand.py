@@ -1,5 +1,6 @@
 """Changes whose least size is known by hand; what cannot be reached; what is refused."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.told import lines_of
+from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Mimic
 from clearance.world.timing import Timing
@@ -276,3 +278,68 @@ def test_a_change_between_few_samples_counts(n):
     found = gain(replace(case, robots=(*case.robots, other), obstacles=(post,)), robot="gantry")
     assert found.size >= 2.0 * 0.01 * (1.0 - 1e-5) or not found.kept
     assert found.lower_bound == pytest.approx(0.01, rel=1e-4)
+
+
+def prism(radius, n=64):
+    """A disc with its corners on a circle, four of them along x and y: those come nearest to a post."""
+    turns = np.arange(n) * 2.0 * np.pi / n
+    ring = radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    low, high = (np.column_stack([ring, np.full(n, z)]) for z in (-0.05, 0.05))
+    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
+    faces = [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides]
+    return cl.Polyhedron(np.concatenate([low, high]), faces)
+
+
+def disc_past_two_posts(way, *short):
+    """A disc on a line, or on two at a right angle, past a post beside each half, too near by what is given."""
+    times, along = np.linspace(0.0, 1.0, 81), np.linspace(-1.0, 1.0, 81)
+    first, second = (0.37 - one for one in short)
+    if way == "line":
+        at, posts = np.stack([along, 0.0 * along], axis=1), ((-0.5, first), (0.5, -second))
+    else:
+        at = np.stack([np.minimum(along, 0.0), np.maximum(along, 0.0)], axis=1)
+        posts = ((-0.5, first), (-second, 0.5))
+    robot = replace(gantry(), bodies=(cl.Body("tool", prism(0.1)),))
+    placed = cl.PlacedRobot(robot, cl.Trajectory(times, ("x", "y"), at))
+    post = cl.PointCloud([[0.0, 0.0, 0.0]], 0.05)
+    named = (
+        standing(name, post, (*xy, 0.0)) for name, xy in zip(("one", "two"), posts, strict=True)
+    )
+    return cl.Case("discs", (placed,), tuple(named), cl.Limits(fail=0.22))
+
+
+def test_a_disc_past_two_posts_bends_by_what_the_nearer_wants():
+    found = gain(disc_past_two_posts("line", 0.01, 0.005), "waypoints")
+    between = 2.0 * CERTIFY_GAP  # what chords between samples may be asked for on top, by the proof
+    assert found.kept and 0.02 - FINE <= found.size <= 0.02 + between
+    assert found.change[20, 1] == pytest.approx(-found.size / 2.0, abs=FINE)
+    assert found.change[60, 1] >= 0.005 - FINE
+
+
+def test_a_disc_round_a_corner_is_moved_away_from_both_posts():
+    found = gain(disc_past_two_posts("corner", 0.025, 0.025), "base")
+    assert found.kept and found.change == pytest.approx([0.025, -0.025, 0.0], abs=FINE)
+    assert found.size == pytest.approx(0.025 * np.sqrt(2.0), abs=FINE)
+    assert 0.025 * (1.0 - 1e-4) < found.lower_bound <= found.size
+
+
+@pytest.mark.parametrize("kind", ["waypoints", "obstacle"])
+def test_more_margin_never_costs_less(kind):
+    who = {"obstacle": {"obstacle": "one"}}.get(kind, {})
+    case = disc_past_two_posts("line", 0.01, -0.1)
+    sizes = [gain(case, kind, margin=margin, **who).size for margin in (0.0, 0.001, 0.004, 0.01)]
+    assert all(more > less for less, more in itertools.pairwise(sizes))
+
+
+def test_a_world_that_is_turned_turns_the_change():
+    turn = np.eye(4)
+    turn[:2, :2] = [[0.0, -1.0], [1.0, 0.0]]
+    case = disc_past_two_posts("corner", 0.025, 0.025)
+    robots = tuple(replace(one, world_from_base=turn @ one.world_from_base) for one in case.robots)
+    posts = tuple(
+        replace(one, world_from_body=turn @ one.world_from_body) for one in case.obstacles
+    )
+    here, there = (
+        gain(one, "base") for one in (case, replace(case, robots=robots, obstacles=posts))
+    )
+    assert there.change == pytest.approx(turn[:3, :3] @ here.change, abs=FINE)
