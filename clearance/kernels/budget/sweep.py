@@ -11,7 +11,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import lend
 from clearance.kernels.budget.errors import REACH, JointMotion
-from clearance.kernels.budget.left import Aim
+from clearance.kernels.budget.face_left import Aim
 from clearance.kernels.budget.levers import fill_levers, moved_from_step
 from clearance.kernels.budget.middle import go_to_part, motion_about
 from clearance.kernels.budget.sweep_state import (
@@ -25,10 +25,22 @@ from clearance.kernels.budget.sweep_state import (
     go_on,
     new_state,
     note_bound,
+    start_at,
+    start_before,
     thin_of,
 )
 from clearance.kernels.motion.certify import DEPTH, WIDER, begin_arcs
 from clearance.kernels.motion.certify_pair import allowed_gap
+
+
+FEW = 16
+"""Moments that are looked at as exactly as can be."""
+
+EXACT_LOOKS = 400
+"""As in `Aim`, where moments are few."""
+
+ROUGH_LOOKS = 4
+"""The same where they are many."""
 
 
 class BudgetMoments(NamedTuple):
@@ -37,14 +49,17 @@ class BudgetMoments(NamedTuple):
     Attributes:
         intervals: (n,) the step before each. shares: (n,) how much of the interval from there has passed, 0 to 1.
         order: (n,) the pair to look at first, or -1. known: (n,) [m] the nominal clearance, or NaN.
-        enough: [m] what is proven beyond it is not looked into.
+        points: (n, 2, 3) [m] its nearest points where the links are at, or NaN.
+        enough: [m] what is proven beyond it is not looked into. exact_looks: as in `Aim`.
     """
 
     intervals: np.ndarray
     shares: np.ndarray
     order: np.ndarray
     known: np.ndarray
+    points: np.ndarray
     enough: float
+    exact_looks: int
 
 
 class BudgetIntervals(NamedTuple):
@@ -69,13 +84,12 @@ class BudgetRows(NamedTuple):
     """What is found of each step or interval.
 
     Attributes:
-        proven: (n,) [m]. pair: (n,) which pair decides it. faces: (n, 2) and which faces, or -1. share: (n,) where
-            in the interval the least was seen, 0 to 1, or -1.
+        proven: (n,) [m]. pair: (n,) of which the least occurs. share: (n,) where in the interval that was seen, 0 to
+            1, or -1.
     """
 
     proven: np.ndarray
     pair: np.ndarray
-    faces: np.ndarray
     share: np.ndarray
 
 
@@ -142,7 +156,7 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
             go_on(world, path, before, interval + np.int64(share), state)
             before = interval + np.int64(share)
         order = asked.order[place]
-        best, winner = math.inf, np.int64(-1)
+        best, least, enough, winner = math.inf, math.inf, asked.enough, np.int64(-1)
         touches = asked.known[place] <= 0.0 and order >= 0
         if touches:
             best, winner = -_most_taken(scene, order, motion, place, state), order
@@ -153,7 +167,7 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
                 continue
             if turn >= 0 and (turn == order or turn == last):
                 continue
-            target = min(best, asked.enough)
+            target = min(best, enough)
             carried = carried_bound(world, pair, state)
             if turn >= 0 and carried < target:
                 carried = _with_boxes(scene, pair, motion, place, target, carried, state)
@@ -164,22 +178,22 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
             ahead = 0.0
             if turn >= 0 and is_step and not state.late and before > 0:
                 ahead = _ahead(scene, pair, before, state)
-            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True)
-            left = ask(lent, scene, pair, motion, place, aim, state, tally)
+            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks)
+            start = start_before(scene, pair, state)
+            if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
+                start = start_at(world, pair, asked.points[place], state)
+            left = ask(lent, scene, pair, motion, place, start, aim, state, tally)
             note_bound(world, pair, left.lower_bound, state)
             lowest = min(lowest, left.lower_bound)
-            if left.lower_bound < best:
-                best = left.lower_bound
+            if left.least < least or winner < 0:
                 winner = pair
+            best, least = min(best, left.lower_bound), min(least, left.least)
+            if asked.exact_looks < EXACT_LOOKS:
+                enough = min(enough, left.enough)
         last = winner
         rows.proven[place] = lowest
         rows.pair[place] = winner
         rows.share[place] = -1.0
-        if winner >= 0:
-            rows.faces[place, 0], rows.faces[place, 1] = (
-                state.faces[winner, 0],
-                state.faces[winner, 1],
-            )
 
 
 class _Over(NamedTuple):
@@ -208,8 +222,9 @@ def _hold(lent, scene, step, pair, look, least, asked, state, tally):
             go_to_part(world.links, path, errors, step, low, high, state.middle)
         motion = motion_about(path, step, low, high, state.middle)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-        aim = Aim(target, least, gap, asked.fail, False)
-        left = ask(lent, scene, pair, motion, look, aim, state, tally)
+        aim = Aim(target, least, gap, asked.fail, False, 0)
+        start = start_before(scene, pair, state)
+        left = ask(lent, scene, pair, motion, look, start, aim, state, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -276,4 +291,3 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
         rows.proven[place] = lower_bound
         rows.pair[place] = winner
         rows.share[place] = share
-        rows.faces[place, 0] = rows.faces[place, 1] = -1

@@ -10,9 +10,10 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn, turn_back
 from clearance.kernels.budget.errors import REACH, Errors, new_body_rows
-from clearance.kernels.budget.left import LeftScratch, least_left
+from clearance.kernels.budget.face_left import LeftScratch
+from clearance.kernels.budget.left import Start, least_left
 from clearance.kernels.budget.levers import (
     Levers,
     moved_from_step,
@@ -45,7 +46,7 @@ class SweepState(NamedTuple):
 
     Attributes:
         middle: where all links are. boxes: of the bodies there.
-        faces: (p, 2) that decided each pair, or -1.
+        directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
         levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
         moved: (bodies,) [m] how far each can have moved in all. lower_bounds: (p,) [m] what was proven of each
@@ -55,7 +56,7 @@ class SweepState(NamedTuple):
 
     middle: Middle
     boxes: BodyBoxes
-    faces: np.ndarray
+    directions: np.ndarray
     levers: Levers
     late: bool
     filled: np.ndarray
@@ -91,7 +92,7 @@ def new_state(world, errors):
         new_along_rows(errors.most_rows), new_pieces(), new_scratch(),
     )  # fmt: skip
     return SweepState(
-        new_middle_of(n_links), new_body_boxes(n_bodies), np.full((n_pairs, 2), -1),
+        new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros(n_bodies), np.full(n_pairs, -np.inf),
         np.empty((DEPTH, 2)), work,
@@ -168,18 +169,40 @@ def bound_by_boxes(scene, pair, motion, look, enough, state):
 
 
 @inline
-def ask(lent, scene, pair, motion, look, aim, state, tally):
+def start_at(world, pair, points, state):
+    """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
+    pose = _pose(world, world.pairs[pair, 0], state)
+    return Start(move_back(pose, row(points, 0)), move_back(pose, row(points, 1)), True)
+
+
+@inline
+def start_before(scene, pair, state):
+    """A start along the direction in which a pair was seen last, from centre to centre if it was not."""
+    surface, world, seen = scene.surface, scene.world, row(state.directions, pair)
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    pose_a, pose_b = _pose(world, body_a, state), _pose(world, body_b, state)
+    here = Vec3(0.0, 0.0, 0.0)
+    if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
+        return Start(here, turn_back(pose_a, seen), False)
+    p = box_of(surface, surface.roots[world.solids[body_a]]).centre
+    q = box_of(surface, surface.roots[world.solids[body_b]]).centre
+    return Start(p, move_back(pose_a, move(pose_b, q)), False)
+
+
+@inline
+def ask(lent, scene, pair, motion, look, start, aim, state, tally):
     """What errors leave of a pair about the middle."""
     world = scene.world
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     fill_body(scene, body_a, motion, look, state)
     fill_body(scene, body_b, motion, look, state)
-    frames = frames_of(_pose(world, body_a, state), _pose(world, body_b, state))
+    pose = _pose(world, body_a, state)
+    frames = frames_of(pose, _pose(world, body_b, state))
     bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
     tally[1] += 1
-    left = least_left(bodies, body_a, body_b, state.faces[pair], aim, state.work, tally)
-    if left.face_a >= 0:
-        state.faces[pair, 0], state.faces[pair, 1] = left.face_a, left.face_b
+    left = least_left(bodies, body_a, body_b, start, aim, state.work, tally)
+    u = turn(pose, left.u)
+    state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
     return left
 
 
