@@ -15,15 +15,16 @@ from clearance.budget.errors_of import errors_of
 from clearance.compile.kernel_table import call
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
-    BudgetIntervals,
-    BudgetMoments,
     EXACT_LOOKS,
     FEW,
     ROUGH_LOOKS,
+    BudgetIntervals,
+    BudgetMoments,
     BudgetRows,
     budget_intervals,
     budget_moments,
 )
+from clearance.kernels.budget.sweep_state import BudgetScene, new_state
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.layout import PairsInMotion, positions_at
@@ -164,7 +165,10 @@ class PairsWithErrors:
             own = BudgetRows(*(column[span] for column in rows))
             world = with_turning_balls(layout.world)  # no two threads share it
             tally = np.zeros(6, dtype=np.int64)
-            call(kernel, layout.whole_faces, world, path, errors, ask(span), own, tally)
+            scene = BudgetScene(
+                layout.whole_faces, world, path, errors, new_state(world, errors)
+            )
+            call(kernel, scene, ask(span), own, tally)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):
             pass

@@ -8,9 +8,10 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
+from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
 from clearance.kernels.budget.errors import BodyRows
-from clearance.kernels.budget.pieces import Pieces, TwoFaces, bound_of_pieces
+from clearance.kernels.budget.pieces import Pieces, bound_of_pieces
 from clearance.kernels.budget.reach import along_at_rest, reach_of_point
 from clearance.kernels.budget.tilted import tilted
 from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
@@ -58,15 +59,6 @@ class LeftScratch(NamedTuple):
     own: AlongRows
     pieces: Pieces
     scratch: Scratch
-
-
-class TwoBodies(NamedTuple):
-    """Two bodies of a search: their rows in `LeftScratch.found`, and the roots of their trees."""
-
-    a: int
-    b: int
-    root_a: int
-    root_b: int
 
 
 class SearchState(NamedTuple):
@@ -139,30 +131,35 @@ def _reach_of_face(surface, face, found, body):
 
 
 @inline
-def _reach_of_both(a, b, faces, bodies, found):
+def _reach_of_both(lent, faces):
     """[m] how far the errors can move two faces at most, added up."""
-    return _reach_of_face(a, faces.a, found, bodies.a) + _reach_of_face(
-        b, faces.b, found, bodies.b
-    )
+    scene, bodies = borrow(lent), faces.bodies
+    found = scene.state.work.found
+    reach = _reach_of_face(scene.surface, faces.a, found, bodies.a)
+    return reach + _reach_of_face(scene.surface, faces.b, found, bodies.b)
 
 
 @inline
-def look_at_both(direction, bodies, work):
+def look_at_both(lent, direction, bodies):
     """Writes how the errors of both bodies are seen along a direction."""
+    work = borrow(lent).state.work
     look_along(work.found, bodies.a, 0, direction.u, work.own)
     look_along(work.found, bodies.b, 1, direction.v, work.own)
 
 
 @inline
-def turn_to(a, b, direction, m, bodies, work):
+def turn_to(lent, direction, m, bodies):
     """The views along a direction, tilted by the errors that were last looked at along it."""
-    box_a, box_b = box_of(a, bodies.root_a), box_of(b, bodies.root_b)
+    scene = borrow(lent)
+    work = scene.state.work
+    box_a, box_b = box_of(scene.surface, bodies.root_a), box_of(scene.surface, bodies.root_b)
     return views_along(tilted(direction, box_a, box_b, work.own, work.kept), m)
 
 
 @inline
-def taken_at(p, q, direction, m, bodies, aim, work):
+def taken_at(lent, p, q, direction, m, bodies, aim):
     """What is taken at two points (frame of a), along the direction that was last looked at."""
+    work = borrow(lent).state.work
     u, v, q = direction.u, direction.v, move_back(m, q)
     whole = moved_of_point(p, 0, u, work.own) + moved_of_point(q, 1, v, work.own)
     if aim.is_step:
@@ -216,29 +213,33 @@ def target_of(search, aim, n_looks):
     return search.target
 
 
-@inline(one_caller=True)
-def look_at_faces(a, b, faces, bodies, bound, slack, search, aim, n_looks, thin, work, tally):
-    """What a search has come to after two faces."""
-    m, found = faces.frames.m, work.found
+@inline
+def look_at_faces(lent, faces, bound, slack, search, aim, thin, tally):
+    """What a search has come to after `TwoFaces`."""
+    scene, m, bodies = borrow(lent), faces.m, faces.bodies
+    surface, work = scene.surface, scene.state.work
     tally[3] += 1
-    near = nearest_of_faces(a, faces.a, b, faces.b, m, margin_of(slack), nothing_yet(math.inf)).best
+    margin = margin_of(slack)
+    near = nearest_of_faces(
+        surface, faces.a, surface, faces.b, m, margin, nothing_yet(math.inf)
+    ).best
     direction = direction_between(near.p, near.q, m)
-    look_at_both(direction, bodies, work)
-    whole = _along(a, faces.a, b, faces.b, direction, work.own, slack)
+    look_at_both(lent, direction, bodies)
+    whole = _along(surface, faces.a, surface, faces.b, direction, work.own, slack)
     length = math.sqrt(near.gap_sq)
     if whole.apart <= 0.0:  # they may touch
-        reach = _reach_of_both(a, b, faces, bodies, found)
+        reach = _reach_of_both(lent, faces)
         search = with_value(search, -reach, reach, aim, thin)
         return FacePairLeft(with_bound(search, max(bound, -reach), aim), False)
     bound = max(bound, whole.bound)
-    point = taken_at(near.p, near.q, direction, m, bodies, aim, work)
+    point = taken_at(lent, near.p, near.q, direction, m, bodies, aim)
     value = length - point.taken
     if length < search.nearest:
-        views = turn_to(a, b, direction, m, bodies, work)
+        views = turn_to(lent, direction, m, bodies)
         search = along_nearest(search, views, direction.u, length)
     search = with_value(search, value, point.taken, aim, thin)
     if bound < search.target:
-        bound = max(bound, whole.apart - _reach_of_both(a, b, faces, bodies, found))
+        bound = max(bound, whole.apart - _reach_of_both(lent, faces))
     wanted, allowed = search.target, near_by(point.taken)
     if aim.is_step:
         wanted = min(wanted, search.enough)
@@ -249,8 +250,7 @@ def look_at_faces(a, b, faces, bodies, bound, slack, search, aim, n_looks, thin,
         still = aim.is_step or point.motion < STILL * allowed
         if still or value - point.motion >= wanted:
             tally[4] += 1
-            both = TwoFaces(a, faces.a, b, faces.b, m, bodies.a, bodies.b)
-            cut = bound_of_pieces(both, bound, found, work.own, slack, wanted, allowed, work.pieces)
+            cut = bound_of_pieces(lent, faces, bound, slack, wanted, allowed)
             bound = max(bound, cut.lower_bound)
             search = with_value(search, cut.least, point.taken, aim, thin)
         gives_up = bound < search.target and not still

@@ -17,7 +17,6 @@ from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
 from clearance.kernels.budget.errors import REACH, SURFACE, TURNED
 from clearance.kernels.budget.face_left import (
     SearchState,
-    TwoBodies,
     look_at_both,
     look_at_faces,
     taken_at,
@@ -25,6 +24,7 @@ from clearance.kernels.budget.face_left import (
     turn_to,
     with_value,
 )
+from clearance.kernels.budget.pieces import TwoBodies, TwoFaces
 from clearance.kernels.budget.tilted import kept_of_box, kept_of_point
 from clearance.kernels.features.bounds import (
     direction_between,
@@ -32,7 +32,6 @@ from clearance.kernels.features.bounds import (
     lower_bound_boxes_along_direction,
     rounding_slack,
 )
-from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, MOST_TURNED
 from clearance.kernels.search.balls import radii_of
@@ -148,11 +147,11 @@ def _look_at_group(a, b, node_a, node_b, views, reaches, target, n_waiting, work
 
 
 @inline(one_caller=True)
-def _begin(a, b, start, m, bodies, aim, thin, work):
+def _begin(lent, start, m, bodies, aim, thin):
     """A search that has seen nothing but its start."""
     direction = direction_between(start.p, start.q, m)
-    look_at_both(direction, bodies, work)
-    views = turn_to(a, b, direction, m, bodies, work)
+    look_at_both(lent, direction, bodies)
+    views = turn_to(lent, direction, m, bodies)
     length = math.inf
     if start.are_known:
         d = sub(start.q, start.p)
@@ -162,30 +161,31 @@ def _begin(a, b, start, m, bodies, aim, thin, work):
     )
     if not start.are_known:
         return search
-    taken = taken_at(start.p, start.q, direction, m, bodies, aim, work).taken
+    taken = taken_at(lent, start.p, start.q, direction, m, bodies, aim).taken
     return with_value(search, length - taken, taken, aim, thin)
 
 
 @inline
-def least_left(pair, body_a, body_b, start, aim, work, tally):
+def least_left(lent, body_a, body_b, frames, start, aim, tally):
     """What errors leave of a pair, where that is below the target.
 
     Args:
-        pair: a `PosedPair` of solids, of surfaces in which every face owns all its features.
-        body_a, body_b: their rows in `work.found`, a `LeftScratch`. start: a `Start`.
+        lent: a `BudgetScene`, in which the rows of both bodies are filled. frames: how they lie. start: a `Start`.
     """
-    a, b = borrow(pair.surface_a), borrow(pair.surface_b)
-    found, scratch, m = work.found, work.scratch, pair.frames.m
-    roots = parts(pair, a.roots[pair.a], b.roots[pair.b])
-    bodies = TwoBodies(body_a, body_b, roots.a, roots.b)
-    slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, pair.frames)
+    scene = borrow(lent)
+    a = b = scene.surface
+    work, m = scene.state.work, frames.m
+    found, scratch = work.found, work.scratch
+    solid_a, solid_b = scene.world.solids[body_a], scene.world.solids[body_b]
+    bodies = TwoBodies(body_a, body_b, a.roots[solid_a], b.roots[solid_b])
+    slack = CHAIN_SLACK * rounding_slack(a, bodies.root_a, b, bodies.root_b, frames)
     sums_a, sums_b = found.sums[body_a], found.sums[body_b]
-    thin = radii_of(a, pair.a, b, pair.b).both + sums_a[SURFACE] + sums_b[SURFACE]
+    thin = radii_of(a, solid_a, b, solid_b).both + sums_a[SURFACE] + sums_b[SURFACE]
     turn = max(sums_a[TURNED], sums_b[TURNED])
     reaches = _Reaches(slack, sums_a[REACH] + sums_b[REACH], turn, math.cos(turn), math.sin(turn))
-    search = _begin(a, b, start, m, bodies, aim, thin, work)
+    search = _begin(lent, start, m, bodies, aim, thin)
     lower_bound = math.inf
-    scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = bodies.root_a, bodies.root_b
     scratch.bounds[0] = -math.inf
     n_waiting, n_looks = 1, 0
     while n_waiting > 0:
@@ -203,15 +203,15 @@ def least_left(pair, body_a, body_b, start, aim, work, tally):
             )
             lower_bound = min(lower_bound, passed)
             continue
-        faces = parts(pair, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
-        seen = _face_bound(a, faces.a, b, faces.b, search.views.a.direction, work.kept, slack)
+        face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
+        seen = _face_bound(a, face_a, b, face_b, search.views.a.direction, work.kept, slack)
         bound = max(bound, seen)
         if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
         n_looks += LOOK_AT_FACES
         looked = look_at_faces(
-            a, b, faces, bodies, bound, slack, search, aim, n_looks, thin, work, tally
+            lent, TwoFaces(face_a, face_b, m, bodies), bound, slack, search, aim, thin, tally
         )
         search = looked.search
         if looked.gives_up:
