@@ -12,7 +12,15 @@ import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
-from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
+from clearance.kernels.arithmetic.lanes import (
+    WIDTH,
+    first_of,
+    how_many,
+    lane,
+    larger,
+    least_of,
+    marks_within,
+)
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
 from clearance.kernels.budget.errors import REACH, SURFACE, TURNED
 from clearance.kernels.budget.face_left import (
@@ -35,8 +43,17 @@ from clearance.kernels.features.bounds import (
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, MOST_TURNED
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.node_pairs import opened, pair_in_group, turned_away_while
-from clearance.kernels.search.scratch import STACK_DEPTH, wait
+from clearance.kernels.search.front import LONGEST, OF_B, forget, keep
+from clearance.kernels.search.node_pairs import (
+    NodeGroup,
+    opened,
+    pair_in_group,
+    turned_away_while,
+)
+from clearance.kernels.search.scratch import STACK_DEPTH, swap, wait
+
+KEPT = 1e-12
+"""[m] Covers the rounding of a bound that is kept and taken up again."""
 
 LOOK_AT_FACES = 8
 """As many looks at groups of nodes as one at two faces takes."""
@@ -115,35 +132,104 @@ class _Reaches(NamedTuple):
     sin_turn: float
 
 
-@inline(force=True)
-def _look_at_group(a, b, node_a, node_b, views, reaches, target, n_waiting, work, tally):
-    """Lets those of the pairs below two nodes wait that are not above the target.
+class _Waiting(NamedTuple):
+    """What has become of the marked nodes of a group.
 
-    Returns:
-        how many wait, and [m] a bound on those that do not.
+    Attributes:
+        n_waiting: node pairs that wait now. marks: of the nodes that stay. low: [m] a bound on all that stay.
+        passed: [m] a bound on those that are above the target.
     """
-    nodes, count = opened(a, node_a, b, node_b)
+
+    n_waiting: int
+    marks: int
+    low: float
+    passed: float
+
+
+@inline(force=True)
+def _let_wait(scene, nodes, marks, views, reaches, target, n_waiting, tally):
+    """Lets those of a group wait that are not above the target; leaves stay as well, and what waits has ~a for a."""
+    a = b = scene.surface
+    work = scene.state.work
     slack, reach = reaches.slack, reaches.reach
     bounds = _group_bounds(a, b, nodes, views, work.kept, reach, slack, target)
-    tally[2] += count
-    away = 0
-    if reaches.turn < MOST_TURNED and marks_within(bounds, target):
-        away = turned_away_while(
+    tally[2] += how_many(marks)
+    within = marks & marks_within(bounds, target)
+    passed = least_of(bounds, marks ^ within)
+    low = passed
+    if within and reaches.turn < MOST_TURNED:
+        away = within & turned_away_while(
             a, b, views, nodes, slack, reaches.cos_turn, reaches.sin_turn, reach
         )
+        low = min(low, least_of(bounds, away))
+        within ^= away
     if n_waiting + WIDTH > STACK_DEPTH:
         raise AssertionError("no room for what waits")
-    first, lower_bound = n_waiting, math.inf
-    for k in range(count):
-        if away >> k & 1:
-            continue
-        bound = lane(bounds, k)
-        if bound >= target:
-            lower_bound = min(lower_bound, bound)
-            continue
-        node_a, node_b = pair_in_group(nodes, k)
+    first = n_waiting
+    while within:
+        i = first_of(within)
+        within &= within - 1
+        bound = lane(bounds, i)
+        node_a, node_b = pair_in_group(nodes, i)
+        if is_leaf(a, node_a) and is_leaf(b, node_b):
+            low = min(low, bound)
+            node_a = ~node_a
+        else:
+            marks ^= 1 << i
         n_waiting = wait(work.scratch, n_waiting, node_a, node_b, bound, first)
-    return n_waiting, lower_bound
+    return _Waiting(n_waiting, marks, low, passed)
+
+
+@inline(force=True)
+def _leave(scratch, n_left, nodes, marks, lower_bound):
+    """Notes an entry of the front; how many there are, at most one more than are kept."""
+    left = scratch.left
+    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
+    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
+    scratch.lower_bounds[n_left] = lower_bound - KEPT
+    return n_left + (n_left <= LONGEST)
+
+
+class _Queue(NamedTuple):
+    """What waits when a search begins: entries of the front that stay, node pairs, [m] a bound on all else."""
+
+    n_kept: int
+    n_waiting: int
+    lower_bound: float
+
+
+@inline(one_caller=True)
+def _resume(scene, pair, moved, views, reaches, target, tally):
+    """Lets that part of a front wait that may have come near; the rest stays in it."""
+    fronts, scratch = scene.state.fronts, scene.state.work.scratch
+    start = fronts.spans[pair, 0]
+    n_kept, n_waiting, nearest, lower_bound = 0, 0, 0, math.inf
+    for i in range(start, start + fronts.spans[pair, 1]):
+        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
+        carried = fronts.lower_bounds[i]
+        if carried - moved < target:
+            nodes = NodeGroup(marks >= OF_B, group, other)
+            before = n_waiting
+            found = _let_wait(
+                scene, nodes, marks % OF_B, views, reaches, target, n_waiting, tally
+            )
+            n_waiting = found.n_waiting
+            if n_waiting > before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
+                nearest = n_waiting - 1
+            lower_bound = min(lower_bound, found.passed)
+            if found.marks == 0:
+                continue
+            marks = found.marks + OF_B if nodes.is_of_b else found.marks
+            carried = found.low + moved - KEPT
+        else:
+            lower_bound = min(lower_bound, carried - moved)
+        to = start + n_kept
+        fronts.entries[to, 0], fronts.entries[to, 1], fronts.entries[to, 2] = group, other, marks
+        fronts.lower_bounds[to] = carried
+        n_kept += 1
+    if n_waiting > 0:  # nearest last
+        swap(scratch, nearest, n_waiting - 1)
+    return _Queue(n_kept, n_waiting, lower_bound)
 
 
 @inline(one_caller=True)
@@ -165,47 +251,70 @@ def _begin(lent, start, m, bodies, aim, thin):
     return with_value(search, length - taken, taken, aim, thin)
 
 
+@inline(one_caller=True)
+def _first(scene, pair, moved, bodies, search, reaches, target, tally):
+    """What waits first: what the front of the pair has left, or the roots."""
+    if moved < math.inf and scene.state.fronts.spans[pair, 1] > 0:
+        return _resume(scene, pair, moved, search.views, reaches, target, tally)
+    scratch = scene.state.work.scratch
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = bodies.root_a, bodies.root_b
+    scratch.bounds[0] = -math.inf
+    return _Queue(0, 1, math.inf)
+
+
 @inline
-def least_left(lent, body_a, body_b, frames, start, aim, tally):
+def least_left(lent, pair, moved, frames, start, aim, tally):
     """What errors leave of a pair, where that is below the target.
 
     Args:
         lent: a `BudgetScene`, in which the rows of both bodies are filled. frames: how they lie. start: a `Start`.
+        moved: [m] what both bodies have moved in all; infinite where the front of the pair is not gone on from.
     """
     scene = borrow(lent)
     a = b = scene.surface
-    work, m = scene.state.work, frames.m
-    found, scratch = work.found, work.scratch
+    fronts, scratch, m = scene.state.fronts, scene.state.work.scratch, frames.m
+    body_a, body_b = scene.world.pairs[pair, 0], scene.world.pairs[pair, 1]
     solid_a, solid_b = scene.world.solids[body_a], scene.world.solids[body_b]
     bodies = TwoBodies(body_a, body_b, a.roots[solid_a], b.roots[solid_b])
     slack = CHAIN_SLACK * rounding_slack(a, bodies.root_a, b, bodies.root_b, frames)
-    sums_a, sums_b = found.sums[body_a], found.sums[body_b]
+    sums_a, sums_b = scene.state.work.found.sums[body_a], scene.state.work.found.sums[body_b]
     thin = radii_of(a, solid_a, b, solid_b).both + sums_a[SURFACE] + sums_b[SURFACE]
     turn = max(sums_a[TURNED], sums_b[TURNED])
     reaches = _Reaches(slack, sums_a[REACH] + sums_b[REACH], turn, math.cos(turn), math.sin(turn))
     search = _begin(lent, start, m, bodies, aim, thin)
-    lower_bound = math.inf
-    scratch.nodes[0, 0], scratch.nodes[0, 1] = bodies.root_a, bodies.root_b
-    scratch.bounds[0] = -math.inf
-    n_waiting, n_looks = 1, 0
+    n_looks, n_left = 0, 0
+    first = _first(
+        scene, pair, moved, bodies, search, reaches, target_of(search, aim, n_looks), tally
+    )
+    n_waiting, lower_bound = first.n_waiting, first.lower_bound
     while n_waiting > 0:
         n_waiting -= 1
         target = target_of(search, aim, n_looks)
-        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
+        node_a, node_b = np.int64(scratch.nodes[n_waiting, 0]), np.int64(scratch.nodes[n_waiting, 1])
         bound = scratch.bounds[n_waiting]
+        is_kept = node_a < 0  # leaves, which the front has
+        if is_kept:
+            node_a = ~node_a
+        is_face = is_leaf(a, node_a) and is_leaf(b, node_b)
+        if not is_kept and (is_face or bound >= target):
+            one = NodeGroup(False, node_a // WIDTH, node_b)
+            n_left = _leave(scratch, n_left, one, 1 << node_a % WIDTH, bound + moved)
         if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
-        if not (is_leaf(a, node_a) and is_leaf(b, node_b)):
+        if not is_face:
             n_looks += 1
-            n_waiting, passed = _look_at_group(
-                a, b, node_a, node_b, search.views, reaches, target, n_waiting, work, tally
+            nodes, count = opened(a, node_a, b, node_b)
+            found = _let_wait(
+                scene, nodes, (1 << count) - 1, search.views, reaches, target, n_waiting, tally
             )
-            lower_bound = min(lower_bound, passed)
+            n_waiting, lower_bound = found.n_waiting, min(lower_bound, found.passed)
+            if found.marks > 0:
+                n_left = _leave(scratch, n_left, nodes, found.marks, found.low + moved)
             continue
         face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-        seen = _face_bound(a, face_a, b, face_b, search.views.a.direction, work.kept, slack)
-        bound = max(bound, seen)
+        kept, direction = scene.state.work.kept, search.views.a.direction
+        bound = max(bound, _face_bound(a, face_a, b, face_b, direction, kept, slack))
         if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
@@ -215,8 +324,9 @@ def least_left(lent, body_a, body_b, frames, start, aim, tally):
         )
         search = looked.search
         if looked.gives_up:
+            forget(fronts, pair)
             return Left(-math.inf, search.least - thin, -math.inf, False, search.u)
+    if moved < math.inf:
+        keep(fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
     lower_bound = min(lower_bound, search.lower_bound)
-    return Left(
-        lower_bound - thin, search.least - thin, search.enough - thin, True, search.u
-    )
+    return Left(lower_bound - thin, search.least - thin, search.enough - thin, True, search.u)

@@ -36,7 +36,7 @@ FEW = 16
 EXACT_LOOKS = 400
 """As in `Aim`, where moments are few."""
 
-ROUGH_LOOKS = 4
+ROUGH_LOOKS = -1
 """The same where they are many."""
 
 
@@ -138,7 +138,7 @@ def budget_moments(scene, asked, rows, tally, table):
     lent = lend(scene)
     surface, world, path, errors, state = scene
     fill_levers(surface, world, path, errors, state.levers)
-    n_pairs = len(world.pairs)
+    n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
     for i in range(len(tally)):
         tally[i] = 0
     last, before, was_step = np.int64(-1), asked.intervals[0] + np.int64(asked.shares[0]), True
@@ -149,6 +149,7 @@ def budget_moments(scene, asked, rows, tally, table):
         go_to_part(world.links, path, errors, interval, share, share, state.middle)
         if not (is_step and was_step):
             state.lower_bounds[:] = -math.inf
+            state.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:
             go_on(lent, before, interval + np.int64(share))
@@ -180,13 +181,13 @@ def budget_moments(scene, asked, rows, tally, table):
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
-            left = ask(lent, pair, 0.0, place, start, aim, tally)
+            left = ask(lent, pair, 0.0, place, start, aim, is_step and is_rough, tally)
             note_bound(lent, pair, left.lower_bound)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
                 winner = pair
             best = min(best, left.lower_bound)
-            if asked.exact_looks < EXACT_LOOKS:
+            if is_rough:
                 enough = min(enough, left.enough)
         last = winner
         rows.proven[place] = lowest
@@ -224,7 +225,7 @@ def _hold(lent, step, pair, look, least, asked, tally):
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False, 0)
         start = start_before(lent, pair)
-        left = ask(lent, pair, half, look, start, aim, tally)
+        left = ask(lent, pair, half, look, start, aim, n_parts == 1, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:

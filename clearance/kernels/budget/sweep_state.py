@@ -14,7 +14,7 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn, turn_back
 from clearance.kernels.budget.errors import REACH, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.face_left import LeftScratch
-from clearance.kernels.budget.left import Start, least_left
+from clearance.kernels.budget.left import KEPT, Start, least_left
 from clearance.kernels.budget.levers import (
     Levers,
     moved_from_step,
@@ -38,6 +38,7 @@ from clearance.kernels.motion.joint_motion_bound import orientation_rounding
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.front import POOL, Fronts, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 
 
@@ -51,7 +52,7 @@ class SweepState(NamedTuple):
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
         moved: (bodies,) [m] how far each can have moved in all. lower_bounds: (p,) [m] what was proven of each
             pair, plus what its bodies had moved by then.
-        waiting: (DEPTH, 2) parts of an interval.
+        waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
     """
 
     middle: Middle
@@ -64,6 +65,7 @@ class SweepState(NamedTuple):
     moved: np.ndarray
     lower_bounds: np.ndarray
     waiting: np.ndarray
+    fronts: Fronts
     work: LeftScratch
 
 
@@ -96,7 +98,7 @@ def new_state(world, errors):
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros(n_bodies), np.full(n_pairs, -np.inf),
-        np.empty((DEPTH, 2)), work,
+        np.empty((DEPTH, 2)), no_fronts(n_pairs, POOL), work,
     )  # fmt: skip
 
 
@@ -204,8 +206,12 @@ def start_before(lent, pair):
 
 
 @inline
-def ask(lent, pair, half, look, start, aim, tally):
-    """What errors leave of a pair about the middle."""
+def ask(lent, pair, half, look, start, aim, goes_on, tally):
+    """What errors leave of a pair about the middle.
+
+    Args:
+        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
+    """
     asked = borrow(lent)
     world, state = asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -214,7 +220,8 @@ def ask(lent, pair, half, look, start, aim, tally):
     pose = _pose(world, body_a, state)
     frames = frames_of(pose, _pose(world, body_b, state))
     tally[1] += 1
-    left = least_left(lent, body_a, body_b, frames, start, aim, tally)
+    moved = _moved(asked, pair) if goes_on else math.inf
+    left = least_left(lent, pair, moved, frames, start, aim, tally)
     u = turn(pose, left.u)
     state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
     return left
@@ -257,6 +264,3 @@ def note_bound(lent, pair, lower_bound):
     asked = borrow(lent)
     asked.state.lower_bounds[pair] = (lower_bound + _moved(asked, pair)) - KEPT
 
-
-KEPT = 1e-12
-"""[m] Covers the rounding of a bound that is kept and taken up again."""
