@@ -179,7 +179,7 @@ def with_value(search, value, taken, aim, thin):
     """A search that has seen what occurs [m], of which errors take so much; that moves the target."""
     target, least, enough = search.target, min(search.least, value), search.enough
     if aim.is_step:
-        target, enough = min(target, value), min(enough, value - near_by(taken))
+        enough = min(enough, value - near_by(taken))
     elif value < search.least:
         target = min(target, least - allowed_gap(least - thin, aim.gap, aim.fail))
     return SearchState(
