@@ -154,9 +154,7 @@ class PairsWithErrors:
     def _rows(
         self, n_rows: int, kernel: Callable, ask: Callable[[slice], BudgetMoments | BudgetIntervals]
     ) -> BudgetRows:
-        rows = BudgetRows(
-            np.empty(n_rows), np.full(n_rows, -1), np.full(n_rows, -1.0)
-        )
+        rows = BudgetRows(np.empty(n_rows), np.full(n_rows, -1), np.full(n_rows, -1.0))
         if n_rows == 0:
             return rows
         layout, errors, path = self.what.layout, self.errors, self.path
@@ -164,10 +162,8 @@ class PairsWithErrors:
         def run(span: slice) -> None:
             own = BudgetRows(*(column[span] for column in rows))
             world = with_turning_balls(layout.world)  # no two threads share it
-            tally = np.zeros(6, dtype=np.int64)
-            scene = BudgetScene(
-                layout.whole_faces, world, path, errors, new_state(world, errors)
-            )
+            tally = np.zeros(5, dtype=np.int64)
+            scene = BudgetScene(layout.whole_faces, world, path, errors, new_state(world, errors))
             call(kernel, scene, ask(span), own, tally)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):

@@ -148,7 +148,7 @@ class _Waiting(NamedTuple):
 
 @inline(force=True)
 def _let_wait(scene, nodes, marks, views, reaches, target, n_waiting, tally):
-    """Lets those of a group wait that are not above the target; leaves stay as well, and what waits has ~a for a."""
+    """Lets those of a group wait that are not above the target; leaves stay as well and wait with ~a for a."""
     a = b = scene.surface
     work = scene.state.work
     slack, reach = reaches.slack, reaches.reach
@@ -210,9 +210,7 @@ def _resume(scene, pair, moved, views, reaches, target, tally):
         if carried - moved < target:
             nodes = NodeGroup(marks >= OF_B, group, other)
             before = n_waiting
-            found = _let_wait(
-                scene, nodes, marks % OF_B, views, reaches, target, n_waiting, tally
-            )
+            found = _let_wait(scene, nodes, marks % OF_B, views, reaches, target, n_waiting, tally)
             n_waiting = found.n_waiting
             if n_waiting > before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
                 nearest = n_waiting - 1
@@ -290,7 +288,10 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
     while n_waiting > 0:
         n_waiting -= 1
         target = target_of(search, aim, n_looks)
-        node_a, node_b = np.int64(scratch.nodes[n_waiting, 0]), np.int64(scratch.nodes[n_waiting, 1])
+        node_a, node_b = (
+            np.int64(scratch.nodes[n_waiting, 0]),
+            np.int64(scratch.nodes[n_waiting, 1]),
+        )
         bound = scratch.bounds[n_waiting]
         is_kept = node_a < 0  # leaves, which the front has
         if is_kept:

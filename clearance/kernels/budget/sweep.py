@@ -81,8 +81,8 @@ class BudgetRows(NamedTuple):
     """What is found of each step or interval.
 
     Attributes:
-        proven: (n,) [m]. pair: (n,) of which the least occurs. share: (n,) where in the interval that was seen, 0 to
-            1, or -1.
+        proven: (n,) [m]. pair: (n,) of which the least occurs.
+        share: (n,) where in the interval that was seen, 0 to 1, or -1.
     """
 
     proven: np.ndarray
@@ -119,9 +119,7 @@ def _ahead(lent, pair, before):
     for side in range(2):
         body = scene.world.pairs[pair, side]
         if scene.world.frames[body] >= 0:
-            moved += moved_from_step(
-                scene.world, scene.path, before - 1, body, scene.state.levers
-            )
+            moved += moved_from_step(scene.world, scene.path, before - 1, body, scene.state.levers)
     return AHEAD * moved if AHEAD * moved < LITTLE else 0.0
 
 
@@ -133,7 +131,8 @@ def budget_moments(scene, asked, rows, tally, table):
 
     Args:
         scene: `BudgetScene`, with a path of at least two steps and a new state.
-        asked: `BudgetMoments`. tally: (4,) pairs passed over, searches, nodes and faces looked at.
+        asked: `BudgetMoments`. tally: (5,) pairs passed over, searches, nodes and
+            faces looked at, and faces cut.
     """
     lent = lend(scene)
     surface, world, path, errors, state = scene

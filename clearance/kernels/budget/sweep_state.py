@@ -112,7 +112,13 @@ def _pose(world, body, state):
 def fill_body(lent, body, half, look):
     """Writes the rows of a body about the middle, if they are not of this look already."""
     asked = borrow(lent)
-    surface, world, errors, path, state = asked.surface, asked.world, asked.errors, asked.path, asked.state
+    surface, world, errors, path, state = (
+        asked.surface,
+        asked.world,
+        asked.errors,
+        asked.path,
+        asked.state,
+    )
     frame = world.frames[body]
     if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
         return
@@ -239,9 +245,7 @@ def go_on(lent, before, step):
             state.moved[body] = math.inf
         else:
             for between in range(before, step):
-                state.moved[body] += moved_from_step(
-                    world, asked.path, between, body, state.levers
-                )
+                state.moved[body] += moved_from_step(world, asked.path, between, body, state.levers)
 
 
 @inline(force=True)
@@ -263,4 +267,3 @@ def note_bound(lent, pair, lower_bound):
     """Keeps the bound of a pair for later."""
     asked = borrow(lent)
     asked.state.lower_bounds[pair] = (lower_bound + _moved(asked, pair)) - KEPT
-

@@ -1,7 +1,7 @@
 """Two bodies seen along a direction that their errors tilt, so that boxes cost what they do without errors.
 
-How far errors move a point along a direction is convex in the point; over the box of a body it is at most an affine
-function, whose slope is added to the direction. What that would overrate is kept as rows of their own.
+How far errors move a point along a direction is convex in the point. Over the box of a body it is at most an
+affine function, whose slope is added to the direction. What that would overrate is kept as rows of their own.
 `NOTES.md` in `clearance/budget` has the proof. Not for: the rows (`view`), and which direction (`left`).
 """
 
@@ -25,7 +25,7 @@ def _keep(r, to):
 
 @inline
 def _tilt(box, side, u, seen, kept):
-    """(slope, [m] value in the middle of the box) above all that errors do to a body; keeps what is unlike that."""
+    """(slope, [m] value in the middle of the box) above what errors do to a body, but for the rows it keeps."""
     c = box.centre
     radius = math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN)
     little = OVERRATED * moved_of_point(c, side, u, seen)
