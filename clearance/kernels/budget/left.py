@@ -249,10 +249,22 @@ def _begin(lent, start, m, bodies, aim, thin):
     return with_value(search, length - taken, taken, aim, thin)
 
 
+@inline(force=True)
+def _reaches_of(scene, bodies, solid_a, solid_b, slack):
+    """([m] surfaces and balls of two bodies, how far errors move and turn both)."""
+    surface, sums = scene.surface, scene.state.work.found.sums
+    one, other = sums[bodies.a], sums[bodies.b]
+    thin = radii_of(surface, solid_a, surface, solid_b).both + one[SURFACE] + other[SURFACE]
+    turn = max(one[TURNED], other[TURNED])
+    reach = one[REACH] + other[REACH]
+    return thin, _Reaches(slack, reach, turn, math.cos(turn), math.sin(turn))
+
+
 @inline(one_caller=True)
-def _first(scene, pair, moved, bodies, search, reaches, target, tally):
+def _first(scene, pair, moved, bodies, search, reaches, aim, tally):
     """What waits first: what the front of the pair has left, or the roots."""
     if moved < math.inf and scene.state.fronts.spans[pair, 1] > 0:
+        target = target_of(search, aim, 0)
         return _resume(scene, pair, moved, search.views, reaches, target, tally)
     scratch = scene.state.work.scratch
     scratch.nodes[0, 0], scratch.nodes[0, 1] = bodies.root_a, bodies.root_b
@@ -270,20 +282,15 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
     """
     scene = borrow(lent)
     a = b = scene.surface
-    fronts, scratch, m = scene.state.fronts, scene.state.work.scratch, frames.m
+    scratch, m = scene.state.work.scratch, frames.m
     body_a, body_b = scene.world.pairs[pair, 0], scene.world.pairs[pair, 1]
     solid_a, solid_b = scene.world.solids[body_a], scene.world.solids[body_b]
     bodies = TwoBodies(body_a, body_b, a.roots[solid_a], b.roots[solid_b])
     slack = CHAIN_SLACK * rounding_slack(a, bodies.root_a, b, bodies.root_b, frames)
-    sums_a, sums_b = scene.state.work.found.sums[body_a], scene.state.work.found.sums[body_b]
-    thin = radii_of(a, solid_a, b, solid_b).both + sums_a[SURFACE] + sums_b[SURFACE]
-    turn = max(sums_a[TURNED], sums_b[TURNED])
-    reaches = _Reaches(slack, sums_a[REACH] + sums_b[REACH], turn, math.cos(turn), math.sin(turn))
+    thin, reaches = _reaches_of(scene, bodies, solid_a, solid_b, slack)
     search = _begin(lent, start, m, bodies, aim, thin)
     n_looks, n_left = 0, 0
-    first = _first(
-        scene, pair, moved, bodies, search, reaches, target_of(search, aim, n_looks), tally
-    )
+    first = _first(scene, pair, moved, bodies, search, reaches, aim, tally)
     n_waiting, lower_bound = first.n_waiting, first.lower_bound
     while n_waiting > 0:
         n_waiting -= 1
@@ -325,9 +332,9 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         )
         search = looked.search
         if looked.gives_up:
-            forget(fronts, pair)
+            forget(scene.state.fronts, pair)
             return Left(-math.inf, search.least - thin, -math.inf, False, search.u)
     if moved < math.inf:
-        keep(fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
+        keep(scene.state.fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
     lower_bound = min(lower_bound, search.lower_bound)
     return Left(lower_bound - thin, search.least - thin, search.enough - thin, True, search.u)
