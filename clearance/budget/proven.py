@@ -15,15 +15,19 @@ from clearance.budget.errors_of import errors_of
 from clearance.compile.kernel_table import call
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
+    EXACT_LOOKS,
+    FEW,
+    ROUGH_LOOKS,
     BudgetIntervals,
     BudgetMoments,
     BudgetRows,
     budget_intervals,
     budget_moments,
 )
+from clearance.kernels.budget.sweep_state import BudgetScene, new_state
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
-from clearance.simulate.layout import PairsInMotion
+from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.measure import Measurement
 from clearance.simulate.parts import in_order, parts
 from clearance.world.budget import Budget
@@ -89,14 +93,22 @@ class PairsWithErrors:
         return Moments(intervals, (numbers - intervals).astype(np.float64))
 
     def at(
-        self, moments: Moments, order: np.ndarray, known: np.ndarray, enough: float = np.inf
+        self,
+        moments: Moments,
+        order: np.ndarray,
+        known: np.ndarray,
+        enough: float = np.inf,
+        points: np.ndarray | None = None,
     ) -> BudgetRows:
         """What is proven at some moments.
 
         Args:
             order: (n,) the pair to look at first, or -1. known: (n,) [m] nominal, or NaN.
             enough: [m] what is proven beyond it is not looked into.
+            points: (n, 2, 3) [m] the nearest points of that pair, as it is measured, if they are known.
         """
+        n_looks = EXACT_LOOKS if len(moments) <= FEW else ROUGH_LOOKS
+        near = np.full((len(moments), 2, 3), np.nan) if points is None else points
 
         def ask(span: slice) -> BudgetMoments:
             return BudgetMoments(
@@ -104,7 +116,9 @@ class PairsWithErrors:
                 _writable(moments.shares[span]),
                 _writable(order[span]),
                 _writable(known[span]),
+                _writable(near[span]),
                 enough,
+                n_looks,
             )
 
         return self._rows(len(moments), budget_moments, ask)
@@ -142,9 +156,7 @@ class PairsWithErrors:
     def _rows(
         self, n_rows: int, kernel: Callable, ask: Callable[[slice], BudgetMoments | BudgetIntervals]
     ) -> BudgetRows:
-        rows = BudgetRows(
-            np.empty(n_rows), np.full(n_rows, -1), np.full((n_rows, 2), -1), np.full(n_rows, -1.0)
-        )
+        rows = BudgetRows(np.empty(n_rows), np.full(n_rows, -1), np.full(n_rows, -1.0))
         if n_rows == 0:
             return rows
         layout, errors, path = self.what.layout, self.errors, self.path
@@ -152,8 +164,9 @@ class PairsWithErrors:
         def run(span: slice) -> None:
             own = BudgetRows(*(column[span] for column in rows))
             world = with_turning_balls(layout.world)  # no two threads share it
-            tally = np.zeros(4, dtype=np.int64)
-            call(kernel, layout.whole_faces, world, path, errors, ask(span), own, tally)
+            tally = np.zeros(5, dtype=np.int64)
+            scene = BudgetScene(layout.whole_faces, world, path, errors, new_state(world, errors))
+            call(kernel, scene, ask(span), own, tally)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):
             pass
@@ -163,14 +176,18 @@ class PairsWithErrors:
 
 def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
     """What is proven at each step, from what was measured."""
-    return pairs.at(pairs.steps(), found.pair, found.clearance)
+    what, points = pairs.what, found.points
+    if not what.layout.is_in_world:
+        positions = positions_at(what.case, what.motions, range(pairs.n_steps))
+        points = what.layout.from_world(positions, found.pair, points)
+    return pairs.at(pairs.steps(), found.pair, found.clearance, points=points)
 
 
 def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> BudgetRows:
     """What is proven from each step to the next, of what is proven at the steps; the last row is of its step."""
     known = np.minimum(steps.proven[:-1], steps.proven[1:])
     found = pairs.between(np.arange(len(known)), steps.pair[:-1], known, gap)
-    last = BudgetRows(steps.proven[-1:], steps.pair[-1:], steps.faces[-1:], np.full(1, -1.0))
+    last = BudgetRows(steps.proven[-1:], steps.pair[-1:], np.full(1, -1.0))
     return BudgetRows(*(np.concatenate(both) for both in zip(found, last, strict=True)))
 
 

@@ -70,6 +70,21 @@ class Layout:
         swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
         points[swapped] = points[swapped][:, ::-1]
 
+    def from_world(
+        self, positions: np.ndarray, pairs: np.ndarray, points: np.ndarray
+    ) -> np.ndarray:
+        """(k, 2, 3) [m] witness points in the world as their pairs are measured; the inverse of `to_world`."""
+        points = points.copy()
+        swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
+        points[swapped] = points[swapped][:, ::-1]
+        rows = np.flatnonzero((pairs >= 0) & (self.references[pairs] != IN_WORLD))
+        if len(rows):
+            poses = poses_by_link(self.world.links, positions[rows])
+            seen_from = poses[np.arange(len(rows)), self.references[pairs[rows]]]
+            away = points[rows] - seen_from[:, None, :3, 3]
+            points[rows] = np.einsum("kji,knj->kni", seen_from[:, :3, :3], away)
+        return points
+
 
 @dataclass(frozen=True, eq=False)
 class PairsInMotion:

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from clearance.budget.proven import Moments
+from clearance.kernels.budget.face_left import REFINED
+from clearance.kernels.budget.sweep import FEW
 from tests.budget.budget_cases import pair_names, proven_sections, random_case
 from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
 
@@ -45,3 +48,27 @@ def test_no_errors_come_below_what_is_proven_of_the_worst_step(seed):
         time = section.phase.times[worst]
         assert steps.proven[worst] < found.clearance[worst]
         assert_none_below(case, section, time, steps.proven[worst], rng, 8, ascend=True)
+
+
+@pytest.mark.parametrize("seed", (1, 2))
+def test_no_errors_come_below_what_is_proven_of_many_steps(seed):
+    """So many that a search goes on from where the one of the step before has ended."""
+    case = random_case(seed, n_steps=FEW + 8)
+    rng = np.random.default_rng(seed)
+    for section, found, _, steps, _ in proven_sections(case):
+        free = np.flatnonzero(found.clearance > 0.0)
+        for step in free[np.argsort(steps.proven[free])[:2]]:
+            time = section.phase.times[step]
+            assert_none_below(case, section, time, steps.proven[step], rng, 4, ascend=False)
+
+
+def test_many_steps_are_no_looser_than_the_stated_share_of_each_alone():
+    case = random_case(1, n_steps=FEW + 8)
+    for _, found, pairs, steps, _ in proven_sections(case):
+        at = pairs.steps()
+        for i in np.flatnonzero(found.clearance > 0.0):
+            one = slice(i, i + 1)
+            moment = Moments(at.intervals[one], at.shares[one])
+            alone = pairs.at(moment, found.pair[one], found.clearance[one]).proven[0]
+            taken = found.clearance[i] - alone
+            assert steps.proven[i] >= alone - 2.0 * REFINED * taken

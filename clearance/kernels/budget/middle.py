@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, shared
-from clearance.kernels.budget.errors import JointMotion
 from clearance.kernels.budget.levers import bow_of
 from clearance.kernels.motion.certify import IntervalMiddle, go_to_middle
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
@@ -119,8 +118,6 @@ def go_to_part(links, path, errors, step, low, high, middle):
 
 
 @inline
-def motion_about(path, step, low, high, middle):
-    """What joints do about a middle, as rows of errors take it."""
-    length = path.times[step + 1] - path.times[step]
-    state = middle.state
-    return JointMotion(state.swing, state.bend, middle.turned, 0.5 * (high - low) * length)
+def half_of(path, step, low, high):
+    """[s] half of a part of the interval after a step."""
+    return 0.5 * (high - low) * (path.times[step + 1] - path.times[step])

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, shared
+from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.vec3 import (
     RigidMotion,
     Vec3,
@@ -24,7 +25,6 @@ from clearance.kernels.arithmetic.vec3 import (
 )
 from clearance.kernels.budget.reach import along_at_rest
 from clearance.kernels.budget.view import look_along, moved_of_point
-from clearance.kernels.mesh.surface import Surface
 
 MOST_PIECES = 600
 """Pairs of pieces that are looked at of two faces; what is left then is bounded as it is."""
@@ -45,20 +45,26 @@ class Pieces(NamedTuple):
     bounds: np.ndarray
 
 
+class TwoBodies(NamedTuple):
+    """Two bodies: the rows of their errors, and the roots of their trees."""
+
+    a: int
+    b: int
+    root_a: int
+    root_b: int
+
+
 class TwoFaces(NamedTuple):
-    """Two faces of two surfaces.
+    """A face of each of two bodies.
 
     Attributes:
-        m: `a_from_b`. body_a, body_b: whose errors move them.
+        m: `a_from_b`. bodies: whose errors move them.
     """
 
-    a: Surface
-    face_a: int
-    b: Surface
-    face_b: int
+    a: int
+    b: int
     m: RigidMotion
-    body_a: int
-    body_b: int
+    bodies: TwoBodies
 
 
 class PieceBound(NamedTuple):
@@ -186,8 +192,10 @@ class _Seen(NamedTuple):
 
 
 @inline
-def _look(p, q, m, body_a, body_b, found, own, slack):
-    """What is seen of two pieces, `q` in the frame of b; `own` is overwritten."""
+def _look(lent, p, q, m, bodies, slack):
+    """What is seen of two pieces, `q` in the frame of b; overwrites the rows along their own direction."""
+    work = borrow(lent).state.work
+    found, own, body_a, body_b = work.found, work.own, bodies.a, bodies.b
     x, y = _near_points(p, _in_other(q, m))
     d = sub(y, x)
     length = math.sqrt(dot(d, d))
@@ -215,8 +223,11 @@ def _look(p, q, m, body_a, body_b, found, own, slack):
 
 
 @inline
-def _begin(a, face_a, b, face_b, pieces):
+def _begin(lent, face_a, face_b):
     """All pairs of triangles of two fans; how many, or 0 where they are too many."""
+    scene = borrow(lent)
+    pieces = scene.state.work.pieces
+    a = b = scene.surface
     first_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     first_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
     n_a, n_b = max(1, end_a - first_a - 2), max(1, end_b - first_b - 2)
@@ -245,15 +256,15 @@ def _fan(surface, first, end, i):
 
 
 @inline
-def bound_of_pieces(faces, whole, found, own, slack, target, near, pieces):
+def bound_of_pieces(lent, faces, whole, slack, target, near):
     """What two faces come to in pieces, at most until each stays above the target.
 
     Args:
-        faces: `TwoFaces`. whole: [m] a bound on both. own: rows that are overwritten.
+        faces: `TwoFaces`. whole: [m] a bound on both.
         target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
     """
-    m, body_a, body_b = faces.m, faces.body_a, faces.body_b
-    n = _begin(faces.a, faces.face_a, faces.b, faces.face_b, pieces)
+    pieces = borrow(lent).state.work.pieces
+    n = _begin(lent, faces.a, faces.b)
     least = math.inf
     if n == 0:
         return PieceBound(whole, least)
@@ -262,7 +273,7 @@ def bound_of_pieces(faces, whole, found, own, slack, target, near, pieces):
     while n > 0:
         n -= 1
         p, q = _read(pieces.corners[n], 0), _read(pieces.corners[n], 9)
-        seen = _look(p, q, m, body_a, body_b, found, own, slack)
+        seen = _look(lent, p, q, faces.m, faces.bodies, slack)
         looked += 1
         least = min(least, seen.value)
         target = min(target, least - near)

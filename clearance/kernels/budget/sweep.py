@@ -9,26 +9,35 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import lend
-from clearance.kernels.budget.errors import REACH, JointMotion
-from clearance.kernels.budget.left import Aim
+from clearance.compile.kernel_table import borrow, lend
+from clearance.kernels.budget.errors import REACH
+from clearance.kernels.budget.face_left import Aim
 from clearance.kernels.budget.levers import fill_levers, moved_from_step
-from clearance.kernels.budget.middle import go_to_part, motion_about
+from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
-    BudgetScene,
     ask,
     bound_by_boxes,
     carried_bound,
     fill_body,
     go_on,
-    new_state,
     note_bound,
+    start_at,
+    start_before,
     thin_of,
 )
 from clearance.kernels.motion.certify import DEPTH, WIDER, begin_arcs
 from clearance.kernels.motion.certify_pair import allowed_gap
+
+FEW = 16
+"""Moments that are looked at as exactly as can be."""
+
+EXACT_LOOKS = 400
+"""As in `Aim`, where moments are few."""
+
+ROUGH_LOOKS = -1
+"""The same where they are many."""
 
 
 class BudgetMoments(NamedTuple):
@@ -37,14 +46,17 @@ class BudgetMoments(NamedTuple):
     Attributes:
         intervals: (n,) the step before each. shares: (n,) how much of the interval from there has passed, 0 to 1.
         order: (n,) the pair to look at first, or -1. known: (n,) [m] the nominal clearance, or NaN.
-        enough: [m] what is proven beyond it is not looked into.
+        points: (n, 2, 3) [m] its nearest points where the links are at, or NaN.
+        enough: [m] what is proven beyond it is not looked into. exact_looks: as in `Aim`.
     """
 
     intervals: np.ndarray
     shares: np.ndarray
     order: np.ndarray
     known: np.ndarray
+    points: np.ndarray
     enough: float
+    exact_looks: int
 
 
 class BudgetIntervals(NamedTuple):
@@ -69,63 +81,63 @@ class BudgetRows(NamedTuple):
     """What is found of each step or interval.
 
     Attributes:
-        proven: (n,) [m]. pair: (n,) which pair decides it. faces: (n, 2) and which faces, or -1. share: (n,) where
-            in the interval the least was seen, 0 to 1, or -1.
+        proven: (n,) [m]. pair: (n,) of which the least occurs.
+        share: (n,) where in the interval that was seen, 0 to 1, or -1.
     """
 
     proven: np.ndarray
     pair: np.ndarray
-    faces: np.ndarray
     share: np.ndarray
 
 
 @inline
-def _most_taken(scene, pair, motion, look, state):
+def _most_taken(lent, pair, look):
     """[m] what errors can take of a pair at most, whose bodies touch."""
-    taken = thin_of(scene, pair)
+    scene = borrow(lent)
+    taken = thin_of(lent, pair)
     for side in range(2):
         body = scene.world.pairs[pair, side]
-        fill_body(scene, body, motion, look, state)
-        taken += state.work.found.sums[body, REACH]
+        fill_body(lent, body, 0.0, look)
+        taken += scene.state.work.found.sums[body, REACH]
     return taken
 
 
-@inline(force=True)
-def _with_boxes(scene, pair, motion, look, target, carried, state):
+@inline
+def _with_boxes(lent, pair, half, look, target, carried):
     """[m] the bound that is carried of a pair, or that of its boxes where it is better; then it is kept."""
-    by_boxes = bound_by_boxes(scene, pair, motion, look, target, state)
+    by_boxes = bound_by_boxes(lent, pair, half, look, target)
     if by_boxes > carried:
-        note_bound(scene.world, pair, by_boxes, state)
+        note_bound(lent, pair, by_boxes)
         return by_boxes
     return carried
 
 
-@inline(force=True)
-def _ahead(scene, pair, before, state):
+@inline
+def _ahead(lent, pair, before):
     """[m] how far beyond the best a pair is looked into, so that its bound lasts."""
-    moved = 0.0
+    scene, moved = borrow(lent), 0.0
     for side in range(2):
         body = scene.world.pairs[pair, side]
         if scene.world.frames[body] >= 0:
-            moved += moved_from_step(scene.world, scene.path, before - 1, body, state.levers)
+            moved += moved_from_step(scene.world, scene.path, before - 1, body, scene.state.levers)
     return AHEAD * moved if AHEAD * moved < LITTLE else 0.0
 
 
-@kernel
-def budget_moments(surface, world, path, errors, asked, rows, tally, table):
+@kernel(reference_counts=False)
+def budget_moments(scene, asked, rows, tally, table):
     """Fills `rows` with what errors leave of the nearest pair at each of some moments.
 
     A moment at which bodies touch is not looked into: what is left is what errors could take of that pair.
 
     Args:
-        surface: every face owns all its features. path: of at least two steps. errors: `Errors`.
-        asked: `BudgetMoments`. tally: (4,) pairs passed over, searches, nodes and faces looked at.
+        scene: `BudgetScene`, with a path of at least two steps and a new state.
+        asked: `BudgetMoments`. tally: (5,) pairs passed over, searches, nodes and
+            faces looked at, and faces cut.
     """
-    lent = lend(surface)
-    scene = BudgetScene(surface, world, path, errors)
-    state = new_state(world, errors)
+    lent = lend(scene)
+    surface, world, path, errors, state = scene
     fill_levers(surface, world, path, errors, state.levers)
-    n_pairs = len(world.pairs)
+    n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
     for i in range(len(tally)):
         tally[i] = 0
     last, before, was_step = np.int64(-1), asked.intervals[0] + np.int64(asked.shares[0]), True
@@ -134,18 +146,18 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
         is_step = share == 0.0 or share == 1.0
         begin_arcs(world.links, path.balls, interval)
         go_to_part(world.links, path, errors, interval, share, share, state.middle)
-        motion = motion_about(path, interval, share, share, state.middle)
         if not (is_step and was_step):
             state.lower_bounds[:] = -math.inf
+            state.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:
-            go_on(world, path, before, interval + np.int64(share), state)
+            go_on(lent, before, interval + np.int64(share))
             before = interval + np.int64(share)
         order = asked.order[place]
-        best, winner = math.inf, np.int64(-1)
+        best, enough, winner = math.inf, asked.enough, np.int64(-1)
         touches = asked.known[place] <= 0.0 and order >= 0
         if touches:
-            best, winner = -_most_taken(scene, order, motion, place, state), order
+            best, winner = -_most_taken(lent, order, place), order
         lowest = best
         for turn in range(-2, n_pairs):
             pair = order if turn == -2 else last if turn == -1 else np.int64(turn)
@@ -153,33 +165,33 @@ def budget_moments(surface, world, path, errors, asked, rows, tally, table):
                 continue
             if turn >= 0 and (turn == order or turn == last):
                 continue
-            target = min(best, asked.enough)
-            carried = carried_bound(world, pair, state)
+            target = min(best, enough)
+            carried = carried_bound(lent, pair)
             if turn >= 0 and carried < target:
-                carried = _with_boxes(scene, pair, motion, place, target, carried, state)
+                carried = _with_boxes(lent, pair, 0.0, place, target, carried)
             if carried >= target:
                 lowest = min(lowest, carried)
                 tally[0] += 1
                 continue
             ahead = 0.0
             if turn >= 0 and is_step and not state.late and before > 0:
-                ahead = _ahead(scene, pair, before, state)
-            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True)
-            left = ask(lent, scene, pair, motion, place, aim, state, tally)
-            note_bound(world, pair, left.lower_bound, state)
+                ahead = _ahead(lent, pair, before)
+            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks)
+            start = start_before(lent, pair)
+            if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
+                start = start_at(lent, pair, asked.points[place])
+            left = ask(lent, pair, 0.0, place, start, aim, is_step and is_rough, tally)
+            note_bound(lent, pair, left.lower_bound)
             lowest = min(lowest, left.lower_bound)
-            if left.lower_bound < best:
-                best = left.lower_bound
+            if winner < 0 or (left.lower_bound < best and left.least < math.inf):
                 winner = pair
+            best = min(best, left.lower_bound)
+            if is_rough:
+                enough = min(enough, left.enough)
         last = winner
         rows.proven[place] = lowest
         rows.pair[place] = winner
         rows.share[place] = -1.0
-        if winner >= 0:
-            rows.faces[place, 0], rows.faces[place, 1] = (
-                state.faces[winner, 0],
-                state.faces[winner, 1],
-            )
 
 
 class _Over(NamedTuple):
@@ -191,9 +203,11 @@ class _Over(NamedTuple):
 
 
 @inline
-def _hold(lent, scene, step, pair, look, least, asked, state, tally):
+def _hold(lent, step, pair, look, least, asked, tally):
     """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
-    world, path, errors, waiting = scene.world, scene.path, scene.errors, state.waiting
+    scene = borrow(lent)
+    path, state = scene.path, scene.state
+    waiting = state.waiting
     waiting[0, 0], waiting[0, 1] = 0.0, 1.0
     n_waiting, n_parts = 1, 0
     lower_bound, share, gap = math.inf, -1.0, asked.gap
@@ -205,11 +219,12 @@ def _hold(lent, scene, step, pair, look, least, asked, state, tally):
             gap *= WIDER
         if n_parts > 1:
             look += 1
-            go_to_part(world.links, path, errors, step, low, high, state.middle)
-        motion = motion_about(path, step, low, high, state.middle)
+            go_to_part(scene.world.links, path, scene.errors, step, low, high, state.middle)
+        half = half_of(path, step, low, high)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-        aim = Aim(target, least, gap, asked.fail, False)
-        left = ask(lent, scene, pair, motion, look, aim, state, tally)
+        aim = Aim(target, least, gap, asked.fail, False, 0)
+        start = start_before(lent, pair)
+        left = ask(lent, pair, half, look, start, aim, n_parts == 1, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -224,16 +239,15 @@ def _hold(lent, scene, step, pair, look, least, asked, state, tally):
     return _Over(lower_bound, least, share), n_parts > 1, look
 
 
-@kernel
-def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
+@kernel(reference_counts=False)
+def budget_intervals(scene, asked, rows, tally, table):
     """Fills `rows` with what errors leave of all pairs in the motion from each of some steps to the next.
 
     Args: as of `budget_moments`; ball joints are among the links as joints that turn, whose fixed parts and
         axes are written for each interval.
     """
-    lent = lend(surface)
-    scene = BudgetScene(surface, world, path, errors)
-    state = new_state(world, errors)
+    lent = lend(scene)
+    surface, world, path, errors, state = scene
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     for i in range(len(tally)):
@@ -243,32 +257,28 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
         step, least = asked.intervals[place], asked.known[place]
         lower_bound, share, winner = least, -1.0, np.int64(-1)
         begin_arcs(world.links, path.balls, step)
-        go_on(world, path, before, step + 1, state)
+        go_on(lent, before, step + 1)
         before = step + 1
         order = asked.order[place]
-        moved = True
-        motion = JointMotion(
-            state.middle.state.swing, state.middle.state.bend, state.middle.turned, 0.0
-        )
+        moved, half = True, half_of(path, step, 0.0, 1.0)
         for turn in range(-1, n_pairs):
             pair = order if turn < 0 else np.int64(turn)
             if turn == order or pair < 0:
                 continue
             target = min(asked.enough, least - allowed_gap(least, asked.gap, asked.fail))
-            carried = carried_bound(world, pair, state)
+            carried = carried_bound(lent, pair)
             if carried < target:
                 if moved:
                     look += 1
                     go_to_part(world.links, path, errors, step, 0.0, 1.0, state.middle)
-                    motion = motion_about(path, step, 0.0, 1.0, state.middle)
                     moved = False
-                carried = _with_boxes(scene, pair, motion, look, target, carried, state)
+                carried = _with_boxes(lent, pair, half, look, target, carried)
             if carried >= target:
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved, look = _hold(lent, scene, step, pair, look, least, asked, state, tally)
-            note_bound(world, pair, over.lower_bound, state)
+            over, moved, look = _hold(lent, step, pair, look, least, asked, tally)
+            note_bound(lent, pair, over.lower_bound)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share
             if over.lower_bound < lower_bound:
@@ -276,4 +286,3 @@ def budget_intervals(surface, world, path, errors, asked, rows, tally, table):
         rows.proven[place] = lower_bound
         rows.pair[place] = winner
         rows.share[place] = share
-        rows.faces[place, 0] = rows.faces[place, 1] = -1

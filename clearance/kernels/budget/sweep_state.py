@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, shared
+from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.budget.errors import REACH, Errors, new_body_rows
-from clearance.kernels.budget.left import LeftScratch, least_left
+from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn, turn_back
+from clearance.kernels.budget.errors import REACH, Errors, JointMotion, new_body_rows
+from clearance.kernels.budget.face_left import LeftScratch
+from clearance.kernels.budget.left import KEPT, Start, least_left
 from clearance.kernels.budget.levers import (
     Levers,
     moved_from_step,
@@ -23,7 +25,6 @@ from clearance.kernels.budget.middle import Middle, new_middle_of
 from clearance.kernels.budget.pieces import new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
-from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.body_boxes import (
     BodyBoxes,
@@ -37,6 +38,7 @@ from clearance.kernels.motion.joint_motion_bound import orientation_rounding
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.front import POOL, Fronts, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 
 
@@ -45,17 +47,17 @@ class SweepState(NamedTuple):
 
     Attributes:
         middle: where all links are. boxes: of the bodies there.
-        faces: (p, 2) that decided each pair, or -1.
+        directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
         levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
         moved: (bodies,) [m] how far each can have moved in all. lower_bounds: (p,) [m] what was proven of each
             pair, plus what its bodies had moved by then.
-        waiting: (DEPTH, 2) parts of an interval.
+        waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
     """
 
     middle: Middle
     boxes: BodyBoxes
-    faces: np.ndarray
+    directions: np.ndarray
     levers: Levers
     late: bool
     filled: np.ndarray
@@ -63,11 +65,12 @@ class SweepState(NamedTuple):
     moved: np.ndarray
     lower_bounds: np.ndarray
     waiting: np.ndarray
+    fronts: Fronts
     work: LeftScratch
 
 
 class BudgetScene(NamedTuple):
-    """What is asked about.
+    """What is asked about, and what is known of it; lent to all that works at it.
 
     Attributes:
         surface: every face owns all its features. world, path: as of a certificate. errors: `Errors`.
@@ -77,6 +80,7 @@ class BudgetScene(NamedTuple):
     world: World
     path: JointPath
     errors: Errors
+    state: SweepState
 
 
 AHEAD, LITTLE = 3.0, 0.02
@@ -91,10 +95,10 @@ def new_state(world, errors):
         new_along_rows(errors.most_rows), new_pieces(), new_scratch(),
     )  # fmt: skip
     return SweepState(
-        new_middle_of(n_links), new_body_boxes(n_bodies), np.full((n_pairs, 2), -1),
+        new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros(n_bodies), np.full(n_pairs, -np.inf),
-        np.empty((DEPTH, 2)), work,
+        np.empty((DEPTH, 2)), no_fronts(n_pairs, POOL), work,
     )  # fmt: skip
 
 
@@ -105,9 +109,16 @@ def _pose(world, body, state):
 
 
 @inline
-def fill_body(scene, body, motion, look, state):
+def fill_body(lent, body, half, look):
     """Writes the rows of a body about the middle, if they are not of this look already."""
-    surface, world, errors, path = scene.surface, scene.world, scene.errors, scene.path
+    asked = borrow(lent)
+    surface, world, errors, path, state = (
+        asked.surface,
+        asked.world,
+        asked.errors,
+        asked.path,
+        asked.state,
+    )
     frame = world.frames[body]
     if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
         return
@@ -116,6 +127,7 @@ def fill_body(scene, body, motion, look, state):
     if frame < 0:
         fill_rows_of_standing(surface, world, body, errors, found)
         return
+    motion = JointMotion(middle.swing, middle.bend, state.middle.turned, half)
     fill_rows(surface, world, body, errors, motion, middle.poses, found)
     if len(path.balls.links) > 0:
         box = box_of(surface, surface.roots[world.solids[body]])
@@ -135,57 +147,97 @@ def _place_body(surface, world, body, look, state):
 
 
 @inline(force=True)
-def thin_of(scene, pair):
+def thin_of(lent, pair):
     """[m] the surfaces and balls of both bodies of a pair."""
-    surface, world, errors = scene.surface, scene.world, scene.errors
+    asked = borrow(lent)
+    surface, world, errors = asked.surface, asked.world, asked.errors
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
     return radii.both + errors.surface[body_a] + errors.surface[body_b]
 
 
 @inline(force=True)
-def _reach(scene, body, motion, look, state):
+def _reach(lent, body, half, look):
     """[m] how far errors and motion can move any point of a body from the middle at most."""
+    asked = borrow(lent)
+    state = asked.state
     if state.late:
-        fill_body(scene, body, motion, look, state)
+        fill_body(lent, body, half, look)
         return state.work.found.sums[body, REACH]
-    moved = 0.0 if motion.half == 0.0 else moved_in_part(scene.world, motion, body, state.levers)
+    moved = 0.0
+    if half > 0.0:
+        middle = state.middle
+        motion = JointMotion(middle.state.swing, middle.state.bend, middle.turned, half)
+        moved = moved_in_part(asked.world, motion, body, state.levers)
     return state.levers.reach[body] + moved
 
 
-@inline(force=True)
-def bound_by_boxes(scene, pair, motion, look, enough, state):
+@inline
+def bound_by_boxes(lent, pair, half, look, enough):
     """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
-    surface, world = scene.surface, scene.world
+    asked = borrow(lent)
+    surface, world, state = asked.surface, asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    taken = thin_of(scene, pair)
+    taken = thin_of(lent, pair)
     for body in (body_a, body_b):
         _place_body(surface, world, body, look, state)
-        taken += _reach(scene, body, motion, look, state)
+        taken += _reach(lent, body, half, look)
     apart = bound_of_bodies(state.boxes, body_a, body_b, enough + taken + LITTLE)
     slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
     return apart - CHAIN_SLACK * slacks - taken
 
 
 @inline
-def ask(lent, scene, pair, motion, look, aim, state, tally):
-    """What errors leave of a pair about the middle."""
-    world = scene.world
+def start_at(lent, pair, points):
+    """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
+    asked = borrow(lent)
+    pose = _pose(asked.world, asked.world.pairs[pair, 0], asked.state)
+    return Start(move_back(pose, row(points, 0)), move_back(pose, row(points, 1)), True)
+
+
+@inline
+def start_before(lent, pair):
+    """A start along the direction in which a pair was seen last, from centre to centre if it was not."""
+    asked = borrow(lent)
+    surface, world, state = asked.surface, asked.world, asked.state
+    seen = row(state.directions, pair)
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    fill_body(scene, body_a, motion, look, state)
-    fill_body(scene, body_b, motion, look, state)
-    frames = frames_of(_pose(world, body_a, state), _pose(world, body_b, state))
-    bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
+    pose_a, pose_b = _pose(world, body_a, state), _pose(world, body_b, state)
+    here = Vec3(0.0, 0.0, 0.0)
+    if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
+        return Start(here, turn_back(pose_a, seen), False)
+    p = box_of(surface, surface.roots[world.solids[body_a]]).centre
+    q = box_of(surface, surface.roots[world.solids[body_b]]).centre
+    return Start(p, move_back(pose_a, move(pose_b, q)), False)
+
+
+@inline
+def ask(lent, pair, half, look, start, aim, goes_on, tally):
+    """What errors leave of a pair about the middle.
+
+    Args:
+        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
+    """
+    asked = borrow(lent)
+    world, state = asked.world, asked.state
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    fill_body(lent, body_a, half, look)
+    fill_body(lent, body_b, half, look)
+    pose = _pose(world, body_a, state)
+    frames = frames_of(pose, _pose(world, body_b, state))
     tally[1] += 1
-    left = least_left(bodies, body_a, body_b, state.faces[pair], aim, state.work, tally)
-    if left.face_a >= 0:
-        state.faces[pair, 0], state.faces[pair, 1] = left.face_a, left.face_b
+    moved = _moved(asked, pair) if goes_on else math.inf
+    left = least_left(lent, pair, moved, frames, start, aim, tally)
+    u = turn(pose, left.u)
+    state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
     return left
 
 
-@inline(force=True)
-def go_on(world, path, before, step, state):
+@inline
+def go_on(lent, before, step):
     """Adds what bodies move from one step to a later one; infinite where that is not known."""
+    asked = borrow(lent)
+    world, state = asked.world, asked.state
     for body in range(len(world.frames)):
         if world.frames[body] < 0:
             continue
@@ -193,26 +245,25 @@ def go_on(world, path, before, step, state):
             state.moved[body] = math.inf
         else:
             for between in range(before, step):
-                state.moved[body] += moved_from_step(world, path, between, body, state.levers)
+                state.moved[body] += moved_from_step(world, asked.path, between, body, state.levers)
 
 
 @inline(force=True)
-def _moved(world, pair, state):
-    return state.moved[world.pairs[pair, 0]] + state.moved[world.pairs[pair, 1]]
+def _moved(asked, pair):
+    pairs, moved = asked.world.pairs, asked.state.moved
+    return moved[pairs[pair, 0]] + moved[pairs[pair, 1]]
 
 
 @inline(force=True)
-def carried_bound(world, pair, state):
+def carried_bound(lent, pair):
     """[m] what is left of the bound of a pair after what its bodies have moved."""
-    moved = _moved(world, pair, state)
-    return state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
+    asked = borrow(lent)
+    moved = _moved(asked, pair)
+    return asked.state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
 
 
 @inline(force=True)
-def note_bound(world, pair, lower_bound, state):
+def note_bound(lent, pair, lower_bound):
     """Keeps the bound of a pair for later."""
-    state.lower_bounds[pair] = (lower_bound + _moved(world, pair, state)) - KEPT
-
-
-KEPT = 1e-12
-"""[m] Covers the rounding of a bound that is kept and taken up again."""
+    asked = borrow(lent)
+    asked.state.lower_bounds[pair] = (lower_bound + _moved(asked, pair)) - KEPT
