@@ -7,24 +7,24 @@ w_k a_k over those that slide. With d_k = |w_k| + b_k, and rho_k no less than ho
     |r| <= sum_k d_k rho_k (d_k / 2 + sum_{j above, turning} d_j) + sum_k b_k rho_k            (k turning)
          + sum_k d_k sum_{j above, turning} d_j + sum_k b_k                                     (k sliding).
 
-The proof is in `NOTES.md`. Not for: whether two bodies keep apart (`separation`).
+Errors of joints are added to d_k, those of frames are joints more; their first order is not in v but in `terms`. The
+proof is in `NOTES.md`. Not for: whether two bodies keep apart (`separation`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.receipt.proof.error_terms import OUTWARD, Error, Terms, terms_of
 from clearance.receipt.proof.joint_paths import Arcs, JointPositions, Pieces, joint_positions
-from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Stretch
+from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, Held, Stretch
 from clearance.receipt.proof.views import Views
 
 LEVEL = 2.0**-44
 """[-] Of how far a body reaches, for each link on the way to it: more than poses and sums are rounded by."""
-
-OUTWARD = 1.0 + 2.0**-40
-"""Covers the rounding of bounds that are sums of positive numbers."""
 
 
 class Placed(NamedTuple):
@@ -34,6 +34,7 @@ class Placed(NamedTuple):
         turn: (3, 3, k) and at: (3, k) [m] the poses. omega, v0: (3, k) [rad], [m] the swing v.
         way: [m] no point gets farther from where it is in the middle. rest: [m] the bound of |r| above.
         rounding: [m] of all that is computed of such a view along a unit vector.
+        terms: what errors do to the first order; None where there are none.
     """
 
     turn: np.ndarray
@@ -43,6 +44,7 @@ class Placed(NamedTuple):
     way: np.ndarray
     rest: np.ndarray
     rounding: np.ndarray
+    terms: Terms | None = None
 
 
 class Frames(NamedTuple):
@@ -80,6 +82,7 @@ def placed(
         np.zeros((3, 3, shape)), *(np.zeros((3, shape)) for _ in range(3)),
         *(np.zeros(shape) for _ in range(3)),
     )  # fmt: skip
+    errors: list[list[Error]] = [[] for _ in views.frames]
     for view in np.flatnonzero(wanted).tolist():
         frame, own = int(views.frames[view]), slice(view * n, (view + 1) * n)
         pose = views.poses[view, :3]
@@ -92,10 +95,12 @@ def placed(
                 (found.v0, frames.v0),
             ):
                 part[:, own] = moving[frame].T
-        bounds = _bounds(view, stretch, views, balls, joints, frames)
+        steps = _steps(view, stretch, views, joints, frames)
+        errors[view] = [error for step in steps for error in step.errors]
+        bounds = _bounds(view, stretch, views, balls, steps, frames)
         for part, bound in zip((found.way, found.rest, found.rounding), bounds, strict=True):
             part[own] = bound
-    return found
+    return found if stretch.errors is None else found._replace(terms=terms_of(errors, n))
 
 
 def _frames(
@@ -153,52 +158,141 @@ def _turned(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return turn
 
 
+class Step(NamedTuple):
+    """What moves a view by one frame of its chain, the joint first.
+
+    Attributes:
+        kind: of the joint. axis, at: (pieces, 3) its axis, and a point of it [m]. most: (pieces,) how far it swings
+            and bends; bend: (pieces,) of that. length: (pieces,) [m] at most from the frame above.
+        off: how far the frame's rotation is from one. errors: of the joint, then of frames, from the body outward.
+    """
+
+    kind: int
+    axis: np.ndarray
+    at: np.ndarray
+    most: np.ndarray
+    bend: np.ndarray
+    length: np.ndarray
+    off: float
+    errors: list[Error]
+
+
+def _steps(
+    view: int, stretch: Stretch, views: Views, positions: JointPositions, frames: Frames
+) -> list[Step]:
+    """From a body to the base; what stands in the world on frames that may be off has one step."""
+    found = []
+    chain = _chain(views, int(views.frames[view]))
+    joints = stretch.joints
+    for frame in chain:
+        link = int(views.links[frame])
+        kind = FIXED if joints.parents[link] == NONE else int(joints.kinds[link])
+        most = np.abs(positions.swing[:, link]) + positions.bend[:, link]
+        length = np.zeros(len(most)) + np.abs(joints.fixed[link, :3, 3]).sum()
+        if kind == SLIDING:
+            length = length + np.abs(positions.middle[:, link]) + most
+        axis, at = frames.axis[frame], frames.joint[frame]
+        errors = _errors_at(stretch.errors, link, kind, frame, positions, frames)
+        found.append(
+            Step(kind, axis, at, most, positions.bend[:, link], length, _off(joints.fixed[link]), errors)
+        )  # fmt: skip
+    body = int(views.bodies[view])
+    if stretch.errors is not None and stretch.carriers[body] == NONE:
+        n, zero = len(positions.middle), np.zeros(len(positions.middle))
+        pose = np.repeat(views.poses[view][None], n, axis=0)
+        held = _held(stretch.errors.of_bodies, body, pose[:, :3, :3], pose[:, :3, 3])
+        point = np.zeros((n, 3))
+        found.append(Step(FIXED, point, point, zero, zero, zero, 0.0, held))
+    return found
+
+
+def _errors_at(
+    errors: Errors | None,
+    link: int,
+    kind: int,
+    frame: int,
+    positions: JointPositions,
+    frames: Frames,
+) -> list[Error]:
+    """What may be off where a link hangs."""
+    if errors is None:
+        return []
+    axis, at, found = frames.axis[frame], frames.joint[frame], []
+    if kind != FIXED and errors.joint[link] > 0.0:
+        found.append(Error(float(errors.joint[link]), axis, None if kind == SLIDING else at))
+    origin = at - axis * positions.middle[:, link, None] if kind == SLIDING else at
+    found += _place(float(errors.xyz[link]), float(errors.angle[link]), origin)
+    return found + _held(errors.of_links, link, frames.turn[frame], frames.at[frame])
+
+
+def _held(held: Held, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
+    """Those of the frames that a link or body stands on."""
+    found = []
+    for i in np.flatnonzero(held.which == which).tolist():
+        origin = turn @ held.origins[i] + at
+        found += _place(float(held.xyz[i]), float(held.angle[i]), origin)
+    return found
+
+
+def _place(xyz: float, angle: float, origin: np.ndarray) -> list[Error]:
+    turning = [Error(angle, None, origin)] if angle > 0.0 else []
+    return [*turning, Error(xyz, None, None)] if xyz > 0.0 else turning
+
+
 def _bounds(
     view: int,
     stretch: Stretch,
     views: Views,
     balls: Balls,
-    positions: JointPositions,
+    steps: Sequence[Step],
     frames: Frames,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(pieces,) each, way, rest and rounding of one view."""
     middle, radius = balls.middle[view], float(balls.radius[view])
     frame = int(views.frames[view])
-    chain = _chain(views, frame)
-    n = positions.middle.shape[0]
-    centre = np.zeros((n, 3)) if frame == NONE else frames.turn[frame] @ middle + frames.at[frame]
-    joints = stretch.joints
-    reach = np.sqrt((middle * middle).sum()) + radius + np.abs(views.poses[view, :3, 3]).sum()
-    way, rest, turns = np.zeros(n), np.zeros(n), np.zeros(n)
-    off = _off(views.poses[view])
-    moving = []
-    for frame in chain:
-        link = int(views.links[frame])
-        reach = reach + np.abs(joints.fixed[link, :3, 3]).sum()
-        off += _off(joints.fixed[link])
-        if joints.parents[link] == NONE or joints.kinds[link] == FIXED:
-            continue
-        most = np.abs(positions.swing[:, link]) + positions.bend[:, link]
-        if joints.kinds[link] == SLIDING:
-            reach = reach + np.abs(positions.middle[:, link]) + most
-        else:
-            turns = turns + most
-        moving.append((frame, link, most))
-    above = turns.copy()
-    for frame, link, most in moving:  # from the body to the base
-        bend = positions.bend[:, link]
-        if joints.kinds[link] == SLIDING:
+    pose = views.poses[view]
+    turn, at = (pose[:3, :3], pose[:3, 3]) if frame == NONE else (frames.turn[frame], frames.at[frame])
+    centre = turn @ middle + at
+    reach = np.sqrt((middle * middle).sum()) + radius + np.abs(pose[:3, 3]).sum()
+    off = _off(pose) + sum(step.off for step in steps)
+    motions = [motion for step in steps for motion in _motions(step)]
+    above = sum((one.most for one in motions if one.origin is not None), np.zeros(1))
+    size = reach + sum((step.length for step in steps), np.zeros(1))
+    turns = above
+    way, rest = np.zeros(1), np.zeros(1)
+    for axis, origin, most, bend in motions:  # from the body to the base
+        if origin is None:
             rest = rest + most * above + bend
-            way = way + most
+            way, size = way + most, size + most
             continue
         above = above - most
-        arm = _across(frames.axis[frame], centre - frames.joint[frame])
-        rho = np.sqrt((arm * arm).sum(axis=1)) + radius + way
+        arm = centre - origin if axis is None else _across(axis, centre - origin)
+        rho = np.sqrt((arm * arm).sum(axis=-1)) + radius + way
         rest = rest + rho * (most * (0.5 * most + np.maximum(above, 0.0)) + bend)
         way = way + most * rho
-    size = (reach + way) * (1.0 + turns)
-    rounding = ((len(chain) + 4) * LEVEL + 4.0 * off) * size
+    rounding = ((len(steps) + 4) * LEVEL + 4.0 * off) * (size + way) * (1.0 + turns)
     return way * OUTWARD, rest * OUTWARD, rounding
+
+
+class Motion(NamedTuple):
+    """A turn about an axis through `origin`, or about any, or a slide, where there is none; `bend` is part of `most`."""
+
+    axis: np.ndarray | None
+    origin: np.ndarray | None
+    most: np.ndarray
+    bend: np.ndarray
+
+
+def _motions(step: Step) -> list[Motion]:
+    """The joint with its own error, which has the same axis, then all others."""
+    still = np.zeros(1)
+    if step.kind == FIXED:
+        return [Motion(e.axis, e.origin, still + e.size, still) for e in step.errors]
+    own = [e for e in step.errors if e.axis is not None]
+    most = step.most + sum(e.size for e in own)
+    joint = Motion(step.axis, None if step.kind == SLIDING else step.at, most, step.bend)
+    rest = [e for e in step.errors if e.axis is None]
+    return [joint, *(Motion(e.axis, e.origin, still + e.size, still) for e in rest)]
 
 
 def _chain(views: Views, frame: int) -> list[int]:
