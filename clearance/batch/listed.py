@@ -94,9 +94,7 @@ def _options_told(one: Options, index: dict[Waiver, int]) -> dict[str, object]:
 def _options(told: dict, waivers: Sequence[Waiver]) -> Options:
     own = tuple(waivers[i] for i in told["waivers"])
     key = _key_now(told["tolerance"])
-    return Options(
-        **told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key}
-    )
+    return Options(**told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key})
 
 
 def _key_now(tolerance: str) -> str:

@@ -48,8 +48,8 @@ class Options:
         """The question about a case.
 
         Raises:
-            BadInput: a warn limit below the fail limit; tolerances that are not of this case, or not those that the
-                key is of.
+            BadInput: a warn limit below the fail limit; tolerances that are not of this case, or are others than
+                the key is of.
         """
         case = self._with_tolerance(case)
         limits = with_levels(case.limits, self.fail, self.warn)

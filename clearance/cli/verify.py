@@ -15,9 +15,7 @@ from clearance.cli import ExitCode
 if TYPE_CHECKING:
     from clearance.run import Question, Run
 
-NOMINAL = (
-    "the receipt proves the bound without tolerances; what they leave, proven or expected, is not proven again"
-)
+NOMINAL = "the receipt proves the bound without tolerances; what these leave is not proven again"
 
 receipt_option = click.option(
     "--receipt",

@@ -31,8 +31,8 @@ class CaseData:
 
     Attributes:
         names, shapes: of all bodies, links robot by robot, then obstacles.
-        rules: names of what can judge a pair, and, where tolerances are covered, of the same with them: those count
-            on, and `stretches` are there once more with errors. times: (n,) [s] of the steps.
+        rules: names of what can judge a pair, and, where tolerances are covered, of the same with them; then the
+            stretches are there once more, with errors. times: (n,) [s] of the steps.
         n_pairs: how many pairs there are in all. unmeasured: what is left out, and why.
     """
 
@@ -114,9 +114,7 @@ def with_tolerances(rule: str) -> str:
     return f"{rule}, with tolerances"
 
 
-def _with_errors(
-    stretch: Stretch, errors: Errors, surfaces: np.ndarray, n_rules: int
-) -> Stretch:
+def _with_errors(stretch: Stretch, errors: Errors, surfaces: np.ndarray, n_rules: int) -> Stretch:
     """The same with errors, claimed by rules that count on."""
     padding = stretch.padding + surfaces[stretch.pairs].sum(axis=1)
     return stretch._replace(rules=stretch.rules + n_rules, padding=padding, errors=errors)

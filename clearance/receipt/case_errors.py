@@ -19,7 +19,7 @@ from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex
 
 Row = tuple[int, np.ndarray, PlacementTolerance]
-"""A link or body, where in its frame something that it stands on has its origin [m], and how far that may be off."""
+"""A link or body; where in its frame what it stands on has its origin [m]; how far that may be off."""
 
 
 def is_covered(case: Case) -> bool:
@@ -27,8 +27,8 @@ def is_covered(case: Case) -> bool:
     budget = case.tolerance
     if budget is None:
         return False
-    late = [one.timing for one in (*budget.robots.values(), *budget.obstacles.values())]
-    return not any(late)
+    late = [one.timing for one in budget.robots.values()]
+    return not any([*late, *(one.timing for one in budget.obstacles.values())])
 
 
 def errors_of(case: Case, bodies: Sequence[BodyIndex]) -> Errors:
@@ -46,7 +46,9 @@ def errors_of(case: Case, bodies: Sequence[BodyIndex]) -> Errors:
     for obstacle, link in zip(case.obstacles, forest.obstacle_links, strict=True):
         if link != WORLD:
             places[link] = _place_of(budget, obstacle.name)
-            first = link if obstacle.moves is None else link - 3  # three slides before the ball joint
+            first = (
+                link if obstacle.moves is None else link - 3
+            )  # three slides before the ball joint
             rows += [(first, at, place) for at, place in _carriers(case, budget, obstacle.mount)]
     return Errors(
         joint,
@@ -97,8 +99,8 @@ def _place_of(budget: Budget, name: str) -> PlacementTolerance:
 def _carriers(
     case: Case, budget: Budget, mount: Mount | None
 ) -> Iterator[tuple[np.ndarray, PlacementTolerance]]:
-    """The obstacles that something stands on, the nearest first, as far as they are no links that move by themselves:
-    where each has its origin [m], seen from what stands there, and how far it may be off.
+    """The obstacles that something stands on, the nearest first, up to one that moves by itself: where each has
+    its origin [m], seen from what stands there, and how far it may be off.
     """
     named = {obstacle.name: obstacle for obstacle in case.obstacles}
     pose = np.eye(4)

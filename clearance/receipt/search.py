@@ -105,7 +105,7 @@ def evidence_for(
 
 
 class _Shares:
-    """How much of what is to be proven is: an item is the share of its pair's time and of what its bodies are cut into."""
+    """How much of all is proven: an item is a share of its pair's time, and half for each cut of its bodies."""
 
     def __init__(self, stretches: Sequence[Stretch], progress: Progress | None) -> None:
         self._total = float(sum(len(one.pairs) * one.n_intervals for one in stretches))

@@ -109,8 +109,8 @@ def verify(
 
     Args:
         folder: of a report with `receipt.bin`.
-        case: the case or its file, where it is not where it was when the receipt was written. tolerance: the same of
-            a file of tolerances that was given beside the case.
+        case: the case or its file, where it is not where it was when the receipt was written.
+        tolerance: the same of a file of tolerances that was given beside the case.
 
     Raises:
         BadInput: no receipt, a damaged one, or one of other inputs or another report: which.

@@ -26,10 +26,10 @@ from clearance.receipt.receipt_file import (
 from clearance.receipt.search import Found, evidence_for
 from clearance.report.folder import write_file
 
-GIVEN_UP = (0.02, 0.05, 0.15)
-"""[-] Of what tolerances take, by which claims are lower than what was proven of them: the first that can be shown."""
+GIVEN_UP = (0.03, 0.12)
+"""[-] Of what tolerances take, by which claims are below what they leave; the first that can be shown."""
 
-MOST_WITH_ERRORS = 2_000_000
+MOST_WITH_ERRORS = 1_000_000
 """Proofs of what tolerances leave; where more are needed, more is given up."""
 
 MICROMETRES = round(2e-6 / UNIT)

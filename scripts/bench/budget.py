@@ -2,7 +2,8 @@
 
 For each scene, with the same figures of a typical cell: the least that is proven; the least found by errors at
 random and by making one after the other as bad as it can be, on distances measured anew; the sum of reach times
-error that people add by hand; time with and without, steps alone and certified. `budget_campaign.py` draws random budgets instead.
+error that people add by hand; time with and without, steps alone and certified. `budget_campaign.py` draws random
+budgets instead.
 """
 
 from __future__ import annotations
@@ -11,9 +12,9 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
+from inputs import SCENES
 
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
@@ -35,7 +36,6 @@ from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
 
-SCENES = Path(__file__).parents[2] / "scenes"
 NAMES = ("box_box", "box_pipe", "hot_cell", "iiwa_pipe_rack", "panda_shelf", "turntable_cell")
 NEAREST = 3
 """Pairs that are measured anew at a moment beside the one that decides it: the nearest."""

@@ -1,9 +1,9 @@
 """Random budgets against samples of what they allow: `python scripts/bench/budget_campaign.py --budgets 1000`.
 
-Of each case, its sections by turns, at the step at which a random budget leaves least: errors at random, and errors that
-are made as bad as found, on distances measured anew. Rows go to a journal, and what is in it is not done again, so
-that a campaign may be stopped and taken up. It ends at the first sample below what is proven. `--summary` prints
-what the journal holds.
+Of each case, its sections by turns, at the step at which a random budget leaves least: errors at random, and
+errors that are made as bad as found, on distances measured anew. Rows go to a journal, and what is in it is not done
+again, so that a campaign may be stopped and taken up. It ends at the first sample below what is proven. `--summary`
+prints what the journal holds.
 """
 
 from __future__ import annotations
@@ -17,11 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from inputs import SCENES, SHARED  # first: it sets the number of threads
-
 import numpy as np
-
-import clearance as cl
 from budget import scaled, typical
 from budget_samples import (
     Apart,
@@ -35,6 +31,9 @@ from budget_samples import (
     slopes,
     surfaces_of,
 )
+from inputs import SCENES, SHARED
+
+import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_of_steps
 from clearance.run.answers import _plan
 from clearance.run.question import Question
@@ -231,9 +230,15 @@ def summary(journal: Path) -> None:
 def main() -> None:
     """Samples, or tells what was sampled."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cases", nargs="*", type=Path, help="case files; all scenes and shared cases")
-    parser.add_argument("--budgets", type=int, default=1000, help="for each case; its sections by turns")
-    parser.add_argument("--random", type=int, default=10_000, help="samples at random a worst moment")
+    parser.add_argument(
+        "cases", nargs="*", type=Path, help="case files; all scenes and shared cases"
+    )
+    parser.add_argument(
+        "--budgets", type=int, default=1000, help="for each case; its sections by turns"
+    )
+    parser.add_argument(
+        "--random", type=int, default=10_000, help="samples at random a worst moment"
+    )
     parser.add_argument("--starts", type=int, default=1000, help="samples that are made worse")
     parser.add_argument("--seconds", type=float, default=np.inf, help="then it stops")
     parser.add_argument("--journal", type=Path, default=Path("budget_campaign.csv"))

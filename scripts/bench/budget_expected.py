@@ -14,14 +14,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from inputs import SCENES, SHARED  # first: it sets the number of threads
-
 import numpy as np
-
 from budget_campaign import Loaded, sections_in
 from budget_samples import Key, Machine, Size, body_name, sizes_of
-from clearance.budget.expected import deviations, witness_of
+from inputs import SCENES, SHARED
+
 from clearance.budget.errors_of import surface_of
+from clearance.budget.expected import deviations, witness_of
 from clearance.world.pairs import Pair
 
 PAIRS = 4
@@ -99,7 +98,9 @@ def rows(of: Loaded, n: int) -> Iterator[tuple]:
 def main() -> None:
     """Prints a row a pair."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cases", nargs="*", type=Path, help="case files; all scenes and shared cases")
+    parser.add_argument(
+        "cases", nargs="*", type=Path, help="case files; all scenes and shared cases"
+    )
     parser.add_argument("--samples", type=int, default=100_000)
     asked = parser.parse_args()
     table = csv.writer(sys.stdout)

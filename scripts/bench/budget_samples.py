@@ -248,9 +248,7 @@ def _times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(3, 3, n) products; b may be one for all."""
     if b.ndim == 2:
         b = b[:, :, None]
-    return (
-        a[:, 0, None] * b[None, 0] + a[:, 1, None] * b[None, 1] + a[:, 2, None] * b[None, 2]
-    )
+    return a[:, 0, None] * b[None, 0] + a[:, 1, None] * b[None, 1] + a[:, 2, None] * b[None, 2]
 
 
 def _pose_of_seven(row: np.ndarray) -> np.ndarray:

@@ -17,10 +17,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from inputs import SCENES, SHARED  # first: it sets the number of threads
+from budget import typical
+from inputs import SCENES, SHARED
 
 import clearance as cl
-from budget import typical
 
 COLUMNS = (
     "case", "steps", "pairs", "kB", "run_s", "verify_s", "ratio", "loaded_run_s", "loaded_verify_s",
@@ -60,7 +60,8 @@ def row_with_tolerances(path: Path) -> tuple:
     return (
         path.parent.name, len(run.steps), found.n_pairs, f"{size / 1e3:.0f}",
         f"{times[0]:.4f}", f"{times[1]:.3f}", f"{times[1] / times[0]:.1f}", f"{written:.1f}",
-        f"{1e3 * told:.3f}", f"{1e3 * min(proven, default=0.0):.3f}", found.n_not_ruled_out, found.nominal, found.proven,
+        f"{1e3 * told:.3f}", f"{1e3 * min(proven, default=0.0):.3f}", found.n_not_ruled_out,
+        found.nominal, found.proven,
     )  # fmt: skip
 
 

@@ -152,7 +152,6 @@ def test_the_hook_fails_where_tolerances_leave_a_limit_unproven(place, capsys):
     assert run(["pre-commit", "tight/case.yaml"]) == 0
 
 
-
 def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(place, capsys):
     check("clear/case.yaml", "--out", "of_clear", "--quiet")
     check("broken/case.yaml", "--out", "of_broken", "--quiet")

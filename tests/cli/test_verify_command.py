@@ -117,7 +117,7 @@ def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys
 
 
 def test_tolerances_that_no_receipt_covers_are_told_in_a_line_of_their_own(home, capsys):
-    """Clocks that may be off are no part of the proof; the receipt is of the nominal bound, and says so at once."""
+    """Clocks that may be off are no part of the proof: the receipt is nominal, and says so at once."""
     case = home / "scenes" / "box_box" / "case.yaml"
     tolerances, out = home / "tol.yaml", home / "late"
     tolerances.write_text("timing: {all: 0.001}\n")

@@ -55,7 +55,9 @@ def link_above(stage, case, a: int, b: int) -> str | None:
         for placed, start in zip(case.robots, forest.robot_starts, strict=True)
         for i, name in enumerate(placed.robot.link_names)
     }
-    names |= {link: one.name for one, link in zip(case.obstacles, forest.obstacle_links, strict=True)}
+    names |= {
+        link: one.name for one, link in zip(case.obstacles, forest.obstacle_links, strict=True)
+    }
     return names[both[0]] if both else None
 
 
@@ -115,12 +117,14 @@ def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
 
 
 def test_the_bound_of_a_single_turn_is_that_of_its_arc():
-    """A bar whose tip is 0.8 m and 0.05 m from its axis and may turn by e: along y by 0.8 sin e + 0.05 (cos e - 1)."""
+    """A corner at 0.8, 0.05 m from the axis: by e along y it goes 0.8 sin e + 0.05 (cos e - 1)."""
     e = 1e-3
     case = turning_arm(turn=1e-9, n_steps=2)
     off = RobotTolerance({"turn": JointTolerance(e, 0.0, PlacementTolerance(0.002, 0.0))})
     data = case_data(replace(case, tolerance=Budget({"arm": off})))
-    halves = np.array([1, 2])  # of the bar: six triangles each, whose corners are looked at one by one
+    halves = np.array(
+        [1, 2]
+    )  # of the bar: six triangles each, whose corners are looked at one by one
     zero = np.zeros(2, dtype=np.int64)
     items = Items(zero, halves, zero, zero, zero + 1, zero, zero)
     u = np.repeat([[0.0], [1.0], [0.0]], 2, axis=1)

@@ -61,7 +61,7 @@ def test_what_tolerances_leave_is_proven(folder):
     least = found.bounds["default, with tolerances"]
     taken = found.bounds["default"] - told
     assert found.proven and not found.nominal
-    assert taken > 0.003 and told - 0.03 * taken - 3e-6 <= least < told
+    assert taken > 0.003 and told - 0.04 * taken - 3e-6 <= least < told
     assert "(default), at least" in found.headline and "NOMINAL" not in found.headline
 
 
@@ -83,7 +83,9 @@ def test_less_than_the_report_tells_of_is_not_proven(folder):
     assert "summary.json tells of" in cl.verify(folder, loose()).failure
     claims[1] = NOT_CLAIMED
     rewritten(folder, claims=claims)
-    assert "nothing is claimed of rule default, with tolerances" in cl.verify(folder, loose()).failure
+    assert (
+        "nothing is claimed of rule default, with tolerances" in cl.verify(folder, loose()).failure
+    )
 
 
 def test_tolerances_cannot_be_made_smaller_or_left_out(folder):
@@ -121,7 +123,8 @@ def test_pairs_that_are_left_out_change_what_it_is_of(folder):
     rewritten(folder, head=receipt.head | {"data": case_data(fewer).digest})
     assert not proven(folder, fewer)  # what is there is of more pairs
     more = replace(
-        loose(), obstacles=(*loose().obstacles, cl.Obstacle(cl.Body("late", cl.box((0.1, 0.1, 0.1)))))
+        loose(),
+        obstacles=(*loose().obstacles, cl.Obstacle(cl.Body("late", cl.box((0.1, 0.1, 0.1))))),
     )
     rewritten(folder, head=receipt.head | {"data": case_data(more).digest})
     assert not proven(folder, more)
@@ -129,7 +132,7 @@ def test_pairs_that_are_left_out_change_what_it_is_of(folder):
 
 @pytest.mark.parametrize("deed", [CUT_A, CUT_TIME])
 def test_a_cut_that_leaves_out_faces_or_time_is_none(folder, deed):
-    """What an item is cut into covers it: halves that are called proven without proof are looked at all the same."""
+    """What an item is cut into covers it: halves that are called proven are looked at all the same."""
     receipt = read_receipt(folder / FILE_NAME)
     for first in (0, len(receipt.deeds) // 2):
         deeds = receipt.deeds.copy()

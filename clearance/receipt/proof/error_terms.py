@@ -1,12 +1,12 @@
 """What errors do to a point along a direction, to the first order: what tolerances take of a distance.
 
-With turns by up to e about axes a through c, slides by up to e along a, and frames that may turn by up to `angle` about
-any axis through o and be off by up to xyz, a point x moves along U by no more than f(x) and a rest,
+With turns by up to e about axes a through c, slides by up to e along a, and frames that may turn by up to `angle`
+about any axis through o and be off by up to xyz, a point x moves along U by no more than f(x) and a rest,
 
     f(x) = sum e |U . (a x (x - c))| + sum e |U . a| + sum angle |U x (x - o)| + |U| sum xyz.
 
-f is convex: over a polygon it is greatest at a corner, over a box at most its value in the middle and its slope times
-the radius. The rest is of the second order and part of `placing`. Not for: how large errors are (`motion_data`).
+f is convex: over a polygon it is greatest at a corner, over a box at most its value in the middle and its slope
+times the radius. The rest is of the second order (`ways`). Not for: how large errors are (`motion_data`).
 """
 
 from __future__ import annotations

@@ -75,8 +75,8 @@ class Errors(NamedTuple):
     """How far the links and what stands in the world may be from where they are said to be.
 
     Attributes:
-        joint: (links,) [rad or m] of the joint above each. xyz: (links,) [m] and angle: (links,) [rad] of the frame
-            that it hangs on. of_links, of_bodies: what links stand on, and bodies that no link carries.
+        joint: (links,) [rad or m] of the joint above each. xyz, angle: (links,) [m], [rad] of the frame that it
+            hangs on. of_links, of_bodies: what links stand on, and bodies that no link carries.
     """
 
     joint: np.ndarray
