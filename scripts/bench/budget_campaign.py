@@ -1,9 +1,9 @@
 """Random budgets against samples of what they allow: `python scripts/bench/budget_campaign.py --budgets 1000`.
 
 Of each case, its sections by turns, at the step at which a random budget leaves least: errors at random, and
-errors that are made as bad as found, on distances measured anew. Rows go to a journal, and what is in it is not done
-again, so that a campaign may be stopped and taken up. It ends at the first sample below what is proven. `--summary`
-prints what the journal holds.
+errors that are made as bad as found, on distances measured anew. Rows go to a journal, and what is in it is not
+done again, so that a campaign may be stopped and taken up. It ends at the first sample below what is proven.
+`--summary` prints what the journal holds.
 """
 
 from __future__ import annotations
