@@ -83,21 +83,27 @@ class Verification:
         )
         bounds = bounds or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
-        touch = ""
-        if self.n_contact:
-            touch = f", except in {self.n_contact} intervals, in which bodies may touch"
         inputs = f"{len(self.inputs)} inputs unchanged"
         if self.not_read:
             inputs += (
                 f", {len(self.not_read)} not read again ({', '.join(p for p, _ in self.not_read)})"
             )
-        if self.n_not_ruled_out:
-            touch += f", and with tolerances in {self.n_not_ruled_out}, in which contact is not ruled out"
         nominal = ", NOMINAL ONLY: tolerances are not taken off" if self.nominal else ""
         return (
-            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{touch}"
+            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{self._left_out}"
             f"{nominal}; {inputs}, data {self.data[:16]}"
         )
+
+    @property
+    def _left_out(self) -> str:
+        """In how many intervals there is nothing to prove."""
+        told = ""
+        if self.n_contact:
+            told = f", except in {self.n_contact} intervals, in which bodies may touch"
+        if self.n_not_ruled_out:
+            told += f", except with tolerances in {self.n_not_ruled_out} intervals"
+            told += ", in which contact is not ruled out"
+        return told
 
 
 def verify(

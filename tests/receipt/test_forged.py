@@ -27,7 +27,7 @@ from clearance.world.budget import (
 from tests.receipt.receipts import rewritten, saved, turning_arm
 
 
-def loose(size: float = 1.0) -> cl.Case:
+def loose(size: float = 1.0, far: float = 0.9) -> cl.Case:
     """The turning arm with tolerances of some millimetres."""
     frame = PlacementTolerance(0.0002 * size, 0.0001 * size)
     robot = RobotTolerance(
@@ -36,7 +36,7 @@ def loose(size: float = 1.0) -> cl.Case:
         {"bar": 0.0005 * size},
     )
     block = ObstacleTolerance(PlacementTolerance(0.001 * size, 0.002 * size))
-    return replace(turning_arm(), tolerance=Budget({"arm": robot}, {"block": block}))
+    return replace(turning_arm(far=far), tolerance=Budget({"arm": robot}, {"block": block}))
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +63,17 @@ def test_what_tolerances_leave_is_proven(folder):
     assert found.proven and not found.nominal
     assert taken > 0.003 and told - 0.04 * taken - 3e-6 <= least < told
     assert "(default), at least" in found.headline and "NOMINAL" not in found.headline
+
+
+def test_intervals_in_which_tolerances_leave_nothing_are_told(tmp_path):
+    case = loose(far=0.853)
+    saved(case, tmp_path)
+    found = cl.verify(tmp_path, case)
+    assert found.proven and found.n_contact == 0 and 0 < found.n_not_ruled_out < found.n_intervals
+    told = (
+        f"of motion, except with tolerances in {found.n_not_ruled_out} intervals, in which contact"
+    )
+    assert told in found.headline
 
 
 def test_no_raised_bound_with_tolerances_is_proven(folder):
