@@ -90,7 +90,8 @@ class Verification:
             )
         nominal = ", NOMINAL ONLY: tolerances are not taken off" if self.nominal else ""
         return (
-            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{self._left_out}"
+            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion"
+            f"{self._left_out}"
             f"{nominal}; {inputs}, data {self.data[:16]}"
         )
 
