@@ -14,6 +14,7 @@ from pathlib import Path
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import Options
 from clearance.errors import BadInput, MissingFile, nearest_name
+from clearance.load.tolerance_file import tolerance_digest
 from clearance.report.folder import write_file
 from clearance.world.waiver import Waiver
 
@@ -92,7 +93,16 @@ def _options_told(one: Options, index: dict[Waiver, int]) -> dict[str, object]:
 
 def _options(told: dict, waivers: Sequence[Waiver]) -> Options:
     own = tuple(waivers[i] for i in told["waivers"])
-    return Options(**told | {"accept": tuple(told["accept"]), "waivers": own})
+    key = _key_now(told["tolerance"])
+    return Options(**told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key})
+
+
+def _key_now(tolerance: str) -> str:
+    """The key of a file of tolerances as it is now: what was measured with another content is missing."""
+    try:
+        return tolerance_digest(Path(tolerance)) if tolerance else ""
+    except BadInput:
+        return "none"
 
 
 _WAIVER = ("between", "at_least", "reason", "by", "case", "rule", "where", "shared")

@@ -19,6 +19,7 @@ from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.load.input_files import read_bytes
 from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_manifest
+from clearance.load.tolerance_file import tolerance_digest
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
 
@@ -26,7 +27,7 @@ from clearance.world.waiver import Waiver
 @dataclass(frozen=True)
 class Changes:
     """What the command line says instead of the manifests; None where it says nothing. Lengths in metres; `today`
-    as in `run.Question`; `waivers` beside those of the cases.
+    as in `run.Question`; `waivers` beside those of the cases; `tolerance` a file instead of the cases' tolerances.
     """
 
     need: str | None = None
@@ -37,6 +38,7 @@ class Changes:
     accept: tuple[str, ...] = ()
     today: date | None = None
     waivers: tuple[Waiver, ...] = ()
+    tolerance: Path | None = None
 
 
 def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
@@ -46,7 +48,8 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
         arguments: paths or patterns of manifests and of case files.
 
     Raises:
-        BadInput: a manifest that is none, a pattern that nothing matches, or two cases of one name.
+        BadInput: a manifest that is none, a pattern that nothing matches, two cases of one name, or tolerances
+            that are none.
     """
     if changes.certify_gap == 0.0:
         raise BadInput("certify: a gap of 0 m", valid="a length above 0")
@@ -65,7 +68,19 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
         found.setdefault(_identity(item), item)
     items = [replace(item, number=i) for i, item in enumerate(found.values())]
     _require_own_names(items)
+    items = _with_tolerance(items, changes.tolerance)
     return [*_waived(items, changes.waivers)] if changes.waivers else items
+
+
+def _with_tolerance(items: list[Item], path: Path | None) -> list[Item]:
+    """The items with the tolerances of a file, if one is given, in place of their cases'."""
+    if path is None:
+        return items
+    place, key = os.path.abspath(path), tolerance_digest(path)
+    return [
+        replace(item, options=replace(item.options, tolerance=place, tolerance_key=key))
+        for item in items
+    ]
 
 
 def _waived(items: Sequence[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:

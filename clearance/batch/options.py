@@ -5,7 +5,10 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime
+from pathlib import Path
 
+from clearance.errors import BadInput
+from clearance.load.tolerance_file import tolerance_digest, with_tolerance
 from clearance.run import Question
 from clearance.run.question import with_levels
 from clearance.tolerance import CERTIFY_GAP
@@ -21,6 +24,8 @@ class Options:
         need, certify, certify_gap: as in `run.Question`.
         fail, warn: [m] limits instead of the case's, as `with_levels` takes them.
         accept: kinds of suspect input that decide no verdict, beside the case's.
+        tolerance: absolute path of a file with tolerances instead of the cases'; empty for theirs. tolerance_key:
+            sha256 of what is in it; in the `repr` in place of it.
         waivers: beside those of each case, `shared` by many. waivers_key: sha256 of what they are on that day; in
             the `repr` in place of them.
         today: the day that waivers are held against, as 2027-03-31; it decides only cases that have some, so it is
@@ -34,6 +39,8 @@ class Options:
     warn: float | None = None
     accept: tuple[str, ...] = ()
     waivers_key: str = ""
+    tolerance_key: str = ""
+    tolerance: str = field(default="", repr=False, compare=False)
     today: str = field(default="", repr=False)
     waivers: tuple[Waiver, ...] = field(default=(), repr=False, compare=False)
 
@@ -41,8 +48,10 @@ class Options:
         """The question about a case.
 
         Raises:
-            BadInput: a warn limit below the fail limit.
+            BadInput: a warn limit below the fail limit; tolerances that are not of this case, or are others than
+                the key is of.
         """
+        case = self._with_tolerance(case)
         limits = with_levels(case.limits, self.fail, self.warn)
         accepted = tuple(dict.fromkeys([*case.accept, *self.accept]))
         return Question(
@@ -57,6 +66,14 @@ class Options:
             certify_gap=self.certify_gap,
             today=self.day,
         )
+
+    def _with_tolerance(self, case: Case) -> Case:
+        if not self.tolerance:
+            return case
+        path = Path(self.tolerance)
+        if tolerance_digest(path) != self.tolerance_key:
+            raise BadInput("it was changed during the batch", where=path.name, valid="once more")
+        return with_tolerance(case, path)
 
     @property
     def day(self) -> date | None:

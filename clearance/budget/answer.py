@@ -90,6 +90,7 @@ def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> 
     if answer.certificate is not None:
         between = proven_between(pairs, steps, answer.certificate.gap)
     expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
+    expected = np.maximum(expected, steps.proven)  # no estimate says less than a proof
     return SectionBudget(answer, pairs, steps, between, expected)
 
 

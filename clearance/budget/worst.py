@@ -105,7 +105,7 @@ class WorstMoments(LookedAt[BudgetMoment]):
             taken = what.budget.coverage * deviations(
                 section.phase.case, what.budget, _witness(low, moment)
             )
-            expected = moment.clearance - float(taken[0]) - section.padding
+            expected = max(moment.clearance - float(taken[0]) - section.padding, low.proven)
         told = replace(
             moment,
             step=moment.step + section.phase.first,

@@ -81,6 +81,12 @@ class _Shard(click.ParamType):
 @click.option("--certify-mm", type=Millimetres(), help="As of check.  [default: 0.1]")
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the cases'.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the cases'.")
+@click.option(
+    "--tolerance",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Tolerances instead of the cases', as of check.",
+)
 @accept_option("a verdict")
 @click.option(
     "--waivers",
@@ -110,6 +116,7 @@ def check(
     certify_mm: float | None,
     fail_mm: float | None,
     warn_mm: float | None,
+    tolerance: Path | None,
     accept: tuple[str, ...],
     waiver_files: tuple[Path, ...],
     today: date | None,
@@ -136,9 +143,12 @@ def check(
         raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
     certify = False if samples_only else None
     waivers = tuple(waiver for path in waiver_files for waiver in load_waivers(path))
-    changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers)
+    changes = Changes(
+        need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers, tolerance
+    )
     items = items_of(arguments, changes)
-    refuse_inputs([place / name for name in ANSWER], waiver_files)
+    own = waiver_files if tolerance is None else (*waiver_files, tolerance)
+    refuse_inputs([place / name for name in ANSWER], own)
     asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
     return run_asked(items, open_store(place, fresh=fresh), asked)
 

@@ -15,6 +15,8 @@ from clearance.cli import ExitCode
 if TYPE_CHECKING:
     from clearance.run import Question, Run
 
+NOMINAL = "the receipt proves the bound without tolerances; what these leave is not proven again"
+
 receipt_option = click.option(
     "--receipt",
     type=click.Choice(["full", "sampled"]),
@@ -42,14 +44,26 @@ def require_receipt(receipt: str | None, out: Path | None, question: Question) -
 
 
 def write_receipt_of(
-    run: Run, receipt: str | None, out: Path | None, case_file: Path, *, quiet: bool
+    run: Run,
+    receipt: str | None,
+    out: Path | None,
+    case_file: Path,
+    tolerance_file: Path | None,
+    *,
+    quiet: bool,
 ) -> None:
-    """Writes the receipt where one is wanted, and says how long it is."""
+    """Writes the receipt where one is wanted, and says how long it is, and if tolerances are no part of it."""
     if receipt is None or out is None:
         return
+    from clearance.cli.progress import shown_progress
+    from clearance.receipt.receipt_file import read_receipt
     from clearance.receipt.writing import write_receipt
 
-    path = write_receipt(run, out, case_file, receipt)
+    passes = ["receipt"] if run.record.case.tolerance is None else ["receipt", "with tolerances"]
+    with shown_progress(quiet, passes) as progress:
+        path = write_receipt(run, out, case_file, receipt, tolerance_file or "", progress)
+    if read_receipt(path).head["nominal"]:
+        click.echo(f"{path}: {NOMINAL}", err=True)
     if not quiet:
         size = path.stat().st_size / 1e3
         told = "receipt     " if receipt == "full" else "sampled receipt  "
@@ -65,8 +79,14 @@ def write_receipt_of(
     type=click.Path(path_type=Path),
     help="The case, where it is not where it was.",
 )
+@click.option(
+    "--tolerance",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="The tolerances that were given beside the case, where they are not where they were.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
-def verify(folder: Path, case_file: Path | None, quiet: bool) -> int:
+def verify(folder: Path, case_file: Path | None, tolerance: Path | None, quiet: bool) -> int:
     """Proves the certified bound of the report in DIR again, from its receipt and the case's files.
 
     By arithmetic of its own, which shares no code with what measured. Exit code: 0 proven; 1 not
@@ -75,7 +95,7 @@ def verify(folder: Path, case_file: Path | None, quiet: bool) -> int:
     """
     from clearance.receipt.verification import verify as verified
 
-    found = verified(folder, case_file)
+    found = verified(folder, case_file, tolerance)
     if not quiet:
         click.echo(found.headline)
         for path, digest in found.inputs:

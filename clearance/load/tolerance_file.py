@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike
@@ -48,14 +49,36 @@ def with_tolerance(case: Case, given: Budget | Mapping[str, Any] | str | PathLik
     return _with_sources(_replaced(case, budget, "tolerances that were given"), files)
 
 
+def tolerance_digest(path: Path) -> str:
+    """sha256 of a file of tolerances and of the file of controllers that it names, if it names one.
+
+    Raises:
+        BadInput: with the field and the file; what only a case can tell is not looked at.
+    """
+    files = InputFiles(path.parent)
+    block, place = _block(path, files)
+    if block.tracking is not None and block.tracking.file is not None:
+        with at(f"{place}: tracking.file"):
+            files.read(path.parent / block.tracking.file)
+    told = [(source.path, source.sha256) for source in files.sources]
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
 def _with_file(case: Case, path: Path) -> Case:
     files = InputFiles(path.parent)
+    block, place = _block(path, files)
+    with at(place):
+        budget = budget_of(block, case, files.folder, files)
+    return _with_sources(_replaced(case, budget, f"tolerances of {files.shown(path)}"), files)
+
+
+def _block(path: Path, files: InputFiles) -> tuple[Tolerance, str]:
+    """The block in a file, and how messages call it."""
     shown = files.shown(path)
     raw = parse_yaml(files.read(path), shown)
     inside = isinstance(raw, dict) and list(raw) == [KEY]
     place = f"{shown}: {KEY}" if inside else shown
-    budget = _budget(raw[KEY] if inside else raw, place, case, files)  # type: ignore[index]
-    return _with_sources(_replaced(case, budget, f"tolerances of {shown}"), files)
+    return validated(Tolerance, raw[KEY] if inside else raw, place), place  # type: ignore[index]
 
 
 def _budget(raw: object, place: str, case: Case, files: InputFiles) -> Budget:

@@ -20,8 +20,8 @@ def assert_clear(
         run: of `check`, or of the fixture `clearance_case`.
         between: patterns of names of two bodies, in any order; all pairs if not given.
         at_least: [m]; the fail limit of the rule that judges each pair if not given. Without it and `between`, the
-            run is passed. With either, input must not be suspect and no peer may disagree all the same; tolerances
-            of the case count only where neither is given.
+            run is passed. With either, input must not be suspect and no peer may disagree all the same, and where
+            the case has tolerances what they leave of the pairs is proven to keep it, unless `unproven_ok` is set.
 
     Raises:
         AssertionError: what comes nearer, how near, when, and what was asked for; or why the input is in doubt.

@@ -7,8 +7,12 @@ from collections.abc import Iterator
 from clearance.errors import BadInput, UnknownLink, nearest_name
 from clearance.report.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
+from clearance.simulate.budget_answer import RuleBudget
+from clearance.simulate.record import PairTest
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.world.rules import PairPattern, checked_level, matches
+
+CONTACT = "contact is not ruled out"
 
 
 def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> list[str]:
@@ -20,17 +24,46 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     pattern = PairPattern((between[0], between[1]))
     level = None if at_least is None else checked_level(at_least, "at_least")
     assert run.record.of_pairs is not None, "a run can be asked again"
-    answers = run.record.of_pairs(lambda _, one, other: pattern.matches(one, other), "steps")
+
+    def is_meant(_: str, one: tuple[str, ...], other: tuple[str, ...]) -> bool:
+        return pattern.matches(one, other)
+
+    answers = run.record.of_pairs(is_meant, "steps")
     if not answers:
         raise _no_such_pair(run, between)
-    return [line for answer in answers for line in _faults(answer, level)]
+    found = {answer.name: [*_faults(answer, level)] for answer in answers}
+    for left in _budgets(run, is_meant):
+        if not found[left.rule]:
+            found[left.rule] += _with_tolerances(left, between, level)
+    return [line for lines in found.values() for line in lines]
+
+
+def _budgets(run: Run, is_meant: PairTest) -> tuple[RuleBudget, ...]:
+    """What tolerances leave of the pairs; nothing without any, and where what is not proven is accepted."""
+    tolerance, asked = run.record.case.tolerance, run.record.budget_of_pairs
+    return () if tolerance is None or tolerance.unproven_ok or asked is None else asked(is_meant)
+
+
+def _with_tolerances(
+    left: RuleBudget, between: tuple[str, str], at_least: float | None
+) -> Iterator[str]:
+    level = left.limits.fail if at_least is None else at_least
+    if left.least >= level and left.least > 0.0:
+        return
+    proven = f"only {mm(left.least)} mm is proven" if left.least > 0.0 else CONTACT
+    yield f"{between[0]} - {between[1]}: with tolerances {proven}; {_wanted(left, level, at_least)}"
+
+
+def _wanted(answer: RuleAnswer | RuleBudget, level: float, at_least: float | None) -> str:
+    if at_least is not None:
+        return f"at least {limit_mm(level)} mm was asked for"
+    name = answer.name if isinstance(answer, RuleAnswer) else answer.rule
+    return f"the fail limit{of_rule(name)} is {limit_mm(level)} mm"
 
 
 def _faults(answer: RuleAnswer, at_least: float | None) -> Iterator[str]:
     level = answer.limits.fail if at_least is None else at_least
-    wanted = f"at least {limit_mm(level)} mm was asked for"
-    if at_least is None:
-        wanted = f"the fail limit{of_rule(answer.name)} is {limit_mm(level)} mm"
+    wanted = _wanted(answer, level, at_least)
     worst, certificate = answer.worst, answer.certificate
     if worst is not None and (worst.clearance < level or worst.touches):
         near = "contact" if worst.touches else f"{mm(worst.clearance)} mm"

@@ -14,8 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.receipt.case_errors import errors_of, is_covered, surfaces_of
 from clearance.receipt.proof.joint_paths import arcs_of
-from clearance.receipt.proof.motion_data import NONE, Joints, Shape, Stretch
+from clearance.receipt.proof.motion_data import NONE, Errors, Joints, Shape, Stretch
 from clearance.world.case import Case, Omission
 from clearance.world.forest import WORLD, forest_of, joined_positions
 from clearance.world.motion import Motion, kinematic_motion
@@ -30,7 +31,8 @@ class CaseData:
 
     Attributes:
         names, shapes: of all bodies, links robot by robot, then obstacles.
-        rules: names of what can judge a pair. times: (n,) [s] of the steps.
+        rules: names of what can judge a pair, and, where tolerances are covered, of the same with them; then the
+            stretches are there once more, with errors. times: (n,) [s] of the steps.
         n_pairs: how many pairs there are in all. unmeasured: what is left out, and why.
     """
 
@@ -46,6 +48,11 @@ class CaseData:
     def n_intervals(self) -> int:
         """How many intervals the run has."""
         return max(1, len(self.times) - 1)
+
+    @property
+    def has_errors(self) -> bool:
+        """True if what tolerances leave is proven too."""
+        return any(stretch.errors is not None for stretch in self.stretches)
 
     @cached_property
     def digest(self) -> str:
@@ -70,6 +77,7 @@ def case_data(case: Case) -> CaseData:
     bodies = _bodies(case)
     number = {body: i for i, body in enumerate(bodies)}
     stretches: list[Stretch] = []
+    phases: list[Phase] = []
     pairs: set[Pair] = set()
     left_out: dict[Omission, None] = {}
     for phase in timeline.phases:
@@ -81,15 +89,35 @@ def case_data(case: Case) -> CaseData:
             judged = np.array(selection.rules), np.array(selection.paddings)
             stretches.append(_stretch(phase, bodies, rows, *judged))
             _require_one_way(stretches[-1])
+            phases.append(phase)
+    rules = case.limits.rule_names
+    if is_covered(case):
+        surfaces = surfaces_of(case, bodies)
+        stretches += [
+            _with_errors(stretch, errors_of(phase.case, bodies), surfaces, len(rules))
+            for stretch, phase in zip(stretches, phases, strict=True)
+        ]
+        rules = (*rules, *(with_tolerances(rule) for rule in rules))
     return CaseData(
         case.name,
         tuple(_shape(case, body) for body in bodies),
-        case.limits.rule_names,
+        rules,
         timeline.times,
         tuple(stretches),
         len(pairs),
         tuple(left_out),
     )
+
+
+def with_tolerances(rule: str) -> str:
+    """How what tolerances leave to the pairs of a rule is called."""
+    return f"{rule}, with tolerances"
+
+
+def _with_errors(stretch: Stretch, errors: Errors, surfaces: np.ndarray, n_rules: int) -> Stretch:
+    """The same with errors, claimed by rules that count on."""
+    padding = stretch.padding + surfaces[stretch.pairs].sum(axis=1)
+    return stretch._replace(rules=stretch.rules + n_rules, padding=padding, errors=errors)
 
 
 def require_covered(case: Case) -> None:
@@ -193,5 +221,7 @@ def _arrays(data: CaseData) -> Iterator[np.ndarray]:
         for part in stretch:
             if isinstance(part, Joints):
                 yield from part
+            elif isinstance(part, Errors):
+                yield from (*part[:3], *part.of_links, *part.of_bodies)
             elif isinstance(part, np.ndarray):
                 yield part

@@ -9,7 +9,8 @@ import itertools
 
 import numpy as np
 
-from clearance.receipt.proof.halving import farthest_points
+from clearance.receipt.proof.error_terms import along_of
+from clearance.receipt.proof.halving import farthest, farthest_points
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.placing import Placed
 from clearance.receipt.proof.separation import Sides, dot
@@ -35,8 +36,20 @@ def nearest_directions(stage: Stage, items: Items) -> tuple[np.ndarray, np.ndarr
         own = items.of(rows)
         wanted = stage.wanted[own.pair, own.start + own.span // 2]
         lost = sum(at.rest[s.place] + stage.halves.radius[s.body] for s in (a, b))
+        if at.terms is not None:
+            u, back = found[:, rows], -found[:, rows]
+            apart = apart - (_by_errors(stage, at, a, u) + _by_errors(stage, at, b, back))
         slack[rows] = apart - wanted - np.where(own.span > 1, 0.0, lost)
     return found, slack
+
+
+def _by_errors(stage: Stage, at: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
+    """(k,) [m] what errors at most do to a part along u (3, k), in one direction of time."""
+    assert at.terms is not None
+    turn, place = at.turn[:, :, side.place], at.at[:, side.place]
+    errors = along_of(at.terms, turn, place, side.place, u)
+    nothing = np.zeros((3, 1, len(side.place)))
+    return farthest(stage.halves, side.body, side.node, nothing, errors)[0]
 
 
 def _directions(stage: Stage, at: Placed, a: Sides, b: Sides) -> tuple[np.ndarray, np.ndarray]:

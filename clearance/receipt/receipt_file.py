@@ -40,8 +40,9 @@ class Receipt:
     """A receipt.
 
     Attributes:
-        head: as in the file: kind ("full" or "sampled"), case, name, data (sha256 of the case's numbers), inputs
-            (path and sha256), report (sha256 by file), rules (names), nominal (the run had tolerances).
+        head: as in the file: kind ("full" or "sampled"), case and tolerance (files; empty for none), name, data
+            (sha256 of the case's numbers), inputs (path and sha256), report (sha256 by file), rules (names),
+            nominal (the run had tolerances, which are not taken off).
         claims: (rules, intervals) in nanometres, as `proof.motion_data.UNIT` says.
         deeds: (k,) what is done with each item. codes: directions of each size, (n, 2).
     """
@@ -133,7 +134,14 @@ def _arrays(shapes: dict[str, list[int]], body: bytes) -> dict[str, np.ndarray]:
 
 
 def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
-    texts = [head["kind"], head["case"], head["name"], head["data"], *head["rules"]]
+    texts = [
+        head["kind"],
+        head["case"],
+        head["tolerance"],
+        head["name"],
+        head["data"],
+        *head["rules"],
+    ]
     texts += [one[key] for one in head["inputs"] for key in ("path", "sha256")]
     texts += [*head["report"], *head["report"].values()]
     if not isinstance(head["nominal"], bool):

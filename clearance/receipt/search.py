@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.progress import Progress
 from clearance.receipt.nearest import nearest_directions
 from clearance.receipt.proof.halving import Halves
 from clearance.receipt.proof.items import (
@@ -52,6 +53,13 @@ class Found:
         none = np.empty((0, 2), dtype=np.int64)
         return {most: np.concatenate([none, *rows]) for most, rows in self.codes.items()}
 
+    def and_then(self, other: Found) -> Found:
+        """This evidence, then other."""
+        both = Found()
+        both.deeds, both.n_items = [*self.deeds, *other.deeds], self.n_items + other.n_items
+        both.codes = {most: [*rows, *other.codes[most]] for most, rows in self.codes.items()}
+        return both
+
     def add(self, deeds: np.ndarray, codes: dict[int, np.ndarray]) -> None:
         """Adds what is done with the items of a level."""
         self.deeds.append(deeds.astype(np.uint8))
@@ -61,30 +69,55 @@ class Found:
 
 
 def evidence_for(
-    stretches: Sequence[Stretch], shapes: Sequence[Shape], halves: Halves, claims: np.ndarray
+    stretches: Sequence[Stretch],
+    shapes: Sequence[Shape],
+    halves: Halves,
+    claims: np.ndarray,
+    most_items: int = MOST_ITEMS,
+    progress: Progress | None = None,
 ) -> Found:
     """What proves all that is claimed.
+
+    Args:
+        progress: told in thousandths of the time of all pairs.
 
     Raises:
         BadInput: it cannot be proven so, or not in a receipt of any size.
     """
-    found = Found()
+    found, shares = Found(), _Shares(stretches, progress)
     for stretch in stretches:
         stage = Stage(stretch, shapes, halves, claims)
         items = first_items(len(stretch.pairs), stretch.n_intervals)
         while len(items.pair):
             deeds, codes = _deeds(stage, items)
             found.add(deeds, codes)
-            if found.n_items > MOST_ITEMS:
+            if found.n_items > most_items:
                 raise BadInput(
-                    f"a full receipt takes more than {MOST_ITEMS:,} proofs",
+                    f"a full receipt takes more than {most_items:,} proofs",
                     valid="--receipt sampled",
                 )
+            shares.tell(items.of(np.flatnonzero(deeds < CUT_TIME)))
             items = cut(items, deeds)
         inside = one_inside(stage)
         if inside is not None:
             raise BadInput(f"no receipt: {_pair_text(stage, inside[0])} are {inside[2]}")
     return found
+
+
+class _Shares:
+    """How much of all is proven: an item is a share of its pair's time, and half for each cut of its bodies."""
+
+    def __init__(self, stretches: Sequence[Stretch], progress: Progress | None) -> None:
+        self._total = float(sum(len(one.pairs) * one.n_intervals for one in stretches))
+        self._done, self._progress = 0.0, progress
+
+    def tell(self, proven: Items) -> None:
+        """Adds some items."""
+        if self._progress is None:
+            return
+        cuts = [np.frexp(nodes + 1.0)[1] - 1 for nodes in (proven.node_a, proven.node_b)]
+        self._done += float((proven.span * 0.5 ** (cuts[0] + cuts[1] + proven.depth)).sum())
+        self._progress(int(1000 * min(1.0, self._done / self._total)), 1000)
 
 
 def _pair_text(stage: Stage, pair: int) -> str:

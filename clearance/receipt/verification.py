@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from clearance.errors import BadInput, BadSyntax, MissingFile, at
-from clearance.receipt.case_data import CaseData, case_data
+from clearance.receipt.case_data import CaseData, case_data, with_tolerances
 from clearance.receipt.claims import judged, missing
 from clearance.receipt.proof.depths import depths_reached
 from clearance.receipt.proof.halving import halves_of
@@ -24,6 +25,9 @@ from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, GoneThrough, Rece
 from clearance.world.case import Case, Omission
 
 SUMMARY = "summary.json"
+
+SHARE = 0.25
+"""[-] Of what tolerances take at most, by which a claim may be below what was proven (`writing.GIVEN_UP`)."""
 
 ROUNDED = 3
 """Units by which a claim may be below what was certified (`writing.claims_of`)."""
@@ -44,6 +48,7 @@ class Verification:
             beside it: they are no part of the proof, and whether they are as they were is not known.
         unmeasured: links and pairs that are left out, and why.
         nominal: the case has tolerances, of which the bound takes nothing off.
+        n_not_ruled_out: in how many intervals tolerances leave nothing, so that nothing is proven of that.
     """
 
     name: str
@@ -59,6 +64,7 @@ class Verification:
     unmeasured: tuple[Omission, ...]
     nominal: bool
     not_read: tuple[tuple[str, str], ...] = ()
+    n_not_ruled_out: int = 0
 
     @property
     def proven(self) -> bool:
@@ -77,29 +83,41 @@ class Verification:
         )
         bounds = bounds or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
-        touch = ""
-        if self.n_contact:
-            touch = f", except in {self.n_contact} intervals, in which bodies may touch"
         inputs = f"{len(self.inputs)} inputs unchanged"
         if self.not_read:
             inputs += (
                 f", {len(self.not_read)} not read again ({', '.join(p for p, _ in self.not_read)})"
             )
-        nominal = ", nominal: tolerances are not taken off" if self.nominal else ""
+        nominal = ", NOMINAL ONLY: tolerances are not taken off" if self.nominal else ""
         return (
-            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{touch}"
+            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion"
+            f"{self._left_out}"
             f"{nominal}; {inputs}, data {self.data[:16]}"
         )
 
+    @property
+    def _left_out(self) -> str:
+        """In how many intervals there is nothing to prove."""
+        told = ""
+        if self.n_contact:
+            told = f", except in {self.n_contact} intervals, in which bodies may touch"
+        if self.n_not_ruled_out:
+            told += f", except with tolerances in {self.n_not_ruled_out} intervals"
+            told += ", in which contact is not ruled out"
+        return told
+
 
 def verify(
-    folder: str | PathLike[str], case: Case | str | PathLike[str] | None = None
+    folder: str | PathLike[str],
+    case: Case | str | PathLike[str] | None = None,
+    tolerance: str | PathLike[str] | None = None,
 ) -> Verification:
     """Whether the receipt in a report's folder proves the bound that was certified, by arithmetic of its own.
 
     Args:
         folder: of a report with `receipt.bin`.
         case: the case or its file, where it is not where it was when the receipt was written.
+        tolerance: the same of a file of tolerances that was given beside the case.
 
     Raises:
         BadInput: no receipt, a damaged one, or one of other inputs or another report: which.
@@ -108,11 +126,13 @@ def verify(
     receipt = read_receipt(place / FILE_NAME)
     _require_report(place, receipt)
     given = case if isinstance(case, Case) else _loaded(place, receipt, case)
+    given = _with_tolerance(given, place, receipt, tolerance)
     _require_inputs(given, receipt)
-    data = case_data(given)
+    data = case_data(replace(given, tolerance=None) if receipt.head["nominal"] else given)
     _require_data(data, receipt)
-    failure = _failure(data, receipt) or _overstated(place, receipt)
+    failure = _failure(data, receipt) or _overstated(place, data, receipt)
     claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
+    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
     inputs, read = _inputs_of(receipt), {source.path for source in given.sources}
     return Verification(
         data.name,
@@ -126,12 +146,13 @@ def verify(
         data.n_pairs,
         data.n_intervals,
         int(claimed.any(axis=0).sum()),
-        int((claimed & (receipt.claims <= 0)).any(axis=0).sum()),
+        int((claimed & (receipt.claims <= 0))[:n_nominal].any(axis=0).sum()),
         data.digest,
         tuple(one for one in inputs if one[0] in read),
         data.unmeasured,
-        receipt.head["nominal"] or given.tolerance is not None,
+        not data.has_errors and (receipt.head["nominal"] or given.tolerance is not None),
         tuple(one for one in inputs if one[0] not in read),
+        int((claimed & (receipt.claims <= 0))[n_nominal:].any(axis=0).sum()),
     )
 
 
@@ -155,23 +176,61 @@ def _failure(data: CaseData, receipt: Receipt) -> str:
     return "" if evidence.at_end else "the evidence is not of this case: some is left over"
 
 
-def _overstated(place: Path, receipt: Receipt) -> str:
+def _overstated(place: Path, data: CaseData, receipt: Receipt) -> str:
     """What the report says beyond what the receipt claims, if it does.
 
     Raises:
         BadSyntax: a summary that is none.
     """
     try:
-        told = float(json.loads((place / SUMMARY).read_bytes())["certified"]["lower_bound"])
+        summary = json.loads((place / SUMMARY).read_bytes())
+        told = _number(summary["certified"]["lower_bound"])
     except (ValueError, TypeError, KeyError, RecursionError):
         raise BadSyntax(
             "there is no certified bound in it", where=str(place / SUMMARY), valid="the report"
         ) from None
-    claimed = receipt.claims[receipt.claims != NOT_CLAIMED]
-    least = float(claimed.min()) * UNIT if len(claimed) else 0.0
-    if told <= least + ROUNDED * UNIT:
-        return ""
-    return f"{SUMMARY} tells of {told * 1e3:.6f} mm, the receipt of {least * 1e3:.6f} mm"
+    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
+    least = _least(receipt.claims[:n_nominal])
+    if not told <= least + ROUNDED * UNIT:
+        return f"{SUMMARY} tells of {told * 1e3:.6f} mm, the receipt of {least * 1e3:.6f} mm"
+    return _overstated_with_tolerances(summary, data, receipt) if data.has_errors else ""
+
+
+def _overstated_with_tolerances(summary: Any, data: CaseData, receipt: Receipt) -> str:
+    """What the report says tolerances leave beyond what the receipt claims, but for a share of what they take.
+
+    Raises:
+        BadSyntax: a summary that tells nothing of it.
+    """
+    nominal, left = np.split(np.where(receipt.claims == NOT_CLAIMED, 0, receipt.claims), 2)
+    given_up = SHARE * float((nominal - left).max()) * UNIT
+    try:
+        told = {one["rule"]: _number(one["proven"]) for one in summary["tolerances"]["rules"]}
+    except (TypeError, KeyError, ValueError):
+        raise BadSyntax("it tells of no tolerances", where=SUMMARY, valid="the report") from None
+    for rule, proven in told.items():
+        name = with_tolerances(rule)
+        least = _least(receipt.claims[data.rules.index(name)]) if name in data.rules else -np.inf
+        if proven > 0.0 and not proven <= least + given_up:
+            return f"{SUMMARY} tells of {proven * 1e3:.6f} mm ({name}), the receipt of {least * 1e3:.6f} mm"
+    return ""
+
+
+def _number(told: Any) -> float:
+    """A finite number.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if not np.isfinite(found := float(told)):
+        raise ValueError(told)
+    return found
+
+
+def _least(claims: np.ndarray) -> float:
+    """[m] the least that is claimed."""
+    claimed = claims[claims != NOT_CLAIMED]
+    return float(claimed.min()) * UNIT if len(claimed) else 0.0
 
 
 def _failure_text(data: CaseData, receipt: Receipt, failure: Failure) -> str:
@@ -200,6 +259,23 @@ def _loaded(place: Path, receipt: Receipt, case: str | PathLike[str] | None) -> 
             )
         return load_case(path)
     return load_case(case)
+
+
+def _with_tolerance(
+    case: Case, place: Path, receipt: Receipt, tolerance: str | PathLike[str] | None
+) -> Case:
+    """The case with the file of tolerances that it was measured with, if there was one."""
+    from clearance.load.tolerance_file import with_tolerance
+
+    way = receipt.head["tolerance"]
+    if tolerance is None and not way:
+        return case
+    path = place / way if tolerance is None else Path(tolerance)
+    if not path.is_file():
+        raise MissingFile(
+            f"there is no {path.name}", where=str(place / FILE_NAME), valid="--tolerance FILE"
+        )
+    return with_tolerance(case, path)
 
 
 def _require_report(place: Path, receipt: Receipt) -> None:
@@ -249,7 +325,7 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
         if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
             raise BadSyntax(
                 f"it is of other numbers than those of case {data.name!r}",
-                valid="the case that the receipt was made of",
+                valid="the case that the receipt was made of, with its tolerances",
             )
         if receipt.claims.shape != (len(data.rules), data.n_intervals):
             raise BadSyntax(DAMAGED, valid="claims of every rule and interval")

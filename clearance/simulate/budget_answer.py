@@ -59,7 +59,8 @@ class RuleBudget:
     Attributes:
         rule: its name. limits: its levels.
         proven: (n,) [m] lower bound of the clearance of each step, less padding, whatever the errors are.
-        expected: (n,) [m] estimate: nominal less `coverage` standard deviations; NaN where it is not worked out.
+        expected: (n,) [m] estimate: nominal less `coverage` standard deviations, but no less than `proven`; NaN
+            where it is not worked out.
         between: (n,) [m] as `proven`, of the motion from each step to the next; None where nothing is certified.
         worst: the moments that the errors bring nearest, the worst first; worked out when first
             looked at.

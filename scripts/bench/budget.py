@@ -2,8 +2,8 @@
 
 For each scene, with the same figures of a typical cell: the least that is proven; the least found by errors at
 random and by making one after the other as bad as it can be, on distances measured anew; the sum of reach times
-error that people add by hand; time with and without, steps alone and certified. `--campaign N` draws N random
-budgets instead and tells the first sample below a proven bound, if there is one.
+error that people add by hand; time with and without, steps alone and certified. `budget_campaign.py` draws random
+budgets instead.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
+from inputs import SCENES
 
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
@@ -36,7 +36,6 @@ from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
 
-SCENES = Path(__file__).parents[2] / "scenes"
 NAMES = ("box_box", "box_pipe", "hot_cell", "iiwa_pipe_rack", "panda_shelf", "turntable_cell")
 NEAREST = 3
 """Pairs that are measured anew at a moment beside the one that decides it: the nearest."""
@@ -57,12 +56,12 @@ def typical(case: Case) -> Budget:
     return Budget(robots, {obstacle.name: place for obstacle in case.obstacles})
 
 
-def scaled(case: Case, rng: np.random.Generator) -> Budget:
-    """Random tolerances of up to six times those."""
+def scaled(case: Case, rng: np.random.Generator, factor: float) -> Budget:
+    """Random tolerances of up to so many times those."""
     base = typical(case)
 
     def by(most: float) -> float:
-        return float(6.0 * most * rng.random())
+        return float(factor * most * rng.random())
 
     def place(own: PlacementTolerance) -> PlacementTolerance:
         return PlacementTolerance(by(own.xyz), by(max(own.angle, 0.0005)))
@@ -218,39 +217,13 @@ def table(n_random: int, n_ascended: int) -> None:
             )
 
 
-def campaign(n_budgets: int, n_random: int, n_ascended: int) -> int:
-    """How many samples were drawn; stops at one below what is proven."""
-    n_samples = 0
-    for i in range(n_budgets):
-        rng = np.random.default_rng(i)
-        name = NAMES[i % len(NAMES)]
-        for case, section, found in sections_of(name, lambda case, rng=rng: scaled(case, rng)):
-            rows = proven_of_steps(PairsWithErrors(section.in_motion, case.tolerance), found)
-            step = int(np.argmin(rows.proven))
-            if found.clearance[step] <= 0.0:
-                continue
-            pair = int(rows.pair[step])
-            worst = worst_found(case, section, step, pair, n_random, n_ascended, rng)
-            n_samples += n_random + n_ascended
-            if rows.proven[step] > worst + 1e-12:
-                raise SystemExit(
-                    f"budget {i} of {name}: {rows.proven[step]!r} m is proven, {worst!r} m is found"
-                )
-    return n_samples
-
-
 def main() -> None:
-    """Prints the table, or what a campaign has come to."""
+    """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--campaign", type=int, default=0, metavar="N", help="random budgets")
     parser.add_argument("--random", type=int, default=20, help="samples at random a worst moment")
     parser.add_argument("--ascended", type=int, default=1, help="samples made as bad as can be")
     asked = parser.parse_args()
-    if asked.campaign:
-        n_samples = campaign(asked.campaign, asked.random, asked.ascended)
-        print(f"{asked.campaign} budgets, {n_samples} samples, none below what is proven")
-    else:
-        table(asked.random, asked.ascended)
+    table(asked.random, asked.ascended)
 
 
 if __name__ == "__main__":

@@ -207,6 +207,34 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     assert len(keys | {key}) == 7
 
 
+def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
+    own = tmp_path / "t.yaml"
+
+    def run_with(xyz: float, tolerance=own):
+        own.write_text(f"obstacles: {{wall: {{xyz: {xyz}}}}}\n")
+        return run_here(manifest, tmp_path / "out", changes=Changes(tolerance=tolerance))
+
+    told, found = run_with(0.001)
+    assert len(told.measured) == 5
+    first = found.cases["proven"].to_pylist()
+    assert run_with(0.001)[0].measured == []
+    told, found = run_with(0.01)
+    assert len(told.measured) == 5
+    for was, now in zip(first, found.cases["proven"].to_pylist(), strict=True):
+        assert now == pytest.approx(was - 0.009, abs=2e-4)
+    told, found = run_with(0.01, tolerance=None)
+    assert len(told.measured) == 5 and found.cases["proven"].to_pylist() == [None] * 5
+
+
+def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):
+    own = tmp_path / "t.yaml"
+    own.write_text("obstacles: {wall: {xyz: 0.001}}\n")
+    item = items_of([str(manifest)], Changes(tolerance=own))[0]
+    own.write_text("obstacles: {wall: {xyz: 0.002}}\n")
+    done = measure(Task((item,), 60.0, program(), "a batch"))
+    assert not done.measured and "t.yaml: it was changed" in done.faults[0].text
+
+
 def test_the_table_of_cases_is_what_any_tool_reads(manifest, tmp_path):
     run_here(manifest, tmp_path / "out")
     table = pq.read_table(tmp_path / "out" / "cases.parquet")

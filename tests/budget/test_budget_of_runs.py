@@ -42,6 +42,18 @@ def test_columns_of_steps_are_those_of_the_rule(run):
     assert (budget.expected < steps["clearance"].to_numpy()).all()
 
 
+def test_no_estimate_is_below_what_is_proven(run):
+    """Three deviations of a single error are 1.7 times what it can come to."""
+    case = run.record.case
+    only = Budget({"arm": RobotTolerance(surfaces={"right_finger": 0.002})})
+    (budget,) = cl.check(replace(case, tolerance=only)).record.budget
+    clearance = run.record.steps["clearance"].to_numpy()
+    assert np.array_equal(budget.expected, budget.proven)
+    assert budget.proven == pytest.approx(clearance - 0.002, abs=1e-9)
+    (worst, *_) = budget.worst
+    assert worst.expected == pytest.approx(worst.proven, abs=1e-12)
+
+
 def test_other_columns_are_as_without_tolerances(run):
     plain = cl.check(replace(run.record.case, tolerance=None, notices=())).record.steps
     assert run.record.steps.drop_columns(["proven", "expected"]).equals(plain)

@@ -35,6 +35,36 @@ def test_samples_only_is_said(folder, capsys):
     assert "basis       3 cases looked at the samples only" in capsys.readouterr().out
 
 
+def test_tolerances_of_a_file_decide_and_status_sees_another(folder, capsys):
+    (folder / "batch.yaml").write_text("cell: cell.yaml\ntrajectories: t000.csv\n")
+    own = folder / "t.yaml"
+    own.write_text("obstacles: {wall: {xyz: 0.001}}\n")
+    asked = ("batch.yaml", "--out", "store", "--tolerance", "t.yaml")
+    assert batch(*asked) == 0
+    assert run(["batch", "status", "store"]) == 0
+    own.write_text("obstacles: {wall: {xyz: 0.48}}\n")
+    capsys.readouterr()
+    assert run(["batch", "status", "store"]) == 4
+    assert batch(*asked) == 1
+    assert "NOT PROVEN" in capsys.readouterr().out
+    own.write_text("obstacles: {wal: {xyz: 0.01}}\n")
+    assert batch(*asked, "--strict") == 2
+    assert "did you mean 'wall'?" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("base: {xyz: 4}\n", "t.yaml: base.xyz: 4 m is given"),
+        ("tracking: {file: c.yaml}\n", "t.yaml: tracking.file: there is no file"),
+    ],
+)
+def test_tolerances_that_are_none_are_told_at_once(folder, capsys, text, told):
+    (folder / "t.yaml").write_text(text)
+    assert batch("batch.yaml", "--out", "store", "--tolerance", "t.yaml") == 2
+    assert told in capsys.readouterr().err and not (folder / "store").exists()
+
+
 def test_bad_input_among_others_is_one_only_if_asked(folder, capsys):
     (folder / "t002.csv").write_text("time,rail\n0,x\n")
     assert batch("batch.yaml", "--out", "store") == 1

@@ -142,6 +142,16 @@ def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err
 
 
+def test_the_hook_fails_where_tolerances_leave_a_limit_unproven(place, capsys):
+    own = "tolerance: {obstacles: {gate_a: {xyz: 0.046}}}"
+    write_gates(place / "loose", CLEAR, own)
+    assert run(["pre-commit", "loose/case.yaml"]) == 1
+    told = capsys.readouterr().out
+    assert "NOT PROVEN with tolerances" in told and "box - gate_a" in told
+    write_gates(place / "tight", CLEAR, own.replace("0.046", "0.04"))
+    assert run(["pre-commit", "tight/case.yaml"]) == 0
+
+
 def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(place, capsys):
     check("clear/case.yaml", "--out", "of_clear", "--quiet")
     check("broken/case.yaml", "--out", "of_broken", "--quiet")

@@ -103,7 +103,27 @@ def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys
     run(["check", case, *given, "--out", str(out), "--receipt"])
     tolerances.write_text("joints: {all: 0.0002}\n")
     capsys.readouterr()
-    assert run(["verify", str(out)]) == 0
+    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
+    assert "tol.yaml: it has changed" in capsys.readouterr().err
+    tolerances.write_text("joints: {all: 0.0001}\n")
+    assert run(["verify", str(out)]) == ExitCode.CLEAR
     told = capsys.readouterr().out
-    assert "1 not read again (" in told
-    assert "tol.yaml (of the run; not read again, no part of the proof)" in told
+    assert "(default), at least 34.78" in told and "(default, with tolerances)" in told
+    tolerances.rename(home / "moved.yaml")
+    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
+    assert "--tolerance FILE" in capsys.readouterr().err
+    (home / "tol.yaml").write_text("joints: {all: 0.00005}\n")
+    assert run(["verify", str(out), "--tolerance", str(home / "tol.yaml")]) == ExitCode.BAD_INPUT
+
+
+def test_tolerances_that_no_receipt_covers_are_told_in_a_line_of_their_own(home, capsys):
+    """Clocks that may be off are no part of the proof: the receipt is nominal, and says so at once."""
+    case = home / "scenes" / "box_box" / "case.yaml"
+    tolerances, out = home / "tol.yaml", home / "late"
+    tolerances.write_text("timing: {all: 0.001}\n")
+    given = ["--tolerance", str(tolerances), "--unproven-ok", "--quiet"]
+    run(["check", str(case), *given, "--out", str(out), "--receipt"])
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1 and "proves the bound without tolerances" in told
+    assert run(["verify", str(out)]) == ExitCode.CLEAR
+    assert ", NOMINAL ONLY: tolerances are not taken off; " in capsys.readouterr().out

@@ -230,6 +230,28 @@ def test_what_comes_nearer_is_told(run, asked, told):
     assert told in str(error.value) and "gates is not clear" in str(error.value)
 
 
+@pytest.mark.parametrize("certify", [True, False])
+def test_tolerances_count_whichever_pair_is_asked_about(tmp_path, certify):
+    case = load_gates(tmp_path, CLEAR)  # 50 and 100 mm
+    off = {"obstacles": {A: {"xyz": 0.048}, B: {"xyz": 0.03}}}
+    run = cl.check(case, tolerance=off, certify=certify)
+    assert_clear(run, between=("box", B), at_least=0.0698)
+    for asked, told in (
+        ({"between": ("box", B), "at_least": 0.0701}, "box - gate_b: with tolerances only"),
+        ({"between": ("box", A)}, "; the fail limit is 5 mm"),
+        ({"at_least": 0.01}, "at least 10 mm was asked for"),
+    ):
+        with pytest.raises(AssertionError, match="with tolerances only") as error:
+            assert_clear(run, **asked)
+        assert told in str(error.value)
+    off["obstacles"][A] = {"xyz": 0.06}
+    run = cl.check(case, tolerance=off, certify=certify)
+    with pytest.raises(AssertionError, match="contact is not ruled out; at least 0 mm"):
+        assert_clear(run, between=("box", A), at_least=0.0)
+    accepted = cl.check(case, tolerance=off | {"unproven_ok": True}, certify=certify)
+    assert_clear(accepted, between=("box", A), at_least=0.0)
+
+
 def test_suspect_input_is_never_clear_whichever_pair_is_asked_about(tmp_path):
     case = load_gates(tmp_path, CLEAR)
     doubt = Notice(Severity.SUSPECT, "units", "lengths look like millimetres")

@@ -13,6 +13,7 @@ from clearance.receipt.receipt_file import MAGIC, GoneThrough, Receipt, receipt_
 def small():
     head = {
         "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "nominal": False,
+        "tolerance": "",
         "rules": ["default"],
         "inputs": [{"path": "case.yaml", "sha256": "1" * 64}], 
         "report": dict.fromkeys(("findings.json", "steps.csv", "summary.json"), "2" * 64),

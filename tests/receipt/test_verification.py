@@ -174,6 +174,16 @@ def test_a_sampled_receipt_is_called_one(tmp_path):
     assert "nothing is claimed" in cl.verify(tmp_path, case).failure
 
 
+def test_writing_tells_how_far_it_is(tmp_path):
+    case = turning_arm()
+    run = cl.check(case)
+    run.save(tmp_path)
+    told = []
+    cl.write_receipt(run, tmp_path, progress=lambda done, total: told.append((done, total)))
+    assert {total for _, total in told} == {1000}
+    assert told == sorted(told) and told[0][0] < told[-1][0] == 1000
+
+
 def test_runs_without_a_proof_have_no_receipt(tmp_path):
     run = cl.check(turning_arm(), certify=False)
     run.save(tmp_path)

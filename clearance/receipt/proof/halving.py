@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.receipt.proof.error_terms import OUTWARD, Along
 from clearance.receipt.proof.motion_data import Shape
 
 FEW = 8
@@ -124,29 +125,43 @@ def _boxes(
 
 
 def farthest(
-    halves: Halves, bodies: np.ndarray, nodes: np.ndarray, along: np.ndarray
+    halves: Halves,
+    bodies: np.ndarray,
+    nodes: np.ndarray,
+    along: np.ndarray,
+    errors: Along | None = None,
 ) -> np.ndarray:
     """(t, k) the greatest `along . p` of the points of some nodes, or of boxes that hold them; of balls of their
     middles.
 
     Args:
         bodies, nodes: (k,). along: (3, t, k) several directions each, in the bodies' own frames.
+        errors: what is added at each point.
     """
     at = halves.first_node[bodies] + nodes
     found = np.empty(along.shape[1:])
     size = halves.stop[at] - halves.start[at]
     for few, most in ((size == 1, 1), ((size > 1) & (size <= FEW), FEW)):
         rows = np.flatnonzero(few)
-        x, y, z = _points(halves, at[rows], most)
+        x, y, z = points = _points(halves, at[rows], most)
+        more = 0.0 if errors is None else errors.of(rows).at(points)
         for t, (gx, gy, gz) in enumerate(np.moveaxis(along[:, :, rows], 1, 0)):
-            found[t, rows] = (x * gx + y * gy + z * gz).max(axis=0)
+            found[t, rows] = (x * gx + y * gy + z * gz + more).max(axis=0)
     rows = np.flatnonzero(size > FEW)
     eighths = halves.first_node[bodies[rows]] + _eighths(nodes[rows])
     low, high = (np.take(part, eighths, axis=1) for part in (halves.low, halves.high))
+    more = 0.0 if errors is None else _over_boxes(errors.of(rows), low, high)
     for t, g in enumerate(np.moveaxis(along[:, :, rows], 1, 0)):
         reach = [np.maximum(g[k] * low[k], g[k] * high[k]) for k in range(3)]
-        found[t, rows] = (reach[0] + reach[1] + reach[2]).max(axis=0)
+        found[t, rows] = (reach[0] + reach[1] + reach[2] + more).max(axis=0)
     return found
+
+
+def _over_boxes(errors: Along, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(8, k) no point of the boxes (3, 8, k) has more added to it."""
+    half = 0.5 * (high - low)
+    radius = np.sqrt((half * half).sum(axis=0)) * OUTWARD
+    return (errors.at(0.5 * (low + high)) + errors.slope * radius) * OUTWARD
 
 
 def _points(halves: Halves, at: np.ndarray, most: int) -> np.ndarray:

@@ -57,6 +57,35 @@ class Joints(NamedTuple):
     offsets: np.ndarray
 
 
+class Held(NamedTuple):
+    """Frames that may be off and that something stands on, beside those of its own joint.
+
+    Attributes:
+        which: (m,) links or bodies that stand there. origins: (m, 3) [m] in their own frames.
+        xyz: (m,) [m]. angle: (m,) [rad].
+    """
+
+    which: np.ndarray
+    origins: np.ndarray
+    xyz: np.ndarray
+    angle: np.ndarray
+
+
+class Errors(NamedTuple):
+    """How far the links and what stands in the world may be from where they are said to be.
+
+    Attributes:
+        joint: (links,) [rad or m] of the joint above each. xyz, angle: (links,) [m], [rad] of the frame that it
+            hangs on. of_links, of_bodies: what links stand on, and bodies that no link carries.
+    """
+
+    joint: np.ndarray
+    xyz: np.ndarray
+    angle: np.ndarray
+    of_links: Held
+    of_bodies: Held
+
+
 class Stretch(NamedTuple):
     """A part of the run in which nothing changes hands.
 
@@ -66,6 +95,7 @@ class Stretch(NamedTuple):
             those that are `cubic` (columns,) on the cubic that has `rates` (n + 1, columns) at both ends.
         carriers: (bodies,) the link that a body is fixed to, or `NONE`: then it stands at `poses` (bodies, 4, 4).
         pairs: (p, 2) bodies to keep apart. rules: (p,) by which claim. padding: (p,) [m] beyond it.
+        errors: whatever these are; None where all is taken as it is said to be.
     """
 
     first: int
@@ -79,6 +109,7 @@ class Stretch(NamedTuple):
     pairs: np.ndarray
     rules: np.ndarray
     padding: np.ndarray
+    errors: Errors | None = None
 
     @property
     def n_intervals(self) -> int:

@@ -7,6 +7,7 @@ w_k a_k over those that slide. With d_k = |w_k| + b_k, and rho_k no less than ho
     |r| <= sum_k d_k rho_k (d_k / 2 + sum_{j above, turning} d_j) + sum_k b_k rho_k            (k turning)
          + sum_k d_k sum_{j above, turning} d_j + sum_k b_k                                     (k sliding).
 
+Errors of joints are added to d_k, those of frames are joints more; their first order is not in v but in `terms`.
 The proof is in `NOTES.md`. Not for: whether two bodies keep apart (`separation`).
 """
 
@@ -16,15 +17,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.receipt.proof.error_terms import Error, Terms, terms_of
 from clearance.receipt.proof.joint_paths import Arcs, JointPositions, Pieces, joint_positions
 from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Stretch
 from clearance.receipt.proof.views import Views
-
-LEVEL = 2.0**-44
-"""[-] Of how far a body reaches, for each link on the way to it: more than poses and sums are rounded by."""
-
-OUTWARD = 1.0 + 2.0**-40
-"""Covers the rounding of bounds that are sums of positive numbers."""
+from clearance.receipt.proof.ways import Balls, Frames, across_rows, bounds_of, steps_of
 
 
 class Placed(NamedTuple):
@@ -34,6 +31,7 @@ class Placed(NamedTuple):
         turn: (3, 3, k) and at: (3, k) [m] the poses. omega, v0: (3, k) [rad], [m] the swing v.
         way: [m] no point gets farther from where it is in the middle. rest: [m] the bound of |r| above.
         rounding: [m] of all that is computed of such a view along a unit vector.
+        terms: what errors do to the first order; None where there are none.
     """
 
     turn: np.ndarray
@@ -43,24 +41,7 @@ class Placed(NamedTuple):
     way: np.ndarray
     rest: np.ndarray
     rounding: np.ndarray
-
-
-class Frames(NamedTuple):
-    """Frames in the middle of pieces, (frames, pieces, ...) each; axis and joint are those it hangs by."""
-
-    turn: np.ndarray
-    at: np.ndarray
-    omega: np.ndarray
-    v0: np.ndarray
-    axis: np.ndarray
-    joint: np.ndarray
-
-
-class Balls(NamedTuple):
-    """Balls that hold each view's body in its own frame: (views, 3) and (views,) [m]."""
-
-    middle: np.ndarray
-    radius: np.ndarray
+    terms: Terms | None = None
 
 
 def placed(
@@ -77,9 +58,10 @@ def placed(
     n = len(pieces.interval)
     shape = len(views.frames) * n
     found = Placed(
-        np.zeros((3, 3, shape)), *(np.zeros((3, shape)) for _ in range(3)),
-        *(np.zeros(shape) for _ in range(3)),
+        np.zeros((3, 3, shape)), np.zeros((3, shape)), np.zeros((3, shape)), np.zeros((3, shape)),
+        np.zeros(shape), np.zeros(shape), np.zeros(shape),
     )  # fmt: skip
+    errors: list[list[Error]] = [[] for _ in views.frames]
     for view in np.flatnonzero(wanted).tolist():
         frame, own = int(views.frames[view]), slice(view * n, (view + 1) * n)
         pose = views.poses[view, :3]
@@ -92,10 +74,12 @@ def placed(
                 (found.v0, frames.v0),
             ):
                 part[:, own] = moving[frame].T
-        bounds = _bounds(view, stretch, views, balls, joints, frames)
+        steps = steps_of(view, stretch, views, joints, frames)
+        errors[view] = [error for step in steps for error in step.errors]
+        bounds = bounds_of(view, stretch, views, balls, steps, frames)
         for part, bound in zip((found.way, found.rest, found.rounding), bounds, strict=True):
             part[own] = bound
-    return found
+    return found if stretch.errors is None else found._replace(terms=terms_of(errors, n))
 
 
 def _frames(
@@ -127,17 +111,9 @@ def _frames(
             v0 = v0 + swing * axis
         elif kind != FIXED:
             turn = turn @ _turned(own, middle)
-            omega, v0 = omega + swing * axis, v0 - swing * _across(axis, joint)
+            omega, v0 = omega + swing * axis, v0 - swing * across_rows(axis, joint)
         for part, value in zip(found, (turn, joint, omega, v0, axis, joint), strict=True):
             part[frame] = value
-    return found
-
-
-def _across(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(n, 3) vector products; `np.cross` takes three times as long for a few hundred."""
-    found = np.empty(v.shape)
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[:, i] = u[:, j] * v[:, k] - u[:, k] * v[:, j]
     return found
 
 
@@ -151,66 +127,3 @@ def _turned(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
         turn[:, i, j] = versine * a * b - sine * c
         turn[:, j, i] = versine * a * b + sine * c
     return turn
-
-
-def _bounds(
-    view: int,
-    stretch: Stretch,
-    views: Views,
-    balls: Balls,
-    positions: JointPositions,
-    frames: Frames,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(pieces,) each, way, rest and rounding of one view."""
-    middle, radius = balls.middle[view], float(balls.radius[view])
-    frame = int(views.frames[view])
-    chain = _chain(views, frame)
-    n = positions.middle.shape[0]
-    centre = np.zeros((n, 3)) if frame == NONE else frames.turn[frame] @ middle + frames.at[frame]
-    joints = stretch.joints
-    reach = np.sqrt((middle * middle).sum()) + radius + np.abs(views.poses[view, :3, 3]).sum()
-    way, rest, turns = np.zeros(n), np.zeros(n), np.zeros(n)
-    off = _off(views.poses[view])
-    moving = []
-    for frame in chain:
-        link = int(views.links[frame])
-        reach = reach + np.abs(joints.fixed[link, :3, 3]).sum()
-        off += _off(joints.fixed[link])
-        if joints.parents[link] == NONE or joints.kinds[link] == FIXED:
-            continue
-        most = np.abs(positions.swing[:, link]) + positions.bend[:, link]
-        if joints.kinds[link] == SLIDING:
-            reach = reach + np.abs(positions.middle[:, link]) + most
-        else:
-            turns = turns + most
-        moving.append((frame, link, most))
-    above = turns.copy()
-    for frame, link, most in moving:  # from the body to the base
-        bend = positions.bend[:, link]
-        if joints.kinds[link] == SLIDING:
-            rest = rest + most * above + bend
-            way = way + most
-            continue
-        above = above - most
-        arm = _across(frames.axis[frame], centre - frames.joint[frame])
-        rho = np.sqrt((arm * arm).sum(axis=1)) + radius + way
-        rest = rest + rho * (most * (0.5 * most + np.maximum(above, 0.0)) + bend)
-        way = way + most * rho
-    size = (reach + way) * (1.0 + turns)
-    rounding = ((len(chain) + 4) * LEVEL + 4.0 * off) * size
-    return way * OUTWARD, rest * OUTWARD, rounding
-
-
-def _chain(views: Views, frame: int) -> list[int]:
-    """A frame and all above it."""
-    found = []
-    while frame != NONE:
-        found.append(frame)
-        frame = int(views.above[frame])
-    return found
-
-
-def _off(pose: np.ndarray) -> float:
-    """How far the rotation of a pose is from one, beyond rounding."""
-    turn = pose[:3, :3]
-    return float(np.abs(turn.T @ turn - np.eye(3)).max())

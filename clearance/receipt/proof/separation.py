@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.receipt.proof.error_terms import OUTWARD, along_of
 from clearance.receipt.proof.halving import Halves, farthest
-from clearance.receipt.proof.placing import OUTWARD, Placed
+from clearance.receipt.proof.placing import Placed
 
 BYTE, SHORT, LONG = 2**7 - 1, 2**15 - 1, 2**31 - 1
 """The greatest coordinate of directions of one, two and four bytes a coordinate."""
@@ -51,13 +52,14 @@ def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> 
 
 
 def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
-    """(2, k) the greatest u . (x + t v(x)) over each part, for t = -1 and 1."""
+    """(2, k) the greatest u . (x + t v(x)), and what errors do to it, over each part, for t = -1 and 1."""
     turn, at, omega, v0 = (np.take(part, side.place, axis=-1) for part in placed[:4])
     bent, shift = across(u, omega), dot(u, v0)
     g = np.stack([u - bent, u + bent], axis=1)
     own = np.stack([dot(g, turn[:, k, None]) for k in range(3)])
     moved = dot(g, at[:, None]) + np.stack([-shift, shift])
-    return farthest(halves, side.body, side.node, own) + moved
+    errors = None if placed.terms is None else along_of(placed.terms, turn, at, side.place, u)
+    return farthest(halves, side.body, side.node, own, errors) + moved
 
 
 def as_balls(halves: Halves, placed: Placed, a: Sides, b: Sides) -> np.ndarray:

@@ -13,9 +13,10 @@ from clearance.receipt.proof.halving import Halves
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.joint_paths import Pieces, arcs_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT, Shape, Stretch
-from clearance.receipt.proof.placing import Balls, Placed, placed
+from clearance.receipt.proof.placing import Placed, placed
 from clearance.receipt.proof.separation import Sides, along, as_balls, centre_of, dot
 from clearance.receipt.proof.views import views_of
+from clearance.receipt.proof.ways import Balls
 
 BLOCK = 2**13
 """Rows that are worked out together: their numbers stay in a core's cache."""

@@ -1,0 +1,200 @@
+"""How far bodies move off where they are in the middle of a piece: by joints, bends and errors, link by link.
+
+The bounds are those of `placing`. Not for: where bodies are (`placing`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.receipt.proof.error_terms import OUTWARD, Error
+from clearance.receipt.proof.joint_paths import JointPositions
+from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, Held, Stretch
+from clearance.receipt.proof.views import Views
+
+LEVEL = 2.0**-44
+"""[-] Of how far a body reaches, for each link on the way to it: more than poses and sums are rounded by."""
+
+
+class Frames(NamedTuple):
+    """Frames in the middle of pieces, (frames, pieces, ...) each; axis and joint are those it hangs by."""
+
+    turn: np.ndarray
+    at: np.ndarray
+    omega: np.ndarray
+    v0: np.ndarray
+    axis: np.ndarray
+    joint: np.ndarray
+
+
+class Balls(NamedTuple):
+    """Balls that hold each view's body in its own frame: (views, 3) and (views,) [m]."""
+
+    middle: np.ndarray
+    radius: np.ndarray
+
+
+def across_rows(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(n, 3) vector products; `np.cross` takes three times as long for a few hundred."""
+    found = np.empty(v.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[:, i] = u[:, j] * v[:, k] - u[:, k] * v[:, j]
+    return found
+
+
+class Step(NamedTuple):
+    """What moves a view by one frame of its chain, the joint first.
+
+    Attributes:
+        kind: of the joint. axis, at: (pieces, 3) its axis, and a point of it [m].
+        most: (pieces,) how far it swings and bends; bend: (pieces,) of that.
+        length: (pieces,) [m] at most from the frame above.
+        off: how far the frame's rotation is from one. errors: of the joint, then of frames, from the body outward.
+    """
+
+    kind: int
+    axis: np.ndarray
+    at: np.ndarray
+    most: np.ndarray
+    bend: np.ndarray
+    length: np.ndarray
+    off: float
+    errors: list[Error]
+
+
+def steps_of(
+    view: int, stretch: Stretch, views: Views, positions: JointPositions, frames: Frames
+) -> list[Step]:
+    """From a body to the base; what stands in the world on frames that may be off has one step."""
+    found = []
+    chain = _chain(views, int(views.frames[view]))
+    joints = stretch.joints
+    for frame in chain:
+        link = int(views.links[frame])
+        kind = FIXED if joints.parents[link] == NONE else int(joints.kinds[link])
+        most = np.abs(positions.swing[:, link]) + positions.bend[:, link]
+        length = np.zeros(len(most)) + np.abs(joints.fixed[link, :3, 3]).sum()
+        if kind == SLIDING:
+            length = length + np.abs(positions.middle[:, link]) + most
+        axis, at = frames.axis[frame], frames.joint[frame]
+        errors = _errors_at(stretch.errors, link, kind, frame, positions, frames)
+        found.append(
+            Step(kind, axis, at, most, positions.bend[:, link], length, _off(joints.fixed[link]), errors)
+        )  # fmt: skip
+    body = int(views.bodies[view])
+    if stretch.errors is not None and stretch.carriers[body] == NONE:
+        n, zero = len(positions.middle), np.zeros(len(positions.middle))
+        pose = np.repeat(views.poses[view][None], n, axis=0)
+        held = _held(stretch.errors.of_bodies, body, pose[:, :3, :3], pose[:, :3, 3])
+        point = np.zeros((n, 3))
+        found.append(Step(FIXED, point, point, zero, zero, zero, 0.0, held))
+    return found
+
+
+def _errors_at(
+    errors: Errors | None,
+    link: int,
+    kind: int,
+    frame: int,
+    positions: JointPositions,
+    frames: Frames,
+) -> list[Error]:
+    """What may be off where a link hangs."""
+    if errors is None:
+        return []
+    axis, at, found = frames.axis[frame], frames.joint[frame], []
+    if kind != FIXED and errors.joint[link] > 0.0:
+        found.append(Error(float(errors.joint[link]), axis, None if kind == SLIDING else at))
+    origin = at - axis * positions.middle[:, link, None] if kind == SLIDING else at
+    found += _place(float(errors.xyz[link]), float(errors.angle[link]), origin)
+    return found + _held(errors.of_links, link, frames.turn[frame], frames.at[frame])
+
+
+def _held(held: Held, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
+    """Those of the frames that a link or body stands on."""
+    found = []
+    for i in np.flatnonzero(held.which == which).tolist():
+        origin = turn @ held.origins[i] + at
+        found += _place(float(held.xyz[i]), float(held.angle[i]), origin)
+    return found
+
+
+def _place(xyz: float, angle: float, origin: np.ndarray) -> list[Error]:
+    turning = [Error(angle, None, origin)] if angle > 0.0 else []
+    return [*turning, Error(xyz, None, None)] if xyz > 0.0 else turning
+
+
+def bounds_of(
+    view: int,
+    stretch: Stretch,
+    views: Views,
+    balls: Balls,
+    steps: Sequence[Step],
+    frames: Frames,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(pieces,) each, way, rest and rounding of one view."""
+    middle, radius = balls.middle[view], float(balls.radius[view])
+    frame = int(views.frames[view])
+    pose = views.poses[view]
+    turn, at = (
+        (pose[:3, :3], pose[:3, 3]) if frame == NONE else (frames.turn[frame], frames.at[frame])
+    )
+    centre = turn @ middle + at
+    reach = np.sqrt((middle * middle).sum()) + radius + np.abs(pose[:3, 3]).sum()
+    off = _off(pose) + sum(step.off for step in steps)
+    motions = [motion for step in steps for motion in _motions(step)]
+    above = sum((one.most for one in motions if one.origin is not None), np.zeros(1))
+    size = reach + sum((step.length for step in steps), np.zeros(1))
+    turns = above
+    way, rest = np.zeros(1), np.zeros(1)
+    for axis, origin, most, bend in motions:  # from the body to the base
+        if origin is None:
+            rest = rest + most * above + bend
+            way, size = way + most, size + most
+            continue
+        above = above - most
+        arm = centre - origin if axis is None else across_rows(axis, centre - origin)
+        rho = np.sqrt((arm * arm).sum(axis=-1)) + radius + way
+        rest = rest + rho * (most * (0.5 * most + np.maximum(above, 0.0)) + bend)
+        way = way + most * rho
+    rounding = ((len(steps) + 4) * LEVEL + 4.0 * off) * (size + way) * (1.0 + turns)
+    return way * OUTWARD, rest * OUTWARD, rounding
+
+
+class Motion(NamedTuple):
+    """A turn about an axis through `origin`, or any; without an origin a slide. `bend` is part of `most`."""
+
+    axis: np.ndarray | None
+    origin: np.ndarray | None
+    most: np.ndarray
+    bend: np.ndarray
+
+
+def _motions(step: Step) -> list[Motion]:
+    """The joint with its own error, which has the same axis, then all others."""
+    still = np.zeros(1)
+    if step.kind == FIXED:
+        return [Motion(e.axis, e.origin, still + e.size, still) for e in step.errors]
+    own = [e for e in step.errors if e.axis is not None]
+    most = step.most + sum(e.size for e in own)
+    joint = Motion(step.axis, None if step.kind == SLIDING else step.at, most, step.bend)
+    rest = [e for e in step.errors if e.axis is None]
+    return [joint, *(Motion(e.axis, e.origin, still + e.size, still) for e in rest)]
+
+
+def _chain(views: Views, frame: int) -> list[int]:
+    """A frame and all above it."""
+    found = []
+    while frame != NONE:
+        found.append(frame)
+        frame = int(views.above[frame])
+    return found
+
+
+def _off(pose: np.ndarray) -> float:
+    """How far the rotation of a pose is from one, beyond rounding."""
+    turn = pose[:3, :3]
+    return float(np.abs(turn.T @ turn - np.eye(3)).max())

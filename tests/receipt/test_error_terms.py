@@ -1,0 +1,133 @@
+"""Receipts with tolerances: no error, at no time, brings parts nearer than a direction or balls prove."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from clearance.receipt.case_data import case_data
+from clearance.receipt.proof.items import Items
+from clearance.receipt.proof.motion_data import UNIT
+from clearance.receipt.proof.separation import along, as_balls
+from clearance.receipt.proof.views import links_above
+from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
+from clearance.world.forest import forest_of
+from tests.budget.budget_cases import random_case
+from tests.budget.sampled_machine import SampledMachine, distance
+from tests.receipt.receipts import stage_of, turning_arm
+
+ROUNDING = 1e-12
+SAMPLES = 12
+
+
+def rows_of(stage, node: int, rng: np.random.Generator):
+    """An item a pair, each in an interval of its own, of a node of the first body; and a direction for each."""
+    n = len(stage.stretch.pairs)
+    zero = np.zeros(n, dtype=np.int64)
+    start = rng.integers(0, stage.stretch.n_intervals, n)
+    items = Items(np.arange(n), zero + node, zero, start, zero + 1, zero, zero)
+    u = rng.normal(size=(3, n))
+    return items, u / np.sqrt((u * u).sum(axis=0))
+
+
+def corners_of(stage, body: int, node: int) -> np.ndarray:
+    """(k, 3) the corners of a node's faces."""
+    at = stage.halves.first_node[body] + node
+    own = slice(stage.halves.start[at], stage.halves.stop[at])
+    return stage.halves.corners[:, :, own].reshape(3, -1).T
+
+
+def names_in(case) -> list[str]:
+    """Of all bodies, as `SampledMachine` calls them."""
+    links = [f"{p.robot.name}/{b.name}" for p in case.robots for b in p.robot.bodies]
+    return [*links, *(obstacle.name for obstacle in case.obstacles)]
+
+
+def link_above(stage, case, a: int, b: int) -> str | None:
+    """The nearest link above two bodies, from which they are seen; None for the world."""
+    forest, joints, carriers = forest_of(case), stage.stretch.joints, stage.stretch.carriers
+    others = links_above(joints, int(carriers[b]))
+    both = [link for link in links_above(joints, int(carriers[a])) if link in others]
+    names = {
+        start + i: f"{placed.robot.name}/{name}"
+        for placed, start in zip(case.robots, forest.robot_starts, strict=True)
+        for i, name in enumerate(placed.robot.link_names)
+    }
+    names |= {
+        link: one.name for one, link in zip(case.obstacles, forest.obstacle_links, strict=True)
+    }
+    return names[both[0]] if both else None
+
+
+def seen_from(link: str | None, poses) -> dict[str, np.ndarray]:
+    """The poses as they are seen from a link, wherever that is."""
+    if link is None:
+        return poses
+    return {name: np.linalg.inv(poses[link]) @ pose for name, pose in poses.items()}
+
+
+def left_of(stage, items, u, case, rng) -> np.ndarray:
+    """(pairs,) [m] the least that samples of errors and times leave along each direction."""
+    machine, names = SampledMachine(case), names_in(case)
+    least = np.full(len(items.pair), np.inf)
+    for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
+        times = stage.stretch.times[items.start[i] :][:2]
+        first, second = corners_of(stage, a, int(items.node_a[i])), corners_of(stage, b, 0)
+        for _ in range(SAMPLES):
+            poses = machine.poses(float(rng.uniform(*times)), machine.random(rng))
+            poses = seen_from(link_above(stage, case, a, b), poses)
+            x, y = (
+                points @ poses[names[body]][:3, :3].T + poses[names[body]][:3, 3]
+                for points, body in ((first, a), (second, b))
+            )
+            least[i] = min(least[i], (y @ u[:, i]).min() - (x @ u[:, i]).max())
+    return least
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_error_brings_parts_nearer_than_a_direction_proves(seed):
+    case, rng = random_case(seed), np.random.default_rng(seed)
+    data = case_data(case)
+    assert len(data.stretches) == 2 and data.stretches[1].errors is not None
+    with_errors, without = stage_of(data, 1), stage_of(data, 0)
+    wanted = {id(s): s.stretch.padding[:, None] + UNIT for s in (with_errors, without)}
+    for node in (0, 1, 4):
+        items, u = rows_of(with_errors, node, rng)
+        least = left_of(with_errors, items, u, case, rng)
+        bounds = {}
+        for stage in (with_errors, without):
+            beyond = stage.bounds(items, along, u)
+            bounds[id(stage)] = beyond + wanted[id(stage)][items.pair, 0]
+        assert (bounds[id(with_errors)] <= least + ROUNDING).all()
+        assert (bounds[id(without)] > least).any()
+
+
+@pytest.mark.parametrize("seed", (0, 3))
+def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
+    case, rng = random_case(seed), np.random.default_rng(seed)
+    stage, names, machine = stage_of(case_data(case), 1), names_in(case), SampledMachine(case)
+    items, _ = rows_of(stage, 0, rng)
+    bounds = stage.bounds(items, as_balls) + stage.stretch.padding + UNIT
+    for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
+        poses = machine.poses(float(stage.stretch.times[items.start[i]]), machine.random(rng))
+        shapes = [machine.shapes[names[body]].at(poses[names[body]]) for body in (a, b)]
+        assert bounds[i] <= distance(*shapes) + ROUNDING
+
+
+def test_the_bound_of_a_single_turn_is_that_of_its_arc():
+    """A corner at 0.8, 0.05 m from the axis: by e along y it goes 0.8 sin e + 0.05 (cos e - 1)."""
+    e = 1e-3
+    case = turning_arm(turn=1e-9, n_steps=2)
+    off = RobotTolerance({"turn": JointTolerance(e, 0.0, PlacementTolerance(0.002, 0.0))})
+    data = case_data(replace(case, tolerance=Budget({"arm": off})))
+    halves = np.array(
+        [1, 2]
+    )  # of the bar: six triangles each, whose corners are looked at one by one
+    zero = np.zeros(2, dtype=np.int64)
+    items = Items(zero, halves, zero, zero, zero + 1, zero, zero)
+    u = np.repeat([[0.0], [1.0], [0.0]], 2, axis=1)
+    nominal, left = (stage_of(data, i).bounds(items, along, u).min() for i in (0, 1))
+    exact = 0.8 * np.sin(e) + 0.05 * (np.cos(e) - 1.0) + 0.002
+    assert exact <= nominal - left <= exact + e * e
