@@ -39,6 +39,7 @@ def drawn(size, normal: bool, rng: np.random.Generator) -> np.ndarray:
     return vector / np.linalg.norm(vector) * size.most * rng.random() ** (1.0 / 3.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "normal"), [(0, False), (2, False), (6, True), (8, False), (10, True)]
 )
