@@ -12,7 +12,7 @@ import pytest
 
 import clearance as cl
 from tests import guards, marks
-from tests.examples import PROFILES, examples
+from tests.examples import PROFILES, examples, listed, share_of
 
 FETCH = marks.SHARED_CASES / "fetch_cage_planned"
 MODULE = "subprocess"
@@ -87,3 +87,12 @@ def test_a_profile_draws_its_share_of_the_examples():
     assert share in PROFILES.values()
     assert examples(200).max_examples == 2 * share
     assert examples(1).max_examples == 3
+
+
+def test_of_listed_examples_a_share_is_taken_all_over_the_list():
+    items = [("a", i) for i in range(60)] + [("b", 0), ("c", 0), ("c", 1)]
+    kept = listed(items, key=lambda item: item[0])
+    of_a = [i for name, i in kept if name == "a"]
+    assert len(of_a) == share_of(60) and of_a[0] == 0 and of_a[-1] >= 40
+    assert [item for item in kept if item[0] != "a"] == [("b", 0), ("c", 0), ("c", 1)]
+    assert kept == sorted(kept)
