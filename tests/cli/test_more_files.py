@@ -25,7 +25,6 @@ scene:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("CLEARANCE_COMPILES_AHEAD", "1")
     (tmp_path / "cart.urdf").write_text(URDF)
     (tmp_path / "case.yaml").write_text(CASE)
     (tmp_path / "path.csv").write_text(PATH)
