@@ -15,7 +15,7 @@ from tests.budget.budget_cases import proven_sections, random_budget, random_cas
 from tests.oracle.perturbed import Perturbed, Size, sizes
 
 COVERAGE = 3.0
-N_SAMPLES = 4000
+N_SAMPLES = 2000
 
 
 def nearest_points(case, section, step: int):
