@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import gc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numba  # noqa: F401 - so that the compiler is at work from the start, as most tests want it
 import pytest
@@ -18,14 +19,43 @@ LONG = {"cold", "browser", "slow"}
 examples.register()
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Looks for no garbage while tests are collected: all that is made then stays."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.enable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(
+    config: pytest.Config, items: list[pytest.Item]
+) -> Iterator[None]:
+    """Adds marks; of the listed examples that `-m` and `-k` leave of a test, keeps the profile's share."""
+    _mark(items)
+    _put_long_files_first(items)
+    result = yield
+    kept = examples.listed(items, key=lambda item: item.nodeid.partition("[")[0])
+    left_out = set(items) - set(kept)
+    if left_out:
+        config.hook.pytest_deselected(items=list(left_out))
+        items[:] = kept
+    return result
+
+
+def _mark(items: list[pytest.Item]) -> None:
     """Adds the marks that follow from what each test and its fixtures use."""
     for item in items:
         fixtures = item._fixtureinfo.name2fixturedefs.values()
-        for mark in sorted(marks_of([item.function, *(f.func for last in fixtures for f in last)])):
+        for mark in _marks_of(item.function, *(f.func for last in fixtures for f in last)):
             item.add_marker(mark)
-    _put_long_files_first(items)
+
+
+@functools.cache
+def _marks_of(*functions: Callable) -> list[str]:
+    return sorted(marks_of(functions))
 
 
 def _put_long_files_first(items: list[pytest.Item]) -> None:

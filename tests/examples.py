@@ -2,13 +2,16 @@
 
 Of random examples `dev` draws a tenth of what the test asks for, at least three, and `ci` all;
 `pytest --hypothesis-profile dev` chooses, and `ci` holds where nothing is chosen. Of listed examples, as seeds and
-names are, those that take long are marked `slow`.
+names are, it takes the same share, from all over the list (`listed`); those that take long are marked `slow`.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Hashable, Iterable, Sequence
+from typing import TypeVar
 
 import pytest
 from hypothesis import settings
+
+Item = TypeVar("Item")
 
 PROFILES = {"ci": 100, "dev": 10}
 """Of a hundred examples that a test asks for, how many are drawn."""
@@ -29,6 +32,21 @@ def examples(n: int) -> settings:
 def share_of(n: int) -> int:
     """`n`, or the profile's share of it: how many examples a test draws by itself."""
     return max(3, n * settings.default.max_examples // 100)
+
+
+def listed(items: Sequence[Item], key: Callable[[Item], Hashable]) -> list[Item]:
+    """The items in their order, of those of one key the profile's share, evenly from the first one on."""
+    places: dict[Hashable, list[int]] = {}
+    for i, item in enumerate(items):
+        places.setdefault(key(item), []).append(i)
+    kept = {i for own in places.values() for i in _evenly(own)}
+    return [item for i, item in enumerate(items) if i in kept]
+
+
+def _evenly(own: list[int]) -> list[int]:
+    n = len(own)
+    n_kept = min(n, share_of(n))
+    return [own[i * n // n_kept] for i in range(n_kept)]
 
 
 def first_fast(values: Iterable, n: int) -> list:

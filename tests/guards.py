@@ -11,6 +11,8 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+import pytest
+
 from tests.marks import SHARED_CASES
 
 STARTS = {
@@ -22,8 +24,13 @@ STARTS = {
     "os.spawn",
     "os.system",
 }
+MAY_START = frozenset({"cold", "browser"})
 FONT_LIST = "fc-list"
 """What matplotlib starts once on a machine, to find its fonts, in whichever test draws first."""
+
+ALONE = "CLEARANCE_COMPILES_AHEAD"
+"""Set where no second process is to fill the cache of kernels. With an empty cache whichever test first runs
+`clearance check` would start it."""
 
 _marks: frozenset[str] | None = None
 refused: list[str] = []
@@ -40,16 +47,19 @@ def guarded(marks: frozenset[str]) -> Iterator[None]:
     global _marks
     before, _marks = _marks, marks
     refused.clear()
-    try:
-        yield
-    finally:
-        _marks = before
+    with pytest.MonkeyPatch.context() as environment:
+        if not marks & MAY_START:
+            environment.setenv(ALONE, "1")
+        try:
+            yield
+        finally:
+            _marks = before
 
 
 def _see(event: str, arguments: tuple) -> None:
     if _marks is None:
         return
-    if event in STARTS and not _marks & {"cold", "browser"} and arguments[0] != FONT_LIST:
+    if event in STARTS and not _marks & MAY_START and arguments[0] != FONT_LIST:
         _refuse(f"{event} without the mark cold or browser: {arguments[:2]}")
     elif event == "open" and "shared" not in _marks and _is_shared(arguments[0]):
         _refuse(f"{arguments[0]} is read without the mark shared")

@@ -11,8 +11,9 @@ from importlib import import_module
 import pytest
 
 import clearance as cl
+from clearance.cli import compile_ahead
 from tests import guards, marks
-from tests.examples import PROFILES, examples
+from tests.examples import PROFILES, examples, listed, share_of
 
 FETCH = marks.SHARED_CASES / "fetch_cage_planned"
 MODULE = "subprocess"
@@ -74,6 +75,13 @@ def test_this_test_has_no_mark_and_so_starts_no_process(request):
     guards.refused.clear()
 
 
+def test_no_second_process_compiles_for_a_test_without_a_mark(monkeypatch):
+    """Also where no kernel is kept yet, as on a new machine."""
+    monkeypatch.setattr(compile_ahead.kernel_table, "is_kept", lambda place: False)
+    assert compile_ahead._start_once.__wrapped__()
+    assert not guards.refused and not compile_ahead.kernel_table._elsewhere
+
+
 def test_a_case_beside_the_repository_is_not_read_without_the_mark():
     with pytest.raises(guards.UnmarkedDeed):
         open(guards.SHARED_CASES / "no_such_case")
@@ -87,3 +95,12 @@ def test_a_profile_draws_its_share_of_the_examples():
     assert share in PROFILES.values()
     assert examples(200).max_examples == 2 * share
     assert examples(1).max_examples == 3
+
+
+def test_of_listed_examples_a_share_is_taken_all_over_the_list():
+    items = [("a", i) for i in range(60)] + [("b", 0), ("c", 0), ("c", 1)]
+    kept = listed(items, key=lambda item: item[0])
+    of_a = [i for name, i in kept if name == "a"]
+    assert len(of_a) == share_of(60) and of_a[0] == 0 and of_a[-1] >= 40
+    assert [item for item in kept if item[0] != "a"] == [("b", 0), ("c", 0), ("c", 1)]
+    assert kept == sorted(kept)

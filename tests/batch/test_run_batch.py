@@ -349,6 +349,7 @@ def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeyp
     assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}
 
 
+@pytest.mark.slow
 def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
     manifest = write_cell(tmp_path / "in", [0.2])
     cell = tmp_path / "in" / "cell.yaml"

@@ -92,6 +92,7 @@ KINDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_errors_come_below_what_is_proven_between_steps(kind):
     seed, changes = KINDS[kind]
@@ -167,6 +168,7 @@ def test_a_late_clock_of_what_loops_is_refused():
         cl.check(replace(case, tolerance=late))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cubic", [False, True])
 def test_the_deviation_of_clocks_is_that_of_drawn_errors(cubic):
     """Within 10 %, of the points that are nearest, where the path is nearly straight."""

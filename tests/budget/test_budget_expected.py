@@ -15,7 +15,7 @@ from tests.budget.budget_cases import proven_sections, random_budget, random_cas
 from tests.oracle.perturbed import Perturbed, Size, sizes
 
 COVERAGE = 3.0
-N_SAMPLES = 4000
+N_SAMPLES = 2000
 
 
 def nearest_points(case, section, step: int):
@@ -39,6 +39,7 @@ def drawn(size, normal: bool, rng: np.random.Generator) -> np.ndarray:
     return vector / np.linalg.norm(vector) * size.most * rng.random() ** (1.0 / 3.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "normal"), [(0, False), (2, False), (6, True), (8, False), (10, True)]
 )

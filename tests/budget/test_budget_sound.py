@@ -37,6 +37,7 @@ def assert_none_below(
     return least
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", (0, 1, 2, 8))
 def test_no_errors_come_below_what_is_proven_of_the_worst_step(seed):
     case = random_case(seed)

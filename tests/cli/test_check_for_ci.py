@@ -112,6 +112,7 @@ def test_without_a_step_summary_that_is_said(place, capsys):
     assert out.startswith("::error file=") and "GITHUB_STEP_SUMMARY is not set" in err
 
 
+@pytest.mark.slow
 def test_two_runs_side_by_side(place, capsys):
     for name in ("broken", "worse", "clear"):
         check(f"{name}/case.yaml", "--out", f"of_{name}", "--quiet")

@@ -86,7 +86,7 @@ def same_bytes(one, other) -> bool:
         ("m.xml", MJCF, ""),
         ("m.mjcf", MJCF, ""),
         ("first.scene", FIRST, ""),
-        ("second.scene", SECOND, ""),
+        pytest.param("second.scene", SECOND, "", marks=pytest.mark.slow),
         ("lists.yaml", LISTS, ""),
         ("held.yaml", MESSAGE, SAID),
         ("map.yaml", OCTOMAP, ""),
@@ -136,6 +136,7 @@ def test_comments_are_told(capsys):
     assert "note: ours.yaml: left out: its comments" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_padding_that_is_left_out_is_a_warning_of_each_check(capsys):
     """Nothing else that is left out makes a clearance larger: more is measured then."""
     Path("held.yaml").write_text(MESSAGE.replace("padding: 0.01", "padding: 0.0"))

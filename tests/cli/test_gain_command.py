@@ -70,6 +70,7 @@ def test_a_joint_is_told_with_the_sign_of_its_offset(slot, capsys):
     assert code == 0 and "joint y by up to -20.00 mm at " in text
 
 
+@pytest.mark.slow
 def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     out = tmp_path / "out"
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep", "0.9:1.1", "--out", out)
@@ -80,6 +81,7 @@ def test_what_cannot_be_kept_says_what_blocks(slot, tmp_path, capsys):
     assert "can make" not in text
 
 
+@pytest.mark.slow
 def test_all_kinds_stand_in_a_table_and_in_folders(slot, tmp_path, capsys):
     code, text, _ = said(capsys, slot, "--kind", "all", "--out", tmp_path / "out")
     assert code == 0 and "timing     -     -         does not apply" in text

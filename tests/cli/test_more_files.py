@@ -25,7 +25,6 @@ scene:
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("CLEARANCE_COMPILES_AHEAD", "1")
     (tmp_path / "cart.urdf").write_text(URDF)
     (tmp_path / "case.yaml").write_text(CASE)
     (tmp_path / "path.csv").write_text(PATH)
@@ -33,6 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_all_are_written_and_named_and_nothing_else(folder, capsys):
     wanted = ["--png", "a/worst.png", "--glb", "worst.glb", "--trajectory", "back.json"]
     assert run(["check", "case.yaml", *wanted]) == 0
@@ -124,6 +124,7 @@ def test_times_that_a_message_cannot_hold_are_refused_or_noted(folder, capsys, m
     assert "note        back.yaml: 1 of 3 times are rounded" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_simulated_motion_is_written_as_it_was(folder):
     pytest.importorskip("pybullet")
     assert (

@@ -168,6 +168,7 @@ def test_meshes_that_are_written_out_in_a_scene_become_files():
     assert cube.body.shape.vertices.max() == CUBE.max()
 
 
+@pytest.mark.slow
 def test_a_scene_whose_reader_warns_stays_the_file_that_it_is(capsys):
     seen = sdf(world(model(link(collision()), link("<visual name='v'/>", name="seen"))))
     Path("cell/world.sdf").write_text(seen)
@@ -346,6 +347,7 @@ PLAIN = st.recursive(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(PLAIN)
 def test_what_is_written_is_read_back(value):

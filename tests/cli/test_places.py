@@ -16,7 +16,6 @@ from tests.cli.test_check_command import CASE, PATH, ROOT, URDF, files
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A case, standing in its folder; its trajectory has the name of one of the report's files."""
-    monkeypatch.setenv("CLEARANCE_COMPILES_AHEAD", "1")
     place = tmp_path / "cell"
     place.mkdir()
     (place / "cart.urdf").write_text(URDF)

@@ -31,6 +31,7 @@ def test_a_workspace_of_one_case(cell, tmp_path, capsys):
     assert json.loads((out / "workspace.json").read_text())["robots"] == ["left", "right", "track"]
 
 
+@pytest.mark.slow
 def test_a_profile_of_the_links_of_one_robot_and_what_it_carries(cell, tmp_path, capsys):
     out = tmp_path / "left.yaml"
     options = ["--plane", "xz", "--tolerance", "10", "--per-link"]
@@ -56,6 +57,7 @@ def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
     assert len([line for line in error.splitlines() if "unknown" in line]) == 1
 
 
+@pytest.mark.slow
 def test_a_case_file_of_two_robots(tmp_path, capsys):
     case, out = write_cell(tmp_path), tmp_path / "left.yaml"
     arguments = [

@@ -57,6 +57,7 @@ def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert any(line.startswith("  lower - upper  Adjacent  can meet") for line in told)
 
 
+@pytest.mark.slow
 def test_a_pair_that_can_meet_is_told_first_with_its_pose(robot, capsys):
     assert run(["srdf", "audit", *robot(upper=0.4)]) == 1
     told = capsys.readouterr().out.splitlines()

@@ -95,6 +95,7 @@ def test_a_receipt_of_what_is_not_proven_is_refused_before_anything_is_measured(
     assert not (home.parent / "out").exists()
 
 
+@pytest.mark.slow
 def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys):
     tolerances, out = home / "tol.yaml", home / "again"
     tolerances.write_text("joints: {all: 0.0001}\n")

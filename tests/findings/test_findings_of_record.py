@@ -36,6 +36,7 @@ def run(name: str, limits: Limits | None = None, need: str = "steps", certify: b
     return cl.check(case(name), need=need, limits=limits, certify=certify)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("certify", [True, False])
 def test_findings_are_the_same_whatever_was_asked_for(certify):
     known = {need: findings_of(run("iiwa_pipe_rack", RACK, need, certify).record)
@@ -73,6 +74,7 @@ def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
     assert worst.start < worst.end and "--certify-mm" in worst.text
 
 
+@pytest.mark.slow
 def test_every_rule_that_judges_something_has_a_finding():
     for need in ("steps", "limit"):
         found = findings_of(run("dual_arm_handover", None, need).record)

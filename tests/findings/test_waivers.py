@@ -191,6 +191,7 @@ def test_a_waiver_in_memory_is_checked_too():
             waiver(**{name: value})
 
 
+@pytest.mark.slow
 def test_what_is_waived_counts_as_if_it_were_not_there(tmp_path):
     """Waived to any distance, pairs that touch nowhere leave the verdict of all others, however many."""
     gates = {

@@ -134,6 +134,7 @@ def test_the_page_stands_beside_both_reports(saved):
         assert f'href="{name}/report.html"' in page and (out / name / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_the_same_again_is_the_same_bytes_and_needs_force(tmp_path):
     path = write_cell(tmp_path, SLOT)
     found = cl.gain(path, "base")
@@ -160,6 +161,7 @@ def test_comments_stay_and_paths_lead_to_the_same_files(tmp_path):
     assert "limits: {fail: 0.04, warn: 0.04}  # agreed" in text
 
 
+@pytest.mark.slow
 def test_parts_that_a_file_shares_are_written_apart(tmp_path):
     text = SLOT.replace("box: {size: [0.5, 0.4, 2.0]}\n    pose: {xyz: [0.0, 0.3, 0.0]}",
                         "box: &wall {size: [0.5, 0.4, 2.0]}\n    pose: &at {xyz: [0.0, 0.3, 0.0]}")  # fmt: skip

@@ -63,6 +63,7 @@ def test_a_sphere_lies_inside_its_faces(radius, share):
         assert all(dot(p, p) <= limit for p in face)
 
 
+@pytest.mark.slow
 @examples(15)
 @given(radii, radii, radii, tolerances)
 def test_an_ellipsoid_lies_inside_its_faces(a, b, c, share):

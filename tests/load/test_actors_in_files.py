@@ -109,6 +109,7 @@ def test_self_clearance_is_of_each_robot(tmp_path):
     assert left.self_clearance is None and right.self_clearance is not None
 
 
+@pytest.mark.slow
 def test_a_scene_file_may_hold_what_moves(tmp_path):
     (tmp_path / "parts").mkdir()
     scene = "obstacles:\n- {name: door, sphere: {radius: 1}, moves: {file: door.csv, rate: 0.5}}\n"

@@ -140,6 +140,7 @@ def test_damage_is_drawn_from_a_seed_and_some_of_it_is_refused(kind):
     assert len(set(made)) > 8
 
 
+@pytest.mark.slow
 def test_damaged_documents_are_still_yaml():
     from clearance.errors import BadInput
     from clearance.plain_yaml import plain_data

@@ -277,6 +277,7 @@ VALUES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @examples(300)
 @given(VALUES)
 def test_any_message_is_read_or_refused(message):

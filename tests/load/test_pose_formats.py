@@ -142,6 +142,7 @@ def test_what_is_no_motion_of_one_thing_is_refused(messages, fault, said):
         read("\n".join(map(json.dumps, messages)), "a.json")
 
 
+@pytest.mark.slow
 def test_a_file_cut_off_anywhere_is_refused_in_one_line_or_is_shorter():
     whole = read(STAMPED).table
     for end in range(len(STAMPED)):

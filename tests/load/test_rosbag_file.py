@@ -14,7 +14,7 @@ from tests.load.making_case import TWO_JOINTS, changed
 
 pytest.importorskip("rosbags", reason="bags are made by rosbags")
 
-from tests.examples import some_slow
+from tests.examples import first_fast
 from tests.load.making_bags import (
     CONTAINERS,
     EVENT,
@@ -73,7 +73,7 @@ def test_of_several_topics_one_is_chosen(tmp_path, container):
         read(path, topic="/plan", units=("deg", "m"))
 
 
-@pytest.mark.parametrize("container", CONTAINERS[1:])
+@pytest.mark.parametrize("container", first_fast(CONTAINERS[1:], 1))
 def test_a_message_of_moveit_brings_its_definition(tmp_path, container):
     path = write_bag(tmp_path, container, {"/display": [displayed(MOVE)]})
     assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
@@ -106,6 +106,7 @@ def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
     assert EVENT.endswith("_SendGoal_Event")
 
 
+@pytest.mark.slow
 def test_a_bag_without_definitions_is_read_by_ours(tmp_path):
     bag = without_definitions(write_bag(tmp_path / "a", "rosbag2 sqlite3", {"/plan": [MOVE]}))
     assert read(bag).trajectory.n_steps == 2
@@ -155,7 +156,8 @@ def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
             read(bag)
 
 
-@pytest.mark.parametrize("container", some_slow(CONTAINERS, {"rosbag2 sqlite3", "rosbag2 mcap"}))
+@pytest.mark.slow
+@pytest.mark.parametrize("container", CONTAINERS)
 def test_a_bag_cut_off_is_refused_in_one_line_or_is_read(tmp_path, container):
     path = write_bag(tmp_path, container, {"/joint_states": STATES})
     file = max(path.iterdir(), key=lambda one: one.stat().st_size) if path.is_dir() else path

@@ -50,6 +50,7 @@ def drawn(rng, grid):
     return arc(*ends[:2], None if turn is None else chord + turn, *ends[2:])
 
 
+@pytest.mark.slow
 @examples(150)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_the_distance_of_two_arcs_is_that_of_many_points_on_them(seed, grid):

@@ -27,7 +27,7 @@ def test_near_coincident_curves_are_closed_in_on(name):
         found.tally.intervals <= 1100 + 3 * (a.n_pieces + b.n_pieces) and found.tally.given_up == 0
     )
     exact_a, exact_b = (extended(steady(curve)) for curve in (a, b))
-    worst = max(farthest(exact_a, exact_b, 400), farthest(exact_b, exact_a, 400))
+    worst = max(farthest(exact_a, exact_b, 200), farthest(exact_b, exact_a, 200))
     slack = steady(a).rounding + steady(b).rounding
     assert worst <= found.upper + slack
     at_witness = feet(

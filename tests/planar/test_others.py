@@ -66,6 +66,7 @@ def test_biarcs_of_a_circle_are_the_circle():
         biarcs(WAVE, 0.0)
 
 
+@pytest.mark.slow
 def test_least_distance_against_samples_and_by_hand():
     assert minimum_distance(
         Curve.circle([0, 0], 1), Curve.circle([5, 0], 1.5)

@@ -96,7 +96,7 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("name", some_slow(HARD, {"the same curve"}))
+@pytest.mark.parametrize("name", some_slow(HARD, {"the same curve", "concentric circles"}))
 def test_systems_without_end_stop_with_a_true_bound(name):
     """Infinitely many roots, or too many to tell apart: the budget ends it, and the bound says what is left."""
     a, b = HARD[name]

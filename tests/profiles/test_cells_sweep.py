@@ -21,7 +21,7 @@ from clearance.world.rules import matches
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
 from tests import cells
-from tests.examples import examples, some_slow
+from tests.examples import examples
 from tests.oracle.outlines import inside
 from tests.profiles.moving import rows
 
@@ -130,7 +130,8 @@ def test_what_moves_by_itself_is_swept_where_it_is_named_and_only_there(seed):
     assert of_robots == {*LINKS, "part", "lid"}
 
 
-@pytest.mark.parametrize("name", some_slow(["door", "crate", "right/tool"], {"door", "crate"}))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["door", "crate", "right/tool"])
 def test_a_section_holds_every_point_cut(name):
     case, rng = cells.cell(4), np.random.default_rng(4)
     times = np.linspace(0.0, end_of(case), 1000)

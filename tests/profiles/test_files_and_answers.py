@@ -81,6 +81,7 @@ def test_area_and_length_of_arcs_are_those_of_fine_chords(profile):
     assert ring.length == pytest.approx(np.hypot(u - x, v - y).sum(), rel=1e-7)
 
 
+@pytest.mark.slow
 def test_compare_agrees_with_the_distance_and_names_the_maker():
     one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.0]))
     two = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.2]))

@@ -118,6 +118,7 @@ def test_a_long_bar_spinning_about_its_middle_is_a_double_wedge_not_its_hull():
     assert strays(found, truth) <= found.bound
 
 
+@pytest.mark.slow
 @examples(10)
 @given(st.integers(0, 2**32 - 1))
 def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):

@@ -125,6 +125,7 @@ def test_a_cavity_with_a_fault_in_its_wall_stays_outside() -> None:
     assert distance(hollow, CUBE, pose_b=at(0.75, 0.0, 0.0)).contact
 
 
+@pytest.mark.slow
 def test_caps_close_what_they_are_said_to_close() -> None:
     """Faces as they count, and caps, have winding numbers that the oracle finds whole."""
     random = np.random.default_rng(7)

@@ -82,6 +82,7 @@ def test_far_from_the_origin_nothing_is_lost():
         assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq)
 
 
+@pytest.mark.slow
 def test_tree_and_brute_force_agree_bit_for_bit():
     """Each face alone as a body, so that nothing is pruned; least faces first."""
     random = np.random.default_rng(13)

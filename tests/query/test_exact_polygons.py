@@ -126,6 +126,7 @@ def test_scaling_by_a_power_of_two_scales_the_answer_exactly(pair, k):
     assert same(polygon_distance(p, q), polygon_distance(factor * p, factor * q), factor)
 
 
+@pytest.mark.slow
 @given(polygon_pairs())
 @examples(150)
 def test_any_pair_of_polygons(pair):

@@ -41,6 +41,7 @@ def measured(p, q):
         return None
 
 
+@pytest.mark.slow
 def test_segments_agree_with_the_oracle_on_all_small_integer_ones():
     points = [Vec3(*map(float, x)) for x in itertools.product((0, 1, 3), (0, 2), (0, 1))]
     random = np.random.default_rng(1)
@@ -122,6 +123,7 @@ def test_never_nearer_than_the_truth_and_between_points_of_the_polygons(name):
     assert n_measured >= 15
 
 
+@pytest.mark.slow
 def test_right_wherever_it_stops_inside_both():
     """s = 0 in both faces is the first-order condition of a convex problem: the global minimum."""
     n_stopped = 0

@@ -44,6 +44,7 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
         assert any(reached(is_in_ball)(packed, *(0.9 * x)) for x in on_surface)
 
 
+@pytest.mark.slow
 def test_the_ball_touches_the_nearest_plane_of_a_cube():
     cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
     packed, numbers = cube.packed, cube.packed.numbers

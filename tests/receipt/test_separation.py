@@ -51,6 +51,7 @@ def true_distance(case, stage, items, i, t):
     return math.sqrt(polyhedron_distance_sq(*sides))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1, 3])
 def test_no_bound_is_above_the_distance_at_any_moment_of_its_piece(seed):
     case, rng = everything_moves(seed), np.random.default_rng(seed)

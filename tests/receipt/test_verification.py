@@ -44,12 +44,14 @@ def test_the_bound_of_a_run_is_proven_again(folder):
     assert (found.n_pairs, found.n_intervals, found.n_claimed) == (2, 4, 4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_cubics_mounts_tables_and_parts_in_hands_are_covered(tmp_path, seed):
     saved(everything_moves(seed), tmp_path)
     assert cl.verify(tmp_path, everything_moves(seed)).proven
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes(folder, tmp_path_factory):
     other = tmp_path_factory.mktemp("other")
     saved(turning_arm(), other)
@@ -133,6 +135,7 @@ def test_a_report_that_was_changed_is_found(folder, name):
         verified(folder)
 
 
+@pytest.mark.slow
 def test_intervals_in_which_bodies_touch_are_told(tmp_path):
     case = turning_arm(far=0.8)
     saved(case, tmp_path)
@@ -141,6 +144,7 @@ def test_intervals_in_which_bodies_touch_are_told(tmp_path):
     assert "except in 2 intervals, in which bodies may touch" in found.headline
 
 
+@pytest.mark.slow
 def test_a_body_inside_another_is_not_proven_apart(tmp_path):
     case = turning_arm()
     inside = cl.Obstacle(cl.Body("hall", cl.box((9.0, 9.0, 9.0))))
@@ -158,6 +162,7 @@ def test_a_body_inside_another_is_not_proven_apart(tmp_path):
         evidence_for(data.stretches, data.shapes, halves_of(data.shapes), claims)
 
 
+@pytest.mark.slow
 def test_a_sampled_receipt_is_called_one(tmp_path):
     case = turning_arm(n_steps=80)
     saved(case, tmp_path, kind="sampled")
@@ -200,6 +205,7 @@ def test_a_newer_report_takes_the_receipt_of_the_older_one_away(folder):
         verified(folder)
 
 
+@pytest.mark.slow
 def test_padding_and_rules_are_part_of_what_is_proven(tmp_path):
     case = turning_arm()
     padded = tuple(replace(one, padding=0.005) for one in case.obstacles)
@@ -211,6 +217,7 @@ def test_padding_and_rules_are_part_of_what_is_proven(tmp_path):
     assert found.bounds["near"] == pytest.approx(0.195, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_clouds_are_balls(tmp_path):
     case = turning_arm()
     rng = np.random.default_rng(0)

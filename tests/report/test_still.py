@@ -165,6 +165,7 @@ def test_the_picture_is_a_png_of_its_size_and_the_same_each_time(monkeypatch):
     assert png_of(run, replay) == png_of(run, replay) != first
 
 
+@pytest.mark.slow
 def test_names_of_any_letters_are_words_not_formulas(monkeypatch):
     monkeypatch.setattr(drawing, "FINER", 1)
     run = record()

@@ -147,7 +147,8 @@ class Broken(Exception):
     """What breaks a run off."""
 
 
-@pytest.mark.parametrize("after", first_fast([17, 1, 5, 40], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("after", [17, 1, 5, 40])
 def test_a_run_that_was_broken_off_goes_on_to_the_same_bytes(tmp_path, after, monkeypatch):
     monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
     case, left = ruled(2), [after]

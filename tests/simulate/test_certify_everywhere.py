@@ -52,14 +52,10 @@ def test_the_bound_holds_on_every_scene(path):
     assert_as_tight_as_asked(run)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "fineness"),
-    [
-        ("facing_plates", 6),
-        pytest.param("linked_tori", 8, marks=pytest.mark.slow),
-        pytest.param("nested_shells", 2, marks=pytest.mark.slow),
-        pytest.param("everything_equidistant", 6, marks=pytest.mark.slow),
-    ],
+    [("facing_plates", 6), ("linked_tori", 8), ("nested_shells", 2), ("everything_equidistant", 6)],
 )
 def test_the_bound_holds_where_all_is_near(name, fineness):
     run = cl.check(WORST[name](fineness, 3), certify=True)

@@ -128,6 +128,7 @@ def test_the_steps_say_how_deep_only_where_all_is_worked_out():
     assert none["penetration"].null_count == none["volume"].null_count == none.num_rows
 
 
+@pytest.mark.slow
 def test_the_deepest_moment_of_the_shelf_is_that_of_all_its_steps():
     case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
     events, every = (cl.check(case, contact=how).record.deepest for how in ("events", "every"))

@@ -60,6 +60,7 @@ def test_the_scene_in_contact_has_depth_and_volume_at_its_22_steps(shelf):
     assert {(row["penetration"], row["volume"]) for row in clear} == {(None, None)}
 
 
+@pytest.mark.slow
 def test_the_row_of_a_step_is_its_deepest_pair_and_the_sum_of_its_volumes(shelf):
     for step in (136, 148, 157):
         found = [row.found for row in shelf.record.contacts if row.step == step]
@@ -211,6 +212,7 @@ def test_the_page_of_the_pushed_case_shows_the_region(pushed, tmp_path):
     assert len(drawn) == len([row for row in run.record.contacts if row.step == step])
 
 
+@pytest.mark.slow
 def test_regions_that_were_not_kept_are_found_again(
     shelf: cl.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

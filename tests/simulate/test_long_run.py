@@ -175,6 +175,7 @@ def nudged(case: Case, what: str) -> Case:
     return replace(case, robots=(moved,))
 
 
+@pytest.mark.slow
 def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
     for other, asked in [
         (case, {"limits": cl.Limits(0.001, 0.002)}),

@@ -24,6 +24,7 @@ def near_rows(name: str, need: str, within: float = WITHIN) -> list[NearRows]:
     return [rule.pairs.near(within) for rule in checked(name, need).record.rules]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["iiwa_pipe_rack", "dual_arm_handover"])
 @pytest.mark.parametrize("need", ["steps", "limit"])
 def test_near_pairs_are_those_of_a_run_with_every_pair(name, need):
@@ -36,6 +37,7 @@ def test_near_pairs_are_those_of_a_run_with_every_pair(name, need):
         assert (true.clearances < WITHIN).all()
 
 
+@pytest.mark.slow
 def test_the_moment_of_a_pair_is_what_its_row_says():
     (rule,) = checked("iiwa_pipe_rack").record.rules
     rows = rule.pairs.near(WITHIN)

@@ -133,6 +133,7 @@ def test_every_pair_has_its_least():
     assert min(told.values()) == pytest.approx(run.record.worst_sample.clearance, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_contact_that_no_one_time_has_is_said_to_have_no_depth():
     run = cl.check(loose(1, np.inf), certify=False)
     assert run.status == "contact"

@@ -157,6 +157,7 @@ def test_finer_stretches_are_shorter_and_never_leave_a_gap():
     assert len(pieces_of(motion, 1e-5)) > len(pieces_of(motion, 0.5))
 
 
+@pytest.mark.slow
 @WITH_MANIFOLD
 def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
     one, two = swinging("left", moved(0.0)), swinging("right", moved(0.2, 1.0))

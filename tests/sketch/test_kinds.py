@@ -50,6 +50,7 @@ def test_it_holds_after_solving(kind, k):
         assert measured(c, s._lists.numbers) == pytest.approx(DIMENSION[form.unit], rel=1e-12)
 
 
+@pytest.mark.slow  # it compiles a kernel of its own
 @pytest.mark.parametrize(("kind", "k"), CASES)
 def test_derivatives_match_differences(kind, k):
     s, _c, _ = made(kind, k)

@@ -58,6 +58,7 @@ def test_a_minimum_has_no_slope_and_a_fold_leads_lower():
     assert min(lower) < 1e-6 * place.total
 
 
+@pytest.mark.slow
 def test_a_fold_keeps_two_distances():
     work, place = minimum()
     s = work.system

@@ -120,6 +120,7 @@ def test_the_picture_is_not_blank_and_nothing_failed(page):
     assert [error for error in page.errors if "404" not in error] == [], "meshcat has no favicon"
 
 
+@pytest.mark.slow
 def test_a_folder_plays_like_its_record(tmp_path):
     write(RUN, tmp_path / "out")
     with play(tmp_path / "out") as playback:
