@@ -17,13 +17,11 @@ import numpy as np
 from clearance.budget.proven import Moments, PairsWithErrors
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
+from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 from clearance.world.mimics import leads_of
 from clearance.world.reach import farthest_reach
-
-GREATEST = {"rad": 0.2, "m": 0.1, "s": 1.0}
-"""No tolerance beyond these is looked for."""
 
 SHARPNESS = 2e-3
 """The share of a tolerance within which the greatest is found."""
@@ -76,7 +74,7 @@ class Largest:
         trial = _Trial(self, key, place, unit)
         if not trial.keeps(0.0):
             return None
-        number = GREATEST[unit]
+        number = most_looked_for(unit, trial.given)
         for _ in range(MOST_ROUNDS):
             for row in [*dict.fromkeys([*self._least, *self._hard])]:
                 number = trial.greatest_at(row, number)

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import Any
 
 import numpy as np
 
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text, of_rule
-from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget
+from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
 from clearance.simulate.record import Record
 from clearance.world.budget import Budget
 
@@ -95,10 +95,13 @@ def given_text(source: ErrorSource) -> str:
 
 
 def largest_text(source: ErrorSource) -> str:
-    """What it may be at most, all others as given: `2.31 mm, 0.0019 rad`; empty where even 0 is not enough."""
-    units = [unit for _, unit in source.tolerances]
-    known = zip(source.largest, units, strict=False)
-    return ", ".join(_rounded_down(value, unit) for value, unit in known if value is not None)
+    """What it may be at most, all others as given: `2.31 mm, 0.02 rad or more`; empty where 0 is not enough."""
+    told = []
+    for value, (given, unit) in zip(source.largest, source.tolerances, strict=False):
+        if value is not None:
+            more = " or more" if math.inf > value >= most_looked_for(unit, given) else ""
+            told.append(_rounded_down(value, unit) + more)
+    return ", ".join(told)
 
 
 def _rounded_down(value: float, unit: str) -> str:
@@ -188,8 +191,13 @@ def _moment(record: Record, worst: BudgetMoment) -> dict[str, Any]:
         "clearance": moment.clearance,
         "proven": worst.proven,
         "expected": max(worst.expected, worst.proven) if math.isfinite(worst.expected) else None,
-        "sources": [asdict(source) | _shown(record, source) for source in worst.sources],
+        "sources": [_source(record, source) for source in worst.sources],
     }
+
+
+def _source(record: Record, source: ErrorSource) -> dict[str, Any]:
+    known = asdict(replace(source, largest=tuple(source.largest)))
+    return known | _shown(record, source)
 
 
 def _shown(record: Record, source: ErrorSource) -> dict[str, str]:

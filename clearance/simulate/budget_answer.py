@@ -11,6 +11,14 @@ import numpy as np
 from clearance.simulate.moment import Moment
 from clearance.world.case import Limits
 
+GREATEST = {"rad": 0.02, "m": 0.05, "s": 1.0}
+"""Of no single tolerance is more looked for, unless more is given."""
+
+
+def most_looked_for(unit: str, given: float) -> float:
+    """The greatest single tolerance that is looked for: what is told as this may be more."""
+    return max(GREATEST[unit], 2.0 * given)
+
 
 @dataclass(frozen=True)
 class ErrorSource:

@@ -12,6 +12,8 @@ import pytest
 import clearance as cl
 from clearance.budget.sources import SourceKey, with_sizes
 from clearance.errors import BadInput
+from clearance.report.tolerances import largest_text
+from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget, ObstacleTolerance, RobotTolerance
 from clearance.world.case import Clock
 from tests.budget.budget_cases import random_case
@@ -153,9 +155,19 @@ def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be()
     base = budget.worst[0].sources[0]
     assert base.kind == "base"
     for place, name in enumerate(("xyz", "angle")):
-        for factor, keeps in ((1.0, True), (1.5, False)):
+        for factor, keeps in ((1.0, True), (2.0, False)):
             greatest = {name: factor * base.largest[place]}
             (answer,) = cl.check(
                 case, tolerance=tolerance | {"base": tolerance["base"] | greatest}
             ).record.budget
             assert answer.keeps is keeps
+
+
+def test_no_more_is_looked_for_than_is_told_as_or_more(run):
+    case = replace(run.record.case, limits=cl.Limits(0.0, 0.0), notices=())
+    for source in cl.check(case).record.budget[0].worst[0].sources:
+        told = [part for part in largest_text(source).split(", ") if part]
+        for text, value, (given, unit) in zip(told, source.largest, source.tolerances, strict=True):
+            most = most_looked_for(unit, given)
+            assert value <= most
+            assert text.endswith(" or more") is (value == most)
