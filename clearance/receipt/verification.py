@@ -22,6 +22,7 @@ from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, GoneThrough, Receipt, read_receipt
+from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.world.case import Case, Omission
 
 SUMMARY = "summary.json"
@@ -289,6 +290,12 @@ def _require_report(place: Path, receipt: Receipt) -> None:
         try:
             content = path.read_bytes()
         except OSError as error:
+            if (place / OLDER_SUMMARY).is_file():
+                raise MissingFile(
+                    "a later run into this folder has not come to its end: its report is an older one",
+                    where=str(path),
+                    valid="a run that came to its end",
+                ) from None
             raise MissingFile(
                 f"cannot be read: {error.strerror or error}", where=str(path), valid="the report"
             ) from None

@@ -15,6 +15,7 @@ from clearance.errors import BadInput, BadSyntax, MissingFile
 from clearance.receipt.proof.items import CUT_TIME
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
+from clearance.report.withdrawn import withdraw_report
 from tests.receipt.receipts import everything_moves, rewritten, saved, turning_arm
 
 ROOT = Path(__file__).parents[2]
@@ -132,6 +133,12 @@ def test_a_report_that_was_changed_is_found(folder, name):
         verified(folder)
     path.unlink()
     with pytest.raises(MissingFile, match=name):
+        verified(folder)
+
+
+def test_a_report_that_a_later_run_has_withdrawn_is_told(folder):
+    withdraw_report(folder)
+    with pytest.raises(MissingFile, match="later run into this folder has not come to its end"):
         verified(folder)
 
 
