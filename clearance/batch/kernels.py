@@ -15,6 +15,7 @@ import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kerne
 from clearance.compile import kernel_table
 from clearance.compile.kernel_table import CERTIFY, REFINE, SEARCH, SEPARATING_PLANES
 from clearance.kept_files import cache_root
+from clearance.progress import COMPILING
 
 NEEDED = (SEARCH, REFINE, SEPARATING_PLANES, CERTIFY)
 """What every case needs; others are compiled where a case comes to them."""
@@ -30,7 +31,7 @@ def compile_ahead(say: Callable[[str], None] = lambda line: None) -> None:
 
     if all(map(kernel_table.is_kept, NEEDED)):
         return
-    say("compiling for this machine, once: about half a minute")
+    say(COMPILING)
     root = cache_root()
     turn = nullcontext() if root is None else FileLock(root / "ahead.lock", fallback_to_soft=False)
     with turn:

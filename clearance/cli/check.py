@@ -272,11 +272,12 @@ def _compile_ahead(quiet: bool) -> None:
 
     from clearance.cli import compile_ahead
     from clearance.kept_files import KernelCacheWarning
+    from clearance.progress import COMPILING
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)
     if compile_ahead.start() and not quiet and sys.stderr.isatty():
-        click.echo("compiling for this machine, once: about half a minute", err=True)
+        click.echo(COMPILING, err=True)
 
 
 def _print(run: Run, out: Path | None, terminal: Terminal) -> None:

@@ -48,7 +48,7 @@ def test_every_question_is_about_a_case_that_can_be_loaded(tmp_path):
 
 
 def test_a_question_that_is_not_answered_is_a_fault_of_the_program(monkeypatch, capsys):
-    broken = rehearsal.Question("nothing", ("check", "none.yaml"))
+    broken = rehearsal.CommandCall("nothing", ("check", "none.yaml"))
     monkeypatch.setattr(rehearsal, "EVERYDAY", (broken,))
     assert run(["compile"]) == 70
     assert "nothing: 2" in capsys.readouterr().err
