@@ -129,24 +129,27 @@ class _Trial:
         """A number up to `most` with which one row is proven to keep the limit, and little more is not; or 0."""
         from scipy.optimize import brentq
 
-        kept = [0.0]
+        seen: dict[float, float] = {}
 
         def beyond(number: float) -> float:
-            left = self._beyond(row, number)
-            if left >= 0.0:
-                kept.append(number)
-            return left
+            if number not in seen:
+                seen[number] = self._beyond(row, number)
+            return seen[number]
+
+        def greatest_kept() -> float:
+            return max((number for number, left in seen.items() if left >= 0.0), default=0.0)
 
         high = min(most, 2.0 * self.given if self.given > 0.0 else FIRST[self.unit])
         while beyond(high) >= 0.0:
             if high >= most:
                 return most
             high = min(most, FARTHER * high)
-        if beyond(max(kept)) < 0.0:
+        low = greatest_kept()
+        if beyond(low) < 0.0:
             return 0.0
-        root = brentq(beyond, max(kept), high, xtol=SHARPNESS * high * 0.25, rtol=SHARPNESS)
+        root = brentq(beyond, low, high, xtol=SHARPNESS * high * 0.25, rtol=SHARPNESS)
         beyond((1.0 - SHARPNESS) * root)
-        return max(kept)
+        return greatest_kept()
 
     def _beyond(self, row: _Row, number: float) -> float:
         """[m] how far what is proven of a row lies above the limit."""
@@ -237,12 +240,10 @@ def _proven(
     ends = [_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1)]
     known = np.minimum(*ends)
     order = section.between.pair[rows]
-    more = float(
-        np.max(section.between.proven[rows] - known)
-    )  # that is taken than of the errors as given
-    if COARSE * more <= gap:
+    taken_more = float(np.max(section.between.proven[rows] - known))  # than by the errors as given
+    if COARSE * taken_more <= gap:
         return pairs.between(rows, order, known, gap, enough).proven
-    return pairs.between(rows, order, known, COARSE * more, enough, fail=math.inf).proven
+    return pairs.between(rows, order, known, COARSE * taken_more, enough, fail=math.inf).proven
 
 
 def _proven_of_steps(

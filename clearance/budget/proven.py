@@ -186,13 +186,11 @@ def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
         points = what.layout.from_world(positions, found.pair, points)
     rows = pairs.at(pairs.steps(), found.pair, found.clearance, points=points)
     if pairs.n_steps > FEW:
-        _sharpen_least(pairs, found, points, rows)
+        _sharpen_least(pairs, found, rows)
     return rows
 
 
-def _sharpen_least(
-    pairs: PairsWithErrors, found: Measurement, points: np.ndarray, rows: BudgetRows
-) -> None:
+def _sharpen_least(pairs: PairsWithErrors, found: Measurement, rows: BudgetRows) -> None:
     """Proves the steps of which least is left once more, few at a time, until one of these is the least."""
     at, left = pairs.steps(), rows.proven.copy()  # infinite where proven again
     for _ in range(MOST_ROUNDS):
@@ -201,9 +199,9 @@ def _sharpen_least(
             break
         moments = Moments(at.intervals[few], at.shares[few])
         sharp = pairs.at(moments, rows.pair[few], found.clearance[few])
-        better = few[sharp.proven > rows.proven[few]]
-        chosen = np.isin(few, better)
-        rows.proven[better], rows.pair[better] = sharp.proven[chosen], sharp.pair[chosen]
+        better = sharp.proven > rows.proven[few]
+        rows.proven[few[better]] = sharp.proven[better]
+        rows.pair[few[better]] = sharp.pair[better]
         left[few] = np.inf
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TypeVar, overload
+from typing import TypeVar
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from clearance.budget.sources import (
 )
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
 from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.rows_on_demand import RowsOnDemand
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import Pair
@@ -41,8 +42,8 @@ MOST_BETWEEN = 8
 Item = TypeVar("Item")
 
 
-class LookedAt(Sequence[Item]):
-    """Items that are worked out when one is first looked at."""
+class LookedAt(RowsOnDemand[Item]):
+    """Items that are all worked out when one is first looked at."""
 
     def __init__(self, work_out: Callable[[], Sequence[Item]]) -> None:
         self._work_out = work_out
@@ -54,13 +55,8 @@ class LookedAt(Sequence[Item]):
     def __len__(self) -> int:
         return len(self._items)
 
-    @overload
-    def __getitem__(self, index: int) -> Item: ...
-    @overload
-    def __getitem__(self, index: slice) -> tuple[Item, ...]: ...
-
-    def __getitem__(self, index: int | slice) -> Item | tuple[Item, ...]:
-        return self._items[index]
+    def _at(self, i: int) -> Item:
+        return self._items[i]
 
 
 @dataclass(frozen=True, eq=False)
