@@ -40,6 +40,7 @@ from numba.extending import NativeValue, box, unbox
 from numba.np.arrayobj import populate_array
 from numba.np.numpy_support import as_dtype
 
+from clearance.compile.frames import with_room_for_frames
 from clearance.compile.heap import HeapHandle
 from clearance.compile.kernel_files import KernelFiles
 from clearance.compile.machine_code import Entry
@@ -99,7 +100,7 @@ class Kernel(CPUDispatcher):
 
     def compile(self, signature: object) -> object:
         with own_level(), _no_collections():
-            return super().compile(signature)
+            return with_room_for_frames(super().compile, signature)
 
     def get_call_template(self, args: tuple, named: dict) -> tuple:
         found = super().get_call_template(tuple(map(_whatever_its_value, args)), named)

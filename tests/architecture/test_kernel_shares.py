@@ -1,0 +1,59 @@
+"""Processes that test at once compile each kernel once."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from filelock import FileLock, Timeout
+
+from clearance.kept_files import cache_root
+from tests import kernel_shares
+from tests.query.lane_of_domains import DOMAINS
+
+
+def test_the_shares_hold_all_domains_once():
+    assert set(kernel_shares.MAIN_KERNELS) == set(DOMAINS)
+    for n in (1, 2, 4, 9):
+        shares = [kernel_shares.share_of_list(list(DOMAINS), i, n) for i in range(n)]
+        assert [domain for share in shares for domain in share] == list(DOMAINS)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(cache_root() is None, reason="nothing is kept here")
+@pytest.mark.parametrize("domain", DOMAINS)
+def test_a_domain_that_was_asked_counts_as_compiled(domain):
+    DOMAINS[domain]()
+    assert kernel_shares.is_kept(domain)
+
+
+def is_free(folder) -> bool:
+    """True if another process would compile the kernel, and not wait."""
+    (path,) = folder.iterdir()
+    try:
+        FileLock(path, timeout=0).acquire().lock.release()
+    except Timeout:
+        return False
+    return True
+
+
+def test_others_wait_until_a_kernel_is_compiled_and_what_it_needs_has_no_turn(tmp_path):
+    kernel = SimpleNamespace(py_func=is_free)
+
+    def compile_it(one, signature):
+        assert one is kernel and not is_free(tmp_path)
+        return compile_in_turn(one, signature - 1) + 1 if signature else 0
+
+    compile_in_turn = kernel_shares.in_turns(compile_it, tmp_path)
+    for _ in range(2):
+        assert compile_in_turn(kernel, 3) == 3
+        assert is_free(tmp_path)
+
+
+def test_a_failure_ends_the_turn(tmp_path):
+    def compile_it(one, signature):
+        raise ValueError(signature)
+
+    with pytest.raises(ValueError, match="what"):
+        kernel_shares.in_turns(compile_it, tmp_path)(SimpleNamespace(py_func=is_free), "what")
+    assert is_free(tmp_path)

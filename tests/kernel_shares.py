@@ -1,0 +1,70 @@
+"""Where several processes test at once with an empty cache, each kernel is compiled by one of them.
+
+Each begins with small questions to domains of its own (`lane_of_domains`), before it collects; who comes later to
+a kernel that another one is compiling waits and takes it from the cache. Without this all of them compile the
+same kernels at the same time, first those that test modules need when they are imported. Not for: processes that
+tests start.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import TypeVar
+
+from filelock import FileLock
+
+Item = TypeVar("Item")
+
+MAIN_KERNELS = {
+    "search": "search.body_pair.search",
+    "sweep": "motion.sweep.sweep",
+    "certify": "motion.certify._certify",
+    "polytope": "polytope.clip.cut_by_bodies",
+    "hausdorff": "hausdorff.both_directions.both_directions",
+    "sketch": "sketch.graph.plan.make_plan",
+}
+"""Of each domain a kernel that is kept once the domain is compiled; neighbours have most in common."""
+
+
+def share_of_list(items: Sequence[Item], i: int, n: int) -> Sequence[Item]:
+    """The part of a list, in one piece, that is for process `i` of `n`."""
+    return items[i * len(items) // n : (i + 1) * len(items) // n]
+
+
+def compile_share(i: int, n: int) -> None:
+    """Compiles what process `i` of `n` begins with, as far as it is not kept."""
+    missing = [domain for domain in share_of_list(list(MAIN_KERNELS), i, n) if not is_kept(domain)]
+    if missing:
+        from tests.query.lane_of_domains import DOMAINS
+
+        for domain in missing:
+            DOMAINS[domain]()
+
+
+def is_kept(domain: str) -> bool:
+    """True if the main kernel of a domain lies compiled in the cache."""
+    module, _, name = MAIN_KERNELS[domain].rpartition(".")
+    return getattr(import_module(f"clearance.kernels.{module}"), name).kept.holds_any()
+
+
+def in_turns(compile_it: Callable, folder: Path) -> Callable:
+    """`Kernel.compile` that at each time one process calls for a kernel; the others find it in the cache then.
+
+    What is compiled on the way has no turn of its own: who waits holds nothing that another one waits for.
+    """
+    inside = threading.local()
+
+    def compile_in_turn(kernel, signature):
+        if getattr(inside, "is_so", False):
+            return compile_it(kernel, signature)
+        inside.is_so = True
+        try:
+            with FileLock(folder / f"{kernel.py_func.__module__}.{kernel.py_func.__qualname__}"):
+                return compile_it(kernel, signature)
+        finally:
+            inside.is_so = False
+
+    return compile_in_turn
