@@ -18,7 +18,7 @@ from clearance.profiles.plane import Plane
 from clearance.profiles.silhouette import CHUNK, Hulls
 
 
-class Section:
+class CrossSection:
     """One body cut by a plane, at its knots."""
 
     def __init__(self, label: str, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
