@@ -27,7 +27,7 @@ from clearance.budget.sources import (
     with_sizes,
 )
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
-from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.rows_on_demand import RowsOnDemand
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between
@@ -165,7 +165,7 @@ def _lows(section: SectionBudget) -> Iterator[_Low]:
 def _measured(low: _Low) -> Moment:
     """The pair, measured as it is without errors, in its phase."""
     phase = low.section.section.phase
-    moments = Moments(phase.case, phase.motions, low.section.section.pairs)
+    moments = MomentQuery(phase.case, phase.motions, low.section.section.pairs)
     if low.share == 0.0 or phase.n_steps == 1:
         return moments.at(low.interval, low.pair)
     if low.share == 1.0:

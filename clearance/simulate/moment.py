@@ -50,7 +50,7 @@ class Moment:
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class MomentQuery:
     """Measures a pair at any moment between two steps of a case's motion."""
 
     case: Case
