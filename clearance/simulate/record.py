@@ -127,8 +127,8 @@ class ProfileAnswer:
 
 
 @dataclass(frozen=True, eq=False)
-class AskedCourse:
-    """The clearances of what was asked, beside those of what was done.
+class CommandedCourse:
+    """The clearances of what was commanded, beside those of what was done.
 
     Attributes:
         times: (n,) [s]. clearances: (n,) [m] of the pair that stands worst at each step; NaN where there is none.
@@ -219,7 +219,7 @@ class Record(Samples):
     of_pairs: OfPairs | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
-    asked: AskedCourse | None = None
+    asked: CommandedCourse | None = None
     body_gaps: bool = False
     budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 
