@@ -29,7 +29,7 @@ PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
 
 
-class OfPairs(Protocol):
+class PairMeasurer(Protocol):
     """Measures and proves some pairs of a run alone."""
 
     def __call__(self, is_meant: PairTest, need: str | None = None) -> tuple[RuleAnswer, ...]:
@@ -216,7 +216,7 @@ class Record(Samples):
     notices: tuple[Notice, ...] = ()
     contacts: ContactSequence | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
-    of_pairs: OfPairs | None = None
+    of_pairs: PairMeasurer | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
     asked: CommandedCourse | None = None
