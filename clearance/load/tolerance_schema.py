@@ -122,7 +122,7 @@ class LinkRow(Numbers):
     surface: Offset
 
 
-class _OfNames(StrictModel):
+class _NamedRows(StrictModel):
     """A mapping whose keys are its own, and beside them names."""
 
     model_config = ConfigDict(extra="allow")
@@ -139,7 +139,7 @@ class _OfNames(StrictModel):
         return data
 
 
-class BaseTolerance(_OfNames, Placement):
+class BaseTolerance(_NamedRows, Placement):
     """How far bases may be off: of all robots, or of each by its name."""
 
     model_config = ConfigDict(extra="allow")
@@ -152,7 +152,7 @@ class BaseTolerance(_OfNames, Placement):
         return {**({"all": Placement(**own)} if own else {}), **(self.__pydantic_extra__ or {})}
 
 
-class Tracking(_OfNames):
+class Tracking(_NamedRows):
     """What controllers leave of joints [rad] or [m]: numbers by joint, or those of a controllers file."""
 
     FILLED = frozenset({"file"})
