@@ -32,7 +32,7 @@ class Window(NamedTuple):
     bottom: int
 
 
-class Covered(NamedTuple):
+class Coverage(NamedTuple):
     """What is nearest in a window: (rows, columns) depth, and which triangle, or `NONE`."""
 
     window: Window
@@ -65,7 +65,7 @@ class Screen(NamedTuple):
         return self.flat(seen)[0] if seen[0, 2] > self.camera.near else None
 
 
-def covered(screen: Screen, corners: np.ndarray) -> Covered:
+def covered(screen: Screen, corners: np.ndarray) -> Coverage:
     """What triangles (n, 3, 3) [m] in the world cover."""
     seen = screen.camera.seen_from_it(corners.reshape(-1, 3)).reshape(-1, 3, 3)
     ahead, owners = triangles_ahead(seen, screen.camera.near)
@@ -75,7 +75,7 @@ def covered(screen: Screen, corners: np.ndarray) -> Covered:
     flat, owners, boxes = flat[kept], owners[kept], boxes[kept]
     window = _around(boxes)
     shape = (window.bottom - window.top, window.right - window.left)
-    found = Covered(window, np.zeros(shape), np.full(shape, NONE, dtype=np.int64))
+    found = Coverage(window, np.zeros(shape), np.full(shape, NONE, dtype=np.int64))
     planes = _planes_of(flat)
     n_pixels = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     small = np.flatnonzero(n_pixels <= SMALL)
@@ -140,7 +140,7 @@ def _planes_of(flat: np.ndarray) -> Planes:
     return Planes(a[:, :2], np.concatenate([shares, depth[:, None]], axis=1), a[:, 2])
 
 
-def _cover_small(found: Covered, planes: Planes, owners: np.ndarray, boxes: np.ndarray) -> None:
+def _cover_small(found: Coverage, planes: Planes, owners: np.ndarray, boxes: np.ndarray) -> None:
     """Takes in triangles, all pixels of their boxes at once."""
     wide, high = boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1]
     of = np.repeat(np.arange(len(boxes)), wide * high)
@@ -155,7 +155,7 @@ def _cover_small(found: Covered, planes: Planes, owners: np.ndarray, boxes: np.n
     found.owner[y[wins], x[wins]] = owners[of[wins]]
 
 
-def _cover_large(found: Covered, planes: Planes, owner: int, box: np.ndarray) -> None:
+def _cover_large(found: Coverage, planes: Planes, owner: int, box: np.ndarray) -> None:
     """Takes in one triangle."""
     left, top, right, bottom = box.tolist()
     x, y = np.arange(left, right)[None] + 0.5, np.arange(top, bottom)[:, None] + 0.5
