@@ -88,7 +88,7 @@ Angle = Annotated[float, _up_to(MOST_ANGLE), AfterValidator(checked_angle)]
 Seconds = Annotated[float, _up_to(MOST_TIME), AfterValidator(_checked_time)]
 
 
-class Numbers(StrictModel):
+class NumberRow(StrictModel):
     """Some numbers of one thing, one at least; those that are left out stay as they are."""
 
     @model_validator(mode="before")
@@ -99,7 +99,7 @@ class Numbers(StrictModel):
         return data
 
 
-class Placement(Numbers):
+class Placement(NumberRow):
     """How far a frame may be off: the length of its offset [m], and a turn about any axis [rad]."""
 
     FILLED = frozenset({"xyz", "angle"})
@@ -116,7 +116,7 @@ class ObstacleRow(Placement):
     surface: Offset | None = None
 
 
-class LinkRow(Numbers):
+class LinkRow(NumberRow):
     """How far the surface of a link may stand out [m]."""
 
     surface: Offset

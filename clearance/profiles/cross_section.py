@@ -13,7 +13,7 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.profile.swept_cover import Raster
 from clearance.kernels.profile.swept_cut import add_cut_cover, cut_hulls, cut_segments
-from clearance.profiles.chords import Knots
+from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 from clearance.profiles.silhouette import CHUNK, Hulls
 
@@ -21,7 +21,7 @@ from clearance.profiles.silhouette import CHUNK, Hulls
 class CrossSection:
     """One body cut by a plane, at its knots."""
 
-    def __init__(self, label: str, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
+    def __init__(self, label: str, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
         self.shape, self.knots = shape.outward(), knots
         self._axes = np.vstack([plane.axes, np.cross(*plane.axes)])
         self._origin = plane.origin

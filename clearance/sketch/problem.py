@@ -26,7 +26,7 @@ from clearance.kernels.sketch.graph.graph import (
     merge,
     vertices,
 )
-from clearance.kernels.sketch.graph.plan import Plan, make_plan, peeled_plan
+from clearance.kernels.sketch.graph.plan import ConstructionPlan, make_plan, peeled_plan
 from clearance.kernels.sketch.solve.place import System
 from clearance.kernels.sketch.solve.start import counts, row_parts
 from clearance.sketch.contacts import Contacts, contacts_of
@@ -119,7 +119,7 @@ class Problem:
     fate: np.ndarray
     absolute: np.ndarray
     theta_of: np.ndarray
-    plan: Plan
+    plan: ConstructionPlan
     part: np.ndarray
     n_parts: int
     hold: np.ndarray
