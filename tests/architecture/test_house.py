@@ -73,6 +73,21 @@ def without_docstring(name: str, module: ast.Module) -> Iterator[str]:
         yield name
 
 
+def test_the_guide_and_the_map_name_every_room():
+    rooms = {path.parent.name for path in (ROOT / "clearance").glob("*/__init__.py")}
+    guide = (ROOT / "scripts" / "docs" / "contributing.md").read_text(encoding="utf-8")
+    drawn = set(
+        re.findall(r"\w+", guide.partition("The house today")[2].partition("Before kernels")[0])
+    )
+    listed = set(re.findall(r"\| `clearance/(\w+)` \|", guide))
+    mapped = set(re.findall(r"\w+", (ROOT / "README.md").read_text(encoding="utf-8")))
+    assert len(rooms) > 20 and (rooms - drawn, rooms - listed, rooms - mapped) == (
+        set(),
+        set(),
+        set(),
+    )
+
+
 def test_no_room_has_a_name_that_says_nothing():
     assert [path for path in MODULES if BARRED & {path.stem, path.parent.name}] == []
 
