@@ -19,7 +19,7 @@ from clearance.profiles.silhouette import CHUNK, Hulls
 
 
 class CrossSection:
-    """One body cut by a plane, at its knots."""
+    """The cross-section of one body, at its knots."""
 
     def __init__(self, label: str, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
         self.shape, self.knots = shape.outward(), knots
