@@ -42,7 +42,7 @@ class Views(NamedTuple):
 
 def views_of(stretch: Stretch) -> Views:
     """The views of all pairs of a stretch."""
-    return _Looking(stretch).views()
+    return _ViewCollector(stretch).views()
 
 
 def links_above(joints: Joints, link: int) -> list[int]:
@@ -54,7 +54,7 @@ def links_above(joints: Joints, link: int) -> list[int]:
     return found
 
 
-class _Looking:
+class _ViewCollector:
     """Gathers frames and views, each once."""
 
     def __init__(self, stretch: Stretch) -> None:
