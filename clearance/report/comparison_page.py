@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 
 from clearance.errors import BadInput
-from clearance.findings.comparison import Change, ComparedFinding, Comparison
+from clearance.findings.comparison import ComparedFinding, Comparison, FindingChange
 from clearance.findings.finding import NOT_PROVEN
 from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
@@ -110,7 +110,7 @@ def _row(row: ComparedFinding) -> Markup:
     ]
     classes = ["number", "number", None, None, None]
     cells += [element("td", text, class_=kind) for text, kind in zip(rest, classes, strict=True)]
-    return element("tr", *cells, class_="faint" if row.change is Change.GONE else None)
+    return element("tr", *cells, class_="faint" if row.change is FindingChange.GONE else None)
 
 
 def _curve(name: str, place: Path) -> ClearanceCurve | None:
