@@ -22,7 +22,7 @@ MOST_TOLD = 50
 """Failures that are told as they come; the answer lists the worst, and the page has all."""
 
 
-class Unseen:
+class SilentWatch:
     """Nobody watches."""
 
     def begin(self, items: Sequence[object], n_cached: int) -> None:
@@ -36,7 +36,7 @@ class Unseen:
 def shown_progress(quiet: bool) -> Iterator[Watch]:
     """Who is told how far a batch is: a line in the terminal, or nobody."""
     if quiet or not sys.stderr.isatty():
-        yield Unseen()
+        yield SilentWatch()
         return
     from rich.console import Console
     from rich.progress import (
@@ -55,10 +55,10 @@ def shown_progress(quiet: bool) -> Iterator[Watch]:
         TextColumn("{task.fields[worst]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        yield InTerminal(bar)
+        yield TerminalWatch(bar)
 
 
-class InTerminal:
+class TerminalWatch:
     """Draws one line, and prints failures above it."""
 
     def __init__(self, bar: Progress) -> None:
