@@ -34,7 +34,7 @@ class Error(NamedTuple):
 
 
 class Terms(NamedTuple):
-    """The errors of all views in all pieces, (..., k) each as in `placing.PlacedViews`; a view without some has zeros.
+    """The errors of all views in all pieces, (..., k) each as in `placing.PlacedViews`; zero where it has none.
 
     Attributes:
         bars: (t, 3, k) size times axis of turns. pins: (t, 3, k) [m] where. slides: (s, 3, k) [m].

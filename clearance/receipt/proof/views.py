@@ -47,10 +47,15 @@ def views_of(stretch: Stretch) -> Views:
 
 def links_above(joints: Joints, link: int) -> list[int]:
     """A link and all above it, nearest first."""
+    return chain_above(joints.parents, link)
+
+
+def chain_above(above: np.ndarray, one: int) -> list[int]:
+    """One and all above it, nearest first; `above` (n,) is `NONE` at the top."""
     found = []
-    while link != NONE:
-        found.append(link)
-        link = int(joints.parents[link])
+    while one != NONE:
+        found.append(one)
+        one = int(above[one])
     return found
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from clearance.receipt.proof.error_terms import OUTWARD, Error
 from clearance.receipt.proof.joint_paths import JointPositions
 from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, MountFrames, Stretch
-from clearance.receipt.proof.views import Views
+from clearance.receipt.proof.views import Views, chain_above
 
 LEVEL = 2.0**-44
 """[-] Of how far a body reaches, for each link on the way to it: more than poses and sums are rounded by."""
@@ -70,7 +70,7 @@ def steps_of(
 ) -> list[Step]:
     """From a body to the base; what stands in the world on frames that may be off has one step."""
     found = []
-    chain = _chain(views, int(views.frames[view]))
+    chain = chain_above(views.above, int(views.frames[view]))
     joints = stretch.joints
     for frame in chain:
         link = int(views.links[frame])
@@ -183,15 +183,6 @@ def _motions(step: Step) -> list[Motion]:
     joint = Motion(step.axis, None if step.kind == SLIDING else step.at, most, step.bend)
     rest = [e for e in step.errors if e.axis is None]
     return [joint, *(Motion(e.axis, e.origin, still + e.size, still) for e in rest)]
-
-
-def _chain(views: Views, frame: int) -> list[int]:
-    """A frame and all above it."""
-    found = []
-    while frame != NONE:
-        found.append(frame)
-        frame = int(views.above[frame])
-    return found
 
 
 def _off(pose: np.ndarray) -> float:
