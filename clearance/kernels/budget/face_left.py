@@ -67,7 +67,7 @@ class SearchState(NamedTuple):
     Attributes:
         views: along the direction of the nearest points, tilted by the errors. u: that direction (frame of a).
         nearest: [m] the distance of those points.
-        lower_bound, target, least: [m] as in `PairRemainder` and `Aim`. enough: [m] at a step, what is `REFINED`
+        lower_bound, target, least: [m] as in `PairLeft` and `Aim`. enough: [m] at a step, what is `REFINED`
             below what occurs.
     """
 
