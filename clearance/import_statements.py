@@ -65,7 +65,7 @@ def statements_of(path: Path) -> tuple[Statement, ...]:
     )
 
 
-class _Kept(NamedTuple):
+class _KeptStatements(NamedTuple):
     """Statements by sha256 of their source, as JSON: all that are known, and those that are not kept yet."""
 
     known: dict[str, str]
@@ -73,9 +73,9 @@ class _Kept(NamedTuple):
 
 
 @functools.cache
-def _kept() -> _Kept:
+def _kept() -> _KeptStatements:
     """What earlier runs have kept; what this one adds is written when it ends."""
-    kept = _Kept(_read(), {})
+    kept = _KeptStatements(_read(), {})
     atexit.register(_write, kept.new)
     return kept
 

@@ -309,6 +309,9 @@ def boxes(draw: st.DrawFn) -> tuple[np.ndarray, list[tuple[int, ...]]]:
     return corners, BOX_FACES
 
 
+CUBE_CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+"""(8, 3) of the cube of side 2 about the origin."""
+
 BOX_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 """Corners of `itertools.product` order, counter-clockwise from outside."""
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from clearance.batch.engine import Queue
 from clearance.batch.kernels import compile_ahead
-from clearance.batch.measuring import Done, Fault, Task, measure
+from clearance.batch.measuring import Fault, Task, TaskResult, measure
 from clearance.errors import BadInput, Incomplete
 from clearance.extras import importing
 
@@ -157,7 +157,7 @@ class DaskEngine:
         self.client = client
         self._counted, self._counted_at = 1, -math.inf
 
-    def results(self, queue: Queue) -> Iterator[Done]:
+    def results(self, queue: Queue) -> Iterator[TaskResult]:
         """What the tasks come to, as they come.
 
         Raises:
@@ -201,7 +201,7 @@ class DaskEngine:
             self._counted_at = now
         return self._counted
 
-    def _result(self, future: Future, task: Task, queue: Queue) -> Done | None:
+    def _result(self, future: Future, task: Task, queue: Queue) -> TaskResult | None:
         """What a task came to; None where its cases wait again, one by one."""
         from distributed.client import FutureCancelledError
         from distributed.scheduler import KilledWorker
@@ -211,7 +211,7 @@ class DaskEngine:
         except KilledWorker:
             if len(task.items) == 1:
                 text = "the worker processes that measured it have all died, of memory perhaps"
-                return Done((), (Fault(task.items[0].number, text),), b"", (), ())
+                return TaskResult((), (Fault(task.items[0].number, text),), b"", (), ())
             queue.give_back(task.items, alone=True)
             return None
         except (FutureCancelledError, OSError) as error:
@@ -221,7 +221,7 @@ class DaskEngine:
             ) from None
 
 
-def measure_there(task: Task) -> Done:
+def measure_there(task: Task) -> TaskResult:
     """`measure` in a worker."""
     compile_ahead()
     return measure(task)

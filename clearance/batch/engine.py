@@ -1,6 +1,6 @@
 """What hands cases to whoever measures them: tasks are cut from a queue, and what comes back in part goes on it.
 
-`InThisProcess` does all here and needs no library; `dask_engine` has workers. Which engine it was shows in no byte
+`LocalEngine` does all here and needs no library; `dask_engine` has workers. Which engine it was shows in no byte
 of the answer. Not for: what a task is (`measuring`).
 """
 
@@ -12,7 +12,7 @@ from typing import Protocol
 
 from clearance.batch.item import Item
 from clearance.batch.keys import program
-from clearance.batch.measuring import Done, Task, measure
+from clearance.batch.measuring import Task, TaskResult, measure
 
 MOST = 64
 """Cases of a task: what is lost with a worker, at most."""
@@ -74,7 +74,7 @@ class Queue:
 class Engine(Protocol):
     """Whoever measures."""
 
-    def results(self, queue: Queue) -> Iterator[Done]:
+    def results(self, queue: Queue) -> Iterator[TaskResult]:
         """What the tasks of a queue come to, in any order, until none is left.
 
         Raises:
@@ -83,10 +83,10 @@ class Engine(Protocol):
         ...
 
 
-class InThisProcess:
+class LocalEngine:
     """Measures one case after another."""
 
-    def results(self, queue: Queue) -> Iterator[Done]:
+    def results(self, queue: Queue) -> Iterator[TaskResult]:
         """What the tasks come to, in order."""
         while (task := queue.task()) is not None:
             done = measure(task)

@@ -22,7 +22,7 @@ RACY = 2_000_000_000
 """[ns] The coarsest clock of a file system that is in use (FAT) counts two seconds."""
 
 
-class Seen(NamedTuple):
+class FileStamp(NamedTuple):
     """A file as it was when it was read.
 
     Attributes:
@@ -50,13 +50,13 @@ class FileHashes:
         known: of an earlier run.
     """
 
-    def __init__(self, known: dict[str, Seen]) -> None:
+    def __init__(self, known: dict[str, FileStamp]) -> None:
         self._known = known
         self._now: dict[str, str | None] = {}
         self.is_new = False
 
     @property
-    def known(self) -> dict[str, Seen]:
+    def known(self) -> dict[str, FileStamp]:
         """All that can be believed later on."""
         return self._known
 
@@ -66,7 +66,7 @@ class FileHashes:
             self._now[path] = self._found(path)
         return self._now[path]
 
-    def learn(self, read: Iterable[tuple[str, Seen]]) -> None:
+    def learn(self, read: Iterable[tuple[str, FileStamp]]) -> None:
         """Takes over what others have read."""
         for path, seen in read:
             if seen.is_settled and self._known.get(path) != seen:
@@ -83,14 +83,14 @@ class FileHashes:
                 marks = _marks(os.fstat(file.fileno()))
         except OSError:
             return None
-        self.learn([(path, Seen(*marks, read, digest))])
+        self.learn([(path, FileStamp(*marks, read, digest))])
         return digest
 
 
-def seen(path: str, sha256: str, read: int) -> Seen | None:
+def seen(path: str, sha256: str, read: int) -> FileStamp | None:
     """A file whose content was found from the time `read` [ns] on; None if it is gone."""
     try:
-        return Seen(*_marks(os.stat(path)), read, sha256)
+        return FileStamp(*_marks(os.stat(path)), read, sha256)
     except OSError:
         return None
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from clearance.batch.file_hashes import Seen, seen
+from clearance.batch.file_hashes import FileStamp, seen
 from clearance.batch.item import Item
 from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
@@ -48,7 +48,7 @@ class Task:
     batch: str
 
 
-class Measured(NamedTuple):
+class ItemResult(NamedTuple):
     """What became of an item: its key, and what is told of it at once."""
 
     number: int
@@ -72,7 +72,7 @@ class Fault(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Done:
+class TaskResult:
     """What a task came to.
 
     Attributes:
@@ -80,14 +80,14 @@ class Done:
         read: the files that were read, as they were found. left: what was not begun.
     """
 
-    measured: tuple[Measured, ...]
+    measured: tuple[ItemResult, ...]
     faults: tuple[Fault, ...]
     segment: bytes
-    read: tuple[tuple[str, Seen], ...]
+    read: tuple[tuple[str, FileStamp], ...]
     left: tuple[Item, ...]
 
 
-def measure(task: Task) -> Done:
+def measure(task: Task) -> TaskResult:
     """Measures the items of a task.
 
     Raises:
@@ -111,10 +111,10 @@ class _Work:
 
     def __init__(self, batch: str) -> None:
         self.batch = batch
-        self.measured: list[Measured] = []
+        self.measured: list[ItemResult] = []
         self.faults: list[Fault] = []
         self.rows: list[dict[str, Any]] = []
-        self.read: dict[str, Seen] = {}
+        self.read: dict[str, FileStamp] = {}
 
     def add(self, item: Item) -> None:
         read = time.time_ns()
@@ -135,7 +135,7 @@ class _Work:
         self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
         reason = row["reasons"][0] if row["reasons"] else ""
         told = (row["status"], row["exit_code"], row["clearance"], reason)
-        self.measured.append(Measured(item.number, key, *told))
+        self.measured.append(ItemResult(item.number, key, *told))
         self._note(found.kept, found.since or read)
         self._note(case.sources, read)
 
@@ -146,9 +146,9 @@ class _Work:
                 if marks is not None:
                     self.read[one.read_from] = marks
 
-    def done(self, left: tuple[Item, ...]) -> Done:
+    def done(self, left: tuple[Item, ...]) -> TaskResult:
         segment = segment_of(self.rows) if self.rows else b""
-        return Done(
+        return TaskResult(
             tuple(self.measured), tuple(self.faults), segment, tuple(self.read.items()), left
         )
 

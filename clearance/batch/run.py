@@ -14,7 +14,7 @@ from typing import Protocol
 from clearance.batch.engine import Engine, Queue
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import Item
-from clearance.batch.measuring import Done, Fault, Measured
+from clearance.batch.measuring import Fault, ItemResult, TaskResult
 from clearance.batch.plan import planned
 from clearance.batch.store import Store
 from clearance.world.waiver import Waiver
@@ -26,7 +26,7 @@ class Watch(Protocol):
     def begin(self, items: Sequence[Item], n_cached: int) -> None:
         """Before the first of some cases is measured; so many others need not be."""
 
-    def tell(self, measured: Sequence[Measured], faults: Sequence[Fault]) -> None:
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """After some cases are measured and their rows are kept."""
 
 
@@ -97,7 +97,7 @@ def run_batch(
             store.keep_hashes(hashes.known)
 
 
-def _keep(done: Done, store: Store, hashes: FileHashes, outcome: Outcome) -> None:
+def _keep(done: TaskResult, store: Store, hashes: FileHashes, outcome: Outcome) -> None:
     if done.segment:
         store.put(done.segment)
     hashes.learn(done.read)

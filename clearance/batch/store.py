@@ -18,7 +18,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from clearance.batch.file_hashes import Seen
+from clearance.batch.file_hashes import FileStamp
 from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
@@ -97,19 +97,19 @@ class Store:
         order = pa.array([found[key] for key in keys], type=pa.int64())
         return pa.concat_tables(parts).take(order)
 
-    def hashes(self) -> dict[str, Seen]:
+    def hashes(self) -> dict[str, FileStamp]:
         """What is known of input files; nothing where that is damaged."""
         try:
             table = pq.read_table(self.place / _HASHES, partitioning=None)
-            columns = [table[name].to_pylist() for name in ("path", *Seen._fields)]
+            columns = [table[name].to_pylist() for name in ("path", *FileStamp._fields)]
         except (OSError, KeyError, pa.ArrowException):
             return {}
-        return {path: Seen(*seen) for path, *seen in zip(*columns, strict=True)}
+        return {path: FileStamp(*seen) for path, *seen in zip(*columns, strict=True)}
 
-    def keep_hashes(self, known: Mapping[str, Seen]) -> None:
+    def keep_hashes(self, known: Mapping[str, FileStamp]) -> None:
         """Keeps what is known of input files; where there is no room, a later run hashes them again."""
         columns: dict[str, list] = {"path": list(known)}
-        for i, name in enumerate(Seen._fields):
+        for i, name in enumerate(FileStamp._fields):
             columns[name] = [seen[i] for seen in known.values()]
         with suppress(OSError, Unwritable), self.locked():
             sink = pa.BufferOutputStream()

@@ -207,7 +207,7 @@ def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effec
         yield from _of_frame(SourceKey(owner, PLACE, ""), side, origin)
         return
     yield from _of_clocks(frame, side)
-    told = _Told(case, budget)
+    told = _LinkNames(case, budget)
     for link in carried_by(forest_of(case), frame):
         if link in common:
             return
@@ -230,7 +230,7 @@ def _of_frame(key: SourceKey, side: _Side, origin: np.ndarray) -> Effects:
     yield key, 1, np.cross(side.x - origin, side.u)
 
 
-class _Told:
+class _LinkNames:
     """What each link of a case's forest is called by."""
 
     def __init__(self, case: Case, budget: Budget) -> None:

@@ -27,7 +27,7 @@ from clearance.budget.sources import (
     with_sizes,
 )
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
-from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.rows_on_demand import RowsOnDemand
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between
@@ -42,7 +42,7 @@ MOST_BETWEEN = 8
 Item = TypeVar("Item")
 
 
-class LookedAt(RowsOnDemand[Item]):
+class LazyItems(RowsOnDemand[Item]):
     """Items that are all worked out when one is first looked at."""
 
     def __init__(self, work_out: Callable[[], Sequence[Item]]) -> None:
@@ -60,7 +60,7 @@ class LookedAt(RowsOnDemand[Item]):
 
 
 @dataclass(frozen=True, eq=False)
-class _Low:
+class _LowMoment:
     """A moment of a section at which little is left of a pair: [m] proven, less padding."""
 
     section: SectionBudget
@@ -74,7 +74,7 @@ class _Low:
         return PathMoments(np.array([self.interval]), np.array([self.share]))
 
 
-class WorstMoments(LookedAt[BudgetMoment]):
+class WorstMoments(LazyItems[BudgetMoment]):
     """The moments of a rule at which a budget leaves least, each of another pair, the worst first."""
 
     def __init__(self, rule: str, limits: Limits, sections: Sequence[SectionBudget]) -> None:
@@ -87,12 +87,12 @@ class WorstMoments(LookedAt[BudgetMoment]):
             (low for section in self._sections for low in _lows(section)),
             key=lambda low: low.proven,
         )
-        named: dict[Pair, _Low] = {}
+        named: dict[Pair, _LowMoment] = {}
         for low in lows:
             named.setdefault(low.section.section.pairs[low.pair], low)
         return [self._moment(low) for low in [*named.values()][:MOST_WORST]]
 
-    def _moment(self, low: _Low) -> BudgetMoment:
+    def _moment(self, low: _LowMoment) -> BudgetMoment:
         section = low.section.section
         moment = _measured(low)
         expected = np.nan
@@ -109,10 +109,10 @@ class WorstMoments(LookedAt[BudgetMoment]):
             rule=self._rule,
         )
         return BudgetMoment(
-            told, low.proven, expected, LookedAt(lambda: self._sources(low, moment))
+            told, low.proven, expected, LazyItems(lambda: self._sources(low, moment))
         )
 
-    def _sources(self, low: _Low, moment: Moment) -> list[ErrorSource]:
+    def _sources(self, low: _LowMoment, moment: Moment) -> list[ErrorSource]:
         """What each error takes of a moment, what takes most first."""
         section, pairs = low.section, low.section.pairs
         case, budget = section.section.phase.case, pairs.budget
@@ -129,26 +129,26 @@ class WorstMoments(LookedAt[BudgetMoment]):
                 ErrorSource(
                     key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
                     max(0.0, taken), float(np.sqrt(variance)),
-                    LookedAt(partial(self._largest.of, case, key)),
+                    LazyItems(partial(self._largest.of, case, key)),
                 )
             )  # fmt: skip
         return sorted(found, key=lambda source: -source.proven)
 
 
-def _at(pairs: PairsWithErrors, low: _Low) -> float:
+def _at(pairs: PairsWithErrors, low: _LowMoment) -> float:
     """[m] what is proven of all pairs at a moment."""
     found = pairs.at(low.moments, np.array([low.pair]), np.array([np.nan]))
     return float(found.proven[0])
 
 
-def _lows(section: SectionBudget) -> Iterator[_Low]:
+def _lows(section: SectionBudget) -> Iterator[_LowMoment]:
     """The least of each pair over the steps, and over the intervals of which less was seen within."""
     steps, padding = section.steps, section.section.padding
     at = section.pairs.steps()
     for pair in np.unique(steps.pair[steps.pair >= 0]).tolist():
         i = int(np.argmin(np.where(steps.pair == pair, steps.proven, np.inf)))
         place = int(at.intervals[i]), float(at.shares[i])
-        yield _Low(section, *place, pair, float(steps.proven[i]) - padding)
+        yield _LowMoment(section, *place, pair, float(steps.proven[i]) - padding)
     between = section.between
     if between is None:
         return
@@ -159,13 +159,13 @@ def _lows(section: SectionBudget) -> Iterator[_Low]:
     )
     for i, interval in enumerate(seen.tolist()):
         place = interval, float(between.share[interval])
-        yield _Low(section, *place, int(found.pair[i]), float(found.proven[i]) - padding)
+        yield _LowMoment(section, *place, int(found.pair[i]), float(found.proven[i]) - padding)
 
 
-def _measured(low: _Low) -> Moment:
+def _measured(low: _LowMoment) -> Moment:
     """The pair, measured as it is without errors, in its phase."""
     phase = low.section.section.phase
-    moments = Moments(phase.case, phase.motions, low.section.section.pairs)
+    moments = MomentQuery(phase.case, phase.motions, low.section.section.pairs)
     if low.share == 0.0 or phase.n_steps == 1:
         return moments.at(low.interval, low.pair)
     if low.share == 1.0:
@@ -173,7 +173,7 @@ def _measured(low: _Low) -> Moment:
     return moments.between(low.interval, low.share, low.pair)
 
 
-def _witness(low: _Low, moment: Moment) -> Witness:
+def _witness(low: _LowMoment, moment: Moment) -> Witness:
     """The nearest points of the pair at the moment, and where all is then."""
     phase, budget = low.section.section.phase, low.section.pairs.budget
     step = min(low.interval, max(0, phase.n_steps - 2))

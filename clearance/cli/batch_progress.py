@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from clearance.batch.measuring import Fault, Measured
+from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.run import Watch
 from clearance.errors import shown
 from clearance.report.wording import mm
@@ -22,13 +22,13 @@ MOST_TOLD = 50
 """Failures that are told as they come; the answer lists the worst, and the page has all."""
 
 
-class Unseen:
+class SilentWatch:
     """Nobody watches."""
 
     def begin(self, items: Sequence[object], n_cached: int) -> None:
         """Tells nothing."""
 
-    def tell(self, measured: Sequence[Measured], faults: Sequence[Fault]) -> None:
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Tells nothing."""
 
 
@@ -36,7 +36,7 @@ class Unseen:
 def shown_progress(quiet: bool) -> Iterator[Watch]:
     """Who is told how far a batch is: a line in the terminal, or nobody."""
     if quiet or not sys.stderr.isatty():
-        yield Unseen()
+        yield SilentWatch()
         return
     from rich.console import Console
     from rich.progress import (
@@ -55,17 +55,17 @@ def shown_progress(quiet: bool) -> Iterator[Watch]:
         TextColumn("{task.fields[worst]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        yield InTerminal(bar)
+        yield TerminalWatch(bar)
 
 
-class InTerminal:
+class TerminalWatch:
     """Draws one line, and prints failures above it."""
 
     def __init__(self, bar: Progress) -> None:
         self._bar = bar
         self._task = bar.add_task("", total=None, rate="", worst="")
         self._names: dict[int, str] = {}
-        self._least: Measured | None = None
+        self._least: ItemResult | None = None
         self._n_told = 0
 
     def begin(self, items: Sequence, n_cached: int) -> None:
@@ -73,7 +73,7 @@ class InTerminal:
         self._names = {item.number: item.name for item in items}
         self._bar.update(self._task, total=len(items))
 
-    def tell(self, measured: Sequence[Measured], faults: Sequence[Fault]) -> None:
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Counts, and prints what fails."""
         for fault in faults:
             self._print(f"error     {self._names[fault.number]}: {fault.text}")
@@ -86,7 +86,7 @@ class InTerminal:
         rate = f"{speed:,.0f} cases/s" if speed else ""
         self._bar.update(self._task, rate=rate, worst=self._worst())
 
-    def _take(self, one: Measured) -> None:
+    def _take(self, one: ItemResult) -> None:
         least = self._least
         if least is None or _standing(one) < _standing(least):
             self._least = one
@@ -105,5 +105,5 @@ class InTerminal:
             self._bar.console.print("further failures are told at the end", markup=False)
 
 
-def _standing(one: Measured) -> tuple[int, float]:
+def _standing(one: ItemResult) -> tuple[int, float]:
     return -one.exit_code, float("inf") if one.clearance is None else one.clearance

@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 from clearance.batch.answer import answer_of
-from clearance.batch.engine import Engine, InThisProcess
+from clearance.batch.engine import Engine, LocalEngine
 from clearance.batch.faults import keep_faults
 from clearance.batch.item import Item
 from clearance.batch.listed import write_list
@@ -99,7 +99,7 @@ def _opener(asked: BatchRequest, say: Callable[[str], None]) -> Opener:
 
             if compile_ahead.start():
                 say_first(COMPILING)
-            yield InThisProcess()
+            yield LocalEngine()
             return
         from clearance.batch.dask_engine import local_cluster
 

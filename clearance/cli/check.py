@@ -12,7 +12,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
-from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
+from clearance.cli.for_ci import CiOutputs, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, accept_option
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
@@ -137,7 +137,7 @@ def check(
     _require_proof_or_samples(samples_only, certify or certify_mm is not None)
     require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
-    outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
+    outputs = Outputs(out, junit, CiOutputs(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
     _require_file(case_file)
     from clearance.run import Question

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.cli.for_ci import ForCi
+from clearance.cli.for_ci import CiOutputs
 from clearance.cli.more_files import MoreFiles
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ class Outputs:
 
     out: Path | None
     junit: Path | None
-    for_ci: ForCi
+    for_ci: CiOutputs
     more: MoreFiles
 
     @property

@@ -128,7 +128,7 @@ def comparison_of(run: Run, baseline: FindingList | None) -> Comparison | None:
 
 
 @dataclass(frozen=True)
-class ForCi:
+class CiOutputs:
     """What is to be written for people who look at a build.
 
     Attributes:

@@ -20,7 +20,7 @@ _C_CONTIGUOUS, _F_CONTIGUOUS, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400
 """Bits of `ndarray.flags.num`, as numpy's C interface documents them (`NPY_ARRAY_…`)."""
 
 
-class _Unknown(Exception):
+class _UnknownForm(Exception):
     """Something that only the compiler can type."""
 
 
@@ -28,7 +28,7 @@ def form_of(arguments: Sequence[object]) -> tuple | None:
     """What tells the types of some arguments; None where only the compiler can say."""
     try:
         return tuple(map(_form, arguments))
-    except _Unknown:
+    except _UnknownForm:
         return None
 
 
@@ -37,7 +37,7 @@ def _form(value: Any) -> object:
     if kind is np.ndarray:
         found = _array_of(value.dtype, value.ndim, value.flags.num)
         if found is None:
-            raise _Unknown
+            raise _UnknownForm
         return found
     if issubclass(kind, tuple):
         if kind is tuple:
@@ -68,10 +68,10 @@ def _scalar(value: object) -> str:
         return "?"
     if kind is int:
         if not -_WHOLE <= value < _WHOLE:
-            raise _Unknown
+            raise _UnknownForm
         return "l"
     if isinstance(value, np.generic) and value.dtype.kind in "biuf":
         return value.dtype.char
     if isinstance(value, HeapHandle):
         return value.form
-    raise _Unknown
+    raise _UnknownForm

@@ -30,7 +30,7 @@ _ALIKE = frozenset({"steps", "pairs", "limit"})
 """What can be asked for without a change of what is found."""
 
 
-class Change(StrEnum):
+class FindingChange(StrEnum):
     """What became of a finding, in the order in which they are told."""
 
     NEW = "new"
@@ -49,7 +49,7 @@ class ComparedFinding:
         before, now: None where that run has none. why: why the two are not comparable.
     """
 
-    change: Change
+    change: FindingChange
     before: Finding | None
     now: Finding | None
     why: str = ""
@@ -64,7 +64,7 @@ class ComparedFinding:
     @property
     def alarms(self) -> bool:
         """True if a rule is broken, without waiver, as it was not before for all that is known."""
-        told = (Change.NEW, Change.WORSE, Change.NOT_COMPARABLE)
+        told = (FindingChange.NEW, FindingChange.WORSE, FindingChange.NOT_COMPARABLE)
         return self.now is not None and self.now.fails and self.change in told
 
 
@@ -90,7 +90,7 @@ class Comparison:
     def counts(self) -> dict[str, int]:
         """How many rows of each change there are, without those of which there are none."""
         found = Counter(row.change for row in self.rows)
-        return {str(change): found[change] for change in Change if found[change]}
+        return {str(change): found[change] for change in FindingChange if found[change]}
 
     @property
     def passed(self) -> bool:
@@ -106,8 +106,8 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
         tolerance: [m] a clearance that differs by no more is unchanged.
     """
     whole = _measured_otherwise(before.measured, now.measured)
-    rows = list(_Comparing(before, now, tolerance, whole).rows())
-    order = list(Change)
+    rows = list(_Comparer(before, now, tolerance, whole).rows())
+    order = list(FindingChange)
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
     doubts, less = doubts_compared(before, now), known_less(before, now)
     return Comparison(before.case, now.case, tuple(rows), whole, doubts, less)
@@ -130,7 +130,7 @@ _Key = tuple[str, str, tuple[str, ...], int]
 
 
 @dataclass(frozen=True, eq=False)
-class _Comparing:
+class _Comparer:
     before: FindingList
     now: FindingList
     tolerance: float
@@ -151,28 +151,28 @@ class _Comparing:
             if one.status == Status.CLEAR:
                 return None  # kept, and in the other run another pair of the rule was nearer
             why = why or self._not_known(one, self.before if before is None else self.now)
-            change = Change.NEW if before is None else Change.GONE
+            change = FindingChange.NEW if before is None else FindingChange.GONE
         else:
             why = why or _no_number(before, now)
             change = self._change(before, now)
-        return ComparedFinding(Change.NOT_COMPARABLE if why else change, before, now, why)
+        return ComparedFinding(FindingChange.NOT_COMPARABLE if why else change, before, now, why)
 
-    def _change(self, before: Finding, now: Finding) -> Change:
+    def _change(self, before: Finding, now: Finding) -> FindingChange:
         kept = [finding.status == Status.CLEAR for finding in (before, now)]
         if (
             kept[0] != kept[1]
         ):  # what is clear is listed only where it is the nearest pair of its rule
-            return Change.NEW if kept[0] else Change.GONE
+            return FindingChange.NEW if kept[0] else FindingChange.GONE
         ranks = [ORDER.index(finding.status) for finding in (before, now)]
         if ranks[0] != ranks[1]:
-            return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER
+            return FindingChange.WORSE if ranks[1] > ranks[0] else FindingChange.BETTER
         old, new = _level(before), _level(now)
         if old is None or new is None:
-            return Change.UNCHANGED
+            return FindingChange.UNCHANGED
         gained = new - old
         if abs(gained) <= self.tolerance:
-            return Change.UNCHANGED
-        return Change.BETTER if gained > 0.0 else Change.WORSE
+            return FindingChange.UNCHANGED
+        return FindingChange.BETTER if gained > 0.0 else FindingChange.WORSE
 
     def _changed_inputs(self, finding: Finding) -> str:
         """Why a finding of one run says nothing of the other: its robot or its rule is another."""

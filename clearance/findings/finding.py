@@ -43,7 +43,7 @@ Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class WaivedBy:
+class AppliedWaiver:
     """The waiver that a finding is waived by.
 
     Attributes:
@@ -106,7 +106,7 @@ class Finding:
     point_b: Point | None = None
     joints: dict[str, float] | None = None
     text: str = ""
-    waived: WaivedBy | None = None
+    waived: AppliedWaiver | None = None
     accepted: bool = False
 
     @property

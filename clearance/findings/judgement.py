@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from clearance.findings.finding import UNPROVEN, Finding, FindingName, WaivedBy
+from clearance.findings.finding import UNPROVEN, AppliedWaiver, Finding, FindingName
 from clearance.findings.of_rule import RuleFindings
 from clearance.findings.standing import code_of
 from clearance.simulate.record import PairTest, Record
@@ -108,7 +108,7 @@ def _judged(record: Record) -> Judgement:
     n_of_others = len(record.case.waivers) - len(own)
     if not own:
         return Judgement(findings, record.rules, n_of_others=n_of_others)
-    return _Waiving(record, findings, tuple(own)).judgement(n_of_others)
+    return _WaivedRecord(record, findings, tuple(own)).judgement(n_of_others)
 
 
 def of_rules(record: Record, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
@@ -118,7 +118,7 @@ def of_rules(record: Record, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class _Waiving:
+class _WaivedRecord:
     """A record held against the waivers that are of its case; `findings` are those without them."""
 
     record: Record
@@ -207,7 +207,7 @@ def _waived(finding: Finding, waiver: Waiver) -> Finding:
     ):
         return finding
     until = str(waiver.until)
-    told = WaivedBy(waiver.at_least, waiver.reason, waiver.by, until, finding.proven)
+    told = AppliedWaiver(waiver.at_least, waiver.reason, waiver.by, until, finding.proven)
     return replace(finding, waived=told)
 
 

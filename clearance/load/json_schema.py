@@ -49,7 +49,9 @@ def case_schema() -> dict[str, Any]:
         parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
     )
     parts["Tracking"] = {"anyOf": [{"const": CONTROLLERS}, parts["Tracking"]]}
-    parts["Allowed"] = {"anyOf": [parts["Allowed"]["properties"]["between"], parts["Allowed"]]}
+    parts["AllowedPair"] = {
+        "anyOf": [parts["AllowedPair"]["properties"]["between"], parts["AllowedPair"]]
+    }
     parts["Clock"] = {"anyOf": [{"enum": list(schema.CLOCKS)}, parts["Clock"]]}
     keys["clock"]["default"] = "common"
     parts["Tolerance"]["anyOf"] = [{"required": [key]} for key in ERRORS]

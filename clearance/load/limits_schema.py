@@ -7,16 +7,16 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from clearance.errors import BadInput, BadShape
-from clearance.load.pose_schema import Windowed
+from clearance.load.pose_schema import WindowedEntry
 from clearance.load.strict_model import Level, Name, StrictModel
 
 TwoPatterns = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
 
-class PairRow(Windowed):
+class PairRow(WindowedEntry):
     """Pairs of bodies by two patterns, and when they are meant."""
 
-    FILLED = Windowed.FILLED | {"while_carried"}
+    FILLED = WindowedEntry.FILLED | {"while_carried"}
 
     between: TwoPatterns
     while_carried: Name | None = None
@@ -28,7 +28,7 @@ class PairRow(Windowed):
         return one, other
 
 
-class Allowed(PairRow):
+class AllowedPair(PairRow):
     """Pairs that are not measured: two patterns, or a mapping that says when as well."""
 
     @model_validator(mode="before")

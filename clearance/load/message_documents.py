@@ -84,7 +84,7 @@ def json_documents(data: bytes) -> list[Any]:
     return documents
 
 
-class _Open(NamedTuple):
+class _OpenNode(NamedTuple):
     """A list or mapping that has not ended; `key` holds the key that waits for its value, or nothing."""
 
     made: list[Any] | Fields
@@ -98,7 +98,7 @@ class _Builder:
     def __init__(self, factors: Mapping[str, float]) -> None:
         self._factors = factors
         self.documents: list[Any] = []
-        self._open: list[_Open] = []
+        self._open: list[_OpenNode] = []
         self._anchors: dict[str, Any] = {}
 
     def take(self, event: Any) -> None:
@@ -130,7 +130,7 @@ class _Builder:
             made.line = event.start_mark.line + 1
         if len(self._open) >= DEPTH:
             raise BadSyntax("nested too deep", where=_line(event.start_mark), valid=_LEVELS)
-        self._open.append(_Open(made, event.anchor, []))
+        self._open.append(_OpenNode(made, event.anchor, []))
 
     def _take_scalar(self, event: Any) -> None:
         factor = self._factors.get(str(event.tag))

@@ -76,7 +76,7 @@ def mjcf_document(path: Path, files: InputFiles) -> MjcfDocument:
         BadSyntax: not XML, not MJCF, an entity, or too long. BadInput: an element that is not read, or files that
         include each other. MissingFile: a file that is not there.
     """
-    reader = _Including(path.parent, files)
+    reader = _Inclusion(path.parent, files)
     root = reader.root(path)
     if root.tag != "mujoco":
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<mujoco> is needed")
@@ -87,7 +87,7 @@ def mjcf_document(path: Path, files: InputFiles) -> MjcfDocument:
     return document
 
 
-class _Including:
+class _Inclusion:
     """Reads files and puts them where they are included; each once, as MuJoCo demands."""
 
     def __init__(self, folder: Path, files: InputFiles) -> None:

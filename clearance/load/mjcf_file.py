@@ -99,7 +99,7 @@ class MjcfSpec:
                     setattr(mesh, beside, [])
         with _refused(self._mujoco):
             compiled = spec.compile()
-        return _Plain(self._mujoco, spec.modelname, compiled).model()
+        return _ModelReader(self._mujoco, spec.modelname, compiled).model()
 
 
 def _take_out_files(root: Element) -> dict[str, str]:
@@ -151,7 +151,7 @@ def _refused(mujoco: Any) -> Iterator[None]:
         mujoco.set_mju_user_warning(before)
 
 
-class _Plain:
+class _ModelReader:
     """Takes a compiled model apart."""
 
     def __init__(self, mujoco: Any, name: str, compiled: Any) -> None:

@@ -26,21 +26,21 @@ class _Table(NamedTuple):
         taken: [s] when it is picked up, which ends its table; infinite for what never is.
     """
 
-    what: _Thing
+    what: _Actor
     first: float
     last: float
     timing: Timing
     taken: float = math.inf
 
 
-class _Thing(NamedTuple):
+class _Actor(NamedTuple):
     """A robot or an obstacle, and its name."""
 
     kind: str
     name: str
 
 
-class _Deed(NamedTuple):
+class _Sentence(NamedTuple):
     """What is said of one thing, and what of several."""
 
     one: str
@@ -48,7 +48,7 @@ class _Deed(NamedTuple):
 
 
 _HOW = "by straight translation, and rotation about one axis at constant speed"
-BETWEEN_POSES = _Deed(
+BETWEEN_POSES = _Sentence(
     f"moves between the poses of its table {_HOW}", f"move between the poses of their tables {_HOW}"
 )
 
@@ -60,18 +60,18 @@ def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
         start, end: [s] of the run.
     """
     moving = [obstacle for obstacle in case.obstacles if obstacle.moves is not None]
-    told = [(_Thing("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
+    told = [(_Actor("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
     for table in _tables(case):
         told += [(table.what, deed) for deed in _before_and_after(table, start, end)]
         if table.taken < table.last:
             told.append((table.what, _until_taken(table.taken)))
-    alike: dict[tuple[str, _Deed], list[str]] = {}
+    alike: dict[tuple[str, _Sentence], list[str]] = {}
     for thing, deed in told:
         alike.setdefault((thing.kind, deed), []).append(repr(thing.name))
     return tuple(_line(kind, names, deed) for (kind, deed), names in alike.items())
 
 
-def _line(kind: str, names: list[str], deed: _Deed) -> str:
+def _line(kind: str, names: list[str], deed: _Sentence) -> str:
     if len(names) == 1:
         return f"{kind} {names[0]} {deed.one}"
     return f"{kind}s {listed(names, MOST_NAMES)} {deed.several}"
@@ -81,45 +81,47 @@ def _tables(case: Case) -> Iterator[_Table]:
     for placed in case.robots:
         if placed.trajectory is not None:
             times = placed.trajectory.times
-            yield _table(_Thing("robot", placed.robot.name), times, placed.timing)
+            yield _table(_Actor("robot", placed.robot.name), times, placed.timing)
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
             table = _table(
-                _Thing("obstacle", obstacle.name), obstacle.moves.times, obstacle.moves.timing
+                _Actor("obstacle", obstacle.name), obstacle.moves.times, obstacle.moves.timing
             )
             starts = [c.window.start for c in case.carries if c.part == obstacle.name]
             yield table._replace(taken=min(starts, default=math.inf))
 
 
-def _table(what: _Thing, times: np.ndarray, timing: Timing) -> _Table:
+def _table(what: _Actor, times: np.ndarray, timing: Timing) -> _Table:
     first, last = timing.run_times(times[[0, -1]] if len(times) > 1 else times)[[0, -1]].tolist()
     return _Table(what, first, last, timing)
 
 
-def _until_taken(time: float) -> _Deed:
-    return _Deed(
+def _until_taken(time: float) -> _Sentence:
+    return _Sentence(
         f"follows its table until it is picked up at {time:g} s",
         f"follow their tables until they are picked up at {time:g} s",
     )
 
 
-def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Deed]:
+def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Sentence]:
     _, first, last, timing, taken = table
     early, late = start < first, last < min(end, taken)
     if timing.after == "absent":
         if early and taken < math.inf:
             when = f"in the cell from {first:g} s (after: absent)"
-            yield _Deed(f"is {when}", f"are {when}")
+            yield _Sentence(f"is {when}", f"are {when}")
         elif early or late:
             when = f"in the cell from {first:g} s to {last:g} s only (after: absent)"
-            yield _Deed(f"is {when}", f"are {when}")
+            yield _Sentence(f"is {when}", f"are {when}")
         return
     if early:
         when = f"until {first:g} s"
-        yield _Deed(f"stands at its first sample {when}", f"stand at their first samples {when}")
+        yield _Sentence(
+            f"stands at its first sample {when}", f"stand at their first samples {when}"
+        )
     if late and timing.after == "loop":
         how = f"again and again, every {last - first:g} s (after: loop)"
-        yield _Deed(f"goes through its table {how}", f"go through their tables {how}")
+        yield _Sentence(f"goes through its table {how}", f"go through their tables {how}")
     elif late:
         when = f"from {last:g} s"
-        yield _Deed(f"stands at its last sample {when}", f"stand at their last samples {when}")
+        yield _Sentence(f"stands at its last sample {when}", f"stand at their last samples {when}")

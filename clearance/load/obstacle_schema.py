@@ -78,7 +78,7 @@ class Mesh(ScaledFile):
         return TESSELLATION if self.tolerance is None else self.tolerance
 
 
-class LengthUnit(StrictModel):
+class ScanUnit(StrictModel):
     """What the coordinates of a file are written in."""
 
     length: Literal["m", "mm"] = "m"
@@ -90,7 +90,7 @@ class ScannedPoints(ScaledFile):
     FILLED = frozenset({"units"})
 
     radius: Annotated[float, Field(gt=0)]
-    units: LengthUnit | None = None
+    units: ScanUnit | None = None
 
     @property
     def in_millimetres(self) -> bool:

@@ -25,7 +25,7 @@ _LENGTHS = dict.fromkeys("xyz", False)
 """What has a length, for the units of columns."""
 
 
-class _Written(NamedTuple):
+class _RowFormat(NamedTuple):
     """How the rows are written: what parts the cells (None for blanks), and whether decimals have commas."""
 
     delimiter: bytes | None
@@ -87,13 +87,13 @@ def _lines(data: bytes) -> Iterator[tuple[int, bytes]]:
             yield i, stripped
 
 
-def _written(first: bytes, data: bytes) -> _Written:
+def _written(first: bytes, data: bytes) -> _RowFormat:
     if b";" in first:
-        return _Written(b";", b"," in data)
-    return _Written(b"," if b"," in first else None, False)
+        return _RowFormat(b";", b"," in data)
+    return _RowFormat(b"," if b"," in first else None, False)
 
 
-def _header(written: _Written, line: bytes) -> list[str] | None:
+def _header(written: _RowFormat, line: bytes) -> list[str] | None:
     """The names in the first row, if it has names."""
     cells = line.split(written.delimiter)
     try:
@@ -121,7 +121,7 @@ def _of(columns: Sequence[Column], axis: str) -> Column:
 
 
 def _blocks(
-    lines: Iterator[tuple[int, bytes]], written: _Written, n_cells: int, chosen: Sequence[int]
+    lines: Iterator[tuple[int, bytes]], written: _RowFormat, n_cells: int, chosen: Sequence[int]
 ) -> Iterator[np.ndarray]:
     while block := list(itertools.islice(lines, AT_ONCE)):
         rows = [_row(line, where, written, n_cells) for where, line in block]
@@ -134,7 +134,7 @@ def _blocks(
             raise
 
 
-def _row(line: bytes, where: int, written: _Written, n_cells: int) -> list[bytes]:
+def _row(line: bytes, where: int, written: _RowFormat, n_cells: int) -> list[bytes]:
     with at(f"line {where}"):
         cells = written.cells(line)
         if len(cells) != n_cells:

@@ -27,7 +27,7 @@ MOST = 1_000_000
 """Poses in a file."""
 
 
-class _Stamped(NamedTuple):
+class _StampedPose(NamedTuple):
     """A pose [m] at a time [ns], in a frame; `child` is the frame that a transform is of."""
 
     nanoseconds: int
@@ -59,7 +59,7 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
     request.refuse_units("messages are in metres")
     with request.opened() as file:
         documents = documents_in(file.read(MOST_JSON + 1))
-    stamped: list[_Stamped] = []
+    stamped: list[_StampedPose] = []
     for i, document in enumerate(documents):
         with at(f"message {i + 1}"):
             for one in _poses_in(document):
@@ -72,7 +72,7 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
     return _samples_of(stamped)
 
 
-def _poses_in(given: Any) -> Iterator[_Stamped]:
+def _poses_in(given: Any) -> Iterator[_StampedPose]:
     """The poses of a message."""
     if not isinstance(given, Fields):
         raise MissingKey(f"{told(given)} is not a message", valid=_NEEDED)
@@ -85,7 +85,7 @@ def _poses_in(given: Any) -> Iterator[_Stamped]:
         yield _pose(given)
 
 
-def _pose(given: Any) -> _Stamped:
+def _pose(given: Any) -> _StampedPose:
     if not isinstance(given, Fields) or not {"header"} < set(given):
         raise MissingKey(f"{told(given)} has no header with a time", valid=_NEEDED)
     header = message(given, "header")
@@ -104,7 +104,7 @@ def _pose(given: Any) -> _Stamped:
     for key in keys:
         if key not in pose:
             raise MissingKey(f"there is no {key!r}", valid=_NEEDED)
-    return _Stamped(
+    return _StampedPose(
         time,
         text(header, "frame_id", "").lstrip("/"),
         text(given, "child_frame_id", "").lstrip("/"),
@@ -113,7 +113,7 @@ def _pose(given: Any) -> _Stamped:
     )
 
 
-def _refuse_standing(before: Sequence[_Stamped], one: _Stamped) -> None:
+def _refuse_standing(before: Sequence[_StampedPose], one: _StampedPose) -> None:
     """Nothing, if a pose can follow those before it.
 
     Raises:
@@ -134,7 +134,7 @@ def _refuse_standing(before: Sequence[_Stamped], one: _Stamped) -> None:
         raise BadTime("its stamp is not after that of the pose before", where="header.stamp")
 
 
-def _samples_of(stamped: Sequence[_Stamped]) -> ReadSamples:
+def _samples_of(stamped: Sequence[_StampedPose]) -> ReadSamples:
     first = stamped[0]
     times = np.array([(one.nanoseconds - first.nanoseconds) / NANO for one in stamped])
     positions = np.array([one.position for one in stamped])

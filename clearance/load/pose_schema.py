@@ -125,7 +125,7 @@ class TrajectoryFile(TimedFile):
         return Choice(self.which, units, joints, self.period, self.topic)
 
 
-class Windowed(StrictModel):
+class WindowedEntry(StrictModel):
     """What is so from a time until a time of the run [s], or always."""
 
     FILLED = frozenset({"from", "until"})
@@ -134,7 +134,7 @@ class Windowed(StrictModel):
     until: float | None = None
 
     @model_validator(mode="after")
-    def _in_order(self) -> Windowed:
+    def _in_order(self) -> WindowedEntry:
         _ = self.window
         return self
 

@@ -1,6 +1,6 @@
 """Bags of ROS to a trajectory: ROS 1 (`.bag`), folders of rosbag2 (sqlite3, mcap), and their single files.
 
-The one door of rosbags. Topics of trajectories, and of goals that hold one, hold what was planned, those of
+The one adapter of rosbags. Topics of trajectories, and of goals that hold one, hold what was planned, those of
 JointState what the robot did. Not for: the points of a message (`joint_points`), nor states put together
 (`joint_states`).
 """

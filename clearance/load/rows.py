@@ -33,7 +33,7 @@ def _rule(row: limits_schema.Rule) -> Rule:
     return Rule(row.patterns, row.window, row.while_carried, name, row.fail, row.warn)
 
 
-def allowances_of(given: Sequence[limits_schema.Allowed]) -> tuple[Allowance, ...]:
+def allowances_of(given: Sequence[limits_schema.AllowedPair]) -> tuple[Allowance, ...]:
     """The pairs that are not measured."""
     return tuple(Allowance(row.patterns, row.window, row.while_carried) for row in given)
 

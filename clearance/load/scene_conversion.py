@@ -68,20 +68,20 @@ def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
     )
 
 
-class _LeftOut(NamedTuple):
+class _Loss(NamedTuple):
     """A line on what has no place in a scene, and the lines of a case that would say it."""
 
     note: str
     remarks: tuple[str, ...] = ()
 
 
-def _on_comments(asked: SceneRequest) -> Iterator[_LeftOut]:
+def _on_comments(asked: SceneRequest) -> Iterator[_Loss]:
     is_yaml = asked.path.suffix.lower() in SCENE_SUFFIXES
     if is_yaml and re.search(rb"^[ \t]*#", asked.files.read(asked.path), re.MULTILINE):
-        yield _LeftOut("left out: its comments")
+        yield _Loss("left out: its comments")
 
 
-def _left_out(content: SceneContent) -> list[_LeftOut]:
+def _left_out(content: SceneContent) -> list[_Loss]:
     """What makes clearances no larger where it is left out: more is measured then."""
     found = []
     pairs = [list(pair) for pair in content.allow if _is_of_obstacle(pair, content)]
@@ -89,9 +89,7 @@ def _left_out(content: SceneContent) -> list[_LeftOut]:
         found.append(_rows("allow", "which pairs may touch", pairs))
     n_links = len(content.allow) - len(pairs)
     if n_links:
-        found.append(
-            _LeftOut(f"left out: {n_links} pairs of links that may touch, which srdf says")
-        )
+        found.append(_Loss(f"left out: {n_links} pairs of links that may touch, which srdf says"))
     if content.held:
         found.append(_rows("carry", "that links carry what rides on them", list(_carries(content))))
     return found
@@ -108,13 +106,11 @@ def _is_of_obstacle(pair: tuple[str, str], content: SceneContent) -> bool:
     return any(matches(name, pattern) for pattern in pair for name in names)
 
 
-def _rows(key: str, what: str, rows: Sequence[object]) -> _LeftOut:
+def _rows(key: str, what: str, rows: Sequence[object]) -> _Loss:
     """Rows of a case, some of them in the line and all of them among the remarks."""
     shown = listed([flow(row) for row in rows], _SHOWN)
     note = f"left out: {what}; a case says it: {key}: [{shown}]"
-    return _LeftOut(
-        note, (f"left out; a case says it: {key}:", *(f"- {flow(row)}" for row in rows))
-    )
+    return _Loss(note, (f"left out; a case says it: {key}:", *(f"- {flow(row)}" for row in rows)))
 
 
 def _on_padding(content: SceneContent, given: str) -> Iterator[Notice]:

@@ -15,9 +15,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from clearance.errors import BadInput, MissingKey, nearest_name
 from clearance.load.joints_schema import Joints
-from clearance.load.limits_schema import Allowed, Limits
+from clearance.load.limits_schema import AllowedPair, Limits
 from clearance.load.obstacle_schema import Scene
-from clearance.load.pose_schema import Base, TrajectoryFile, Windowed
+from clearance.load.pose_schema import Base, TrajectoryFile, WindowedEntry
 from clearance.load.strict_model import Level, Name, StrictModel
 from clearance.load.tolerance_schema import Tolerance
 from clearance.world.notice import KINDS
@@ -55,7 +55,7 @@ class Robot(StrictModel):
     padding: dict[str, Level] = {}
 
 
-class Carry(Windowed):
+class Carry(WindowedEntry):
     """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some."""
 
     FILLED = frozenset({"until"})
@@ -145,7 +145,7 @@ class Case(StrictModel):
     trajectory: TrajectoryFile | None = None
     carry: list[Carry] = []
     limits: Limits = Limits()
-    allow: list[Allowed] = []
+    allow: list[AllowedPair] = []
     clock: Clock = Clock(slack=0.0)
     contact_response: bool = False
     profiles: list[Profile] = []

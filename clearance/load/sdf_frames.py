@@ -13,7 +13,7 @@ ROOT = ""
 """The frame of the model or world itself."""
 
 
-class Frames:
+class NamedFrames:
     """Frames by name, each given in another; `a::b` is b in the model a.
 
     Args:
@@ -22,7 +22,7 @@ class Frames:
 
     def __init__(self, root: str) -> None:
         self._given: dict[str, tuple[str, np.ndarray]] = {}
-        self._inner: dict[str, Frames] = {}
+        self._inner: dict[str, NamedFrames] = {}
         self._merged: list[str] = []
         self._found = {ROOT: np.eye(4), root: np.eye(4)}
 
@@ -31,7 +31,7 @@ class Frames:
         self._given.setdefault(name, (base, pose))
 
     def add_model(
-        self, name: str, frames: Frames, base: str, pose: np.ndarray, *, merged: bool = False
+        self, name: str, frames: NamedFrames, base: str, pose: np.ndarray, *, merged: bool = False
     ) -> None:
         """A model within, its frames seen as `name::frame`, and, if it is merged, as this one's own."""
         self.add(name, base, pose)

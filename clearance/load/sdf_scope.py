@@ -16,7 +16,7 @@ import numpy as np
 from clearance.errors import BadInput, at
 from clearance.geometry.pose import inverse
 from clearance.load.sdf_document import base_of, name_of, pose_of, text_of
-from clearance.load.sdf_frames import ROOT, Frames
+from clearance.load.sdf_frames import ROOT, NamedFrames
 from clearance.load.sdf_geometry import geometry_of
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class Scope:
     depth: int = 0
     n_shapes: list[int] = field(default_factory=lambda: [0])
 
-    def read(self, element: Element, root: str) -> tuple[Frames, list[SdfShape]]:
+    def read(self, element: Element, root: str) -> tuple[NamedFrames, list[SdfShape]]:
         """The frames of a world or model, and its collisions.
 
         Args:
@@ -75,7 +75,7 @@ class Scope:
         Raises:
             BadInput: with the element.
         """
-        frames = Frames(root)
+        frames = NamedFrames(root)
         placed = [*self._models(element, frames)]
         links = [*element.iterfind("link")]
         for link in links:
@@ -93,7 +93,7 @@ class Scope:
         return frames, shapes
 
     def _models(
-        self, element: Element, frames: Frames
+        self, element: Element, frames: NamedFrames
     ) -> Iterator[tuple[str, str, np.ndarray, list[SdfShape]]]:
         """What stands before the names of a model within, what it is placed in and where, and its collisions."""
         for child in element:
@@ -110,7 +110,7 @@ class Scope:
                 )
 
     def _model(
-        self, model: Element, name: str, place: _Place, frames: Frames, *, merged: bool = False
+        self, model: Element, name: str, place: _Place, frames: NamedFrames, *, merged: bool = False
     ) -> tuple[str, str, np.ndarray, list[SdfShape]]:
         if self.depth >= DEEPEST:
             raise BadInput(f"models lie {DEEPEST} deep in each other", valid="fewer")
@@ -122,7 +122,7 @@ class Scope:
         return "" if merged else f"{name}/", place.base, pose, shapes
 
     def _included(
-        self, include: Element, frames: Frames
+        self, include: Element, frames: NamedFrames
     ) -> Iterator[tuple[str, str, np.ndarray, list[SdfShape]]]:
         found = self.include(include, self.folder, self.chain)
         if found.model is None:
@@ -137,7 +137,7 @@ class Scope:
             merged = (include.get("merge") or "").strip() in ("true", "1")
             yield inner._model(found.model, name, place, frames, merged=merged)
 
-    def _link(self, link: Element, frames: Frames) -> Iterator[SdfShape]:
+    def _link(self, link: Element, frames: NamedFrames) -> Iterator[SdfShape]:
         for collision in link.iterfind("collision"):
             with at(f"link {link.get('name')!r}"), at(f"collision {collision.get('name')!r}"):
                 shape = geometry_of(collision)
@@ -167,7 +167,7 @@ class _Place(NamedTuple):
         return cls(base_of(model), pose_of(model), model.get("placement_frame") or "")
 
 
-def _add_frames(element: Element, frames: Frames) -> None:
+def _add_frames(element: Element, frames: NamedFrames) -> None:
     """The frames that are only named: `<frame>`, and joints, which are in their child link."""
     for frame in element.iterfind("frame"):
         with at(f"frame {frame.get('name')!r}"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.errors import BadInput, at
 from clearance.load.sdf_document import name_of, pose_of
-from clearance.load.sdf_frames import Frames
+from clearance.load.sdf_frames import NamedFrames
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -17,7 +17,7 @@ SAME = 1e-4
 """[m], and of entries of a rotation: states are written with six digits."""
 
 
-def require_state_as_placed(world: Element, frames: Frames) -> None:
+def require_state_as_placed(world: Element, frames: NamedFrames) -> None:
     """Nothing, if a saved state has every model and link where the world itself places them.
 
     Raises:
@@ -34,7 +34,7 @@ def require_state_as_placed(world: Element, frames: Frames) -> None:
             raise BadInput("<insertions> add models", where="state", valid="models in the world")
 
 
-def _require_same(element: Element, name: str, frames: Frames) -> None:
+def _require_same(element: Element, name: str, frames: NamedFrames) -> None:
     if element.find("pose") is None:
         return
     if not np.abs(pose_of(element) - frames.pose(name)).max() <= SAME:

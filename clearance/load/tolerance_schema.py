@@ -88,7 +88,7 @@ Angle = Annotated[float, _up_to(MOST_ANGLE), AfterValidator(checked_angle)]
 Seconds = Annotated[float, _up_to(MOST_TIME), AfterValidator(_checked_time)]
 
 
-class Numbers(StrictModel):
+class NumberRow(StrictModel):
     """Some numbers of one thing, one at least; those that are left out stay as they are."""
 
     @model_validator(mode="before")
@@ -99,7 +99,7 @@ class Numbers(StrictModel):
         return data
 
 
-class Placement(Numbers):
+class Placement(NumberRow):
     """How far a frame may be off: the length of its offset [m], and a turn about any axis [rad]."""
 
     FILLED = frozenset({"xyz", "angle"})
@@ -116,13 +116,13 @@ class ObstacleRow(Placement):
     surface: Offset | None = None
 
 
-class LinkRow(Numbers):
+class LinkRow(NumberRow):
     """How far the surface of a link may stand out [m]."""
 
     surface: Offset
 
 
-class _OfNames(StrictModel):
+class _NamedRows(StrictModel):
     """A mapping whose keys are its own, and beside them names."""
 
     model_config = ConfigDict(extra="allow")
@@ -139,7 +139,7 @@ class _OfNames(StrictModel):
         return data
 
 
-class BaseTolerance(_OfNames, Placement):
+class BaseTolerance(_NamedRows, Placement):
     """How far bases may be off: of all robots, or of each by its name."""
 
     model_config = ConfigDict(extra="allow")
@@ -152,7 +152,7 @@ class BaseTolerance(_OfNames, Placement):
         return {**({"all": Placement(**own)} if own else {}), **(self.__pydantic_extra__ or {})}
 
 
-class Tracking(_OfNames):
+class Tracking(_NamedRows):
     """What controllers leave of joints [rad] or [m]: numbers by joint, or those of a controllers file."""
 
     FILLED = frozenset({"file"})

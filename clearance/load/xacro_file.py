@@ -1,7 +1,7 @@
 """A xacro file to URDF, with the files, arguments and warnings that are to be told of it.
 
 xacro evaluates Python, so a file is handed to it only where that is asked for, in a process of its own
-(`xacro_process`, the one door of xacro). Its exceptions become errors of ours here. Not for: reading the URDF
+(`xacro_process`, the one adapter of xacro). Its exceptions become errors of ours here. Not for: reading the URDF
 (`urdf`).
 """
 

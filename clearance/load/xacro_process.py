@@ -30,11 +30,11 @@ _CODE = (".py", ".pyc", ".so", ".pyd")
 """Files that Python itself may open."""
 
 
-class _Refused(Exception):
+class _Refusal(Exception):
     """What is evaluated asks for more than to read."""
 
 
-class Watch:
+class ChildWatch:
     """Keeps which files are opened, and refuses all else, while it is on."""
 
     def __init__(self) -> None:
@@ -47,11 +47,11 @@ class Watch:
         if event == "open":
             self._open(*arguments)
         elif event.startswith(_REFUSED):
-            raise _Refused(f"it asks for {event!r}, which is refused")
+            raise _Refusal(f"it asks for {event!r}, which is refused")
 
     def _open(self, path: object, mode: str | None, flags: int) -> None:
         if (mode and set(mode) & set("wax+")) or (flags or 0) & _WRITES:
-            raise _Refused("it asks to write a file, which is refused")
+            raise _Refusal("it asks to write a file, which is refused")
         if isinstance(path, str | bytes | os.PathLike):
             name = os.fsdecode(path)
             if not name.endswith(_CODE):
@@ -77,7 +77,7 @@ class _Arguments(dict[str, str]):
 class _Packages:
     """Stands in for ROS's index of packages, so that `$(find x)` follows our rules."""
 
-    def __init__(self, folder: Path, package_dirs: list[Path], watch: Watch) -> None:
+    def __init__(self, folder: Path, package_dirs: list[Path], watch: ChildWatch) -> None:
         self._folder, self._dirs, self._watch = folder, package_dirs, watch
         self.by_variable: dict[str, dict[str, str]] = {}
         self.found: dict[str, str] = {}
@@ -121,7 +121,7 @@ def _answer(asked: dict[str, Any]) -> dict[str, Any]:
 
     import clearance.load.mesh_paths  # noqa: F401
 
-    watch, path = Watch(), Path(asked["path"])
+    watch, path = ChildWatch(), Path(asked["path"])
     packages = _Packages(path.parent, [Path(folder) for folder in asked["package_dirs"]], watch)
     packages.install()
     sys.addaudithook(watch)
@@ -134,7 +134,7 @@ def _answer(asked: dict[str, Any]) -> dict[str, Any]:
     )
 
 
-def evaluated(path: Path, given: dict[str, str], watch: Watch) -> dict[str, Any]:
+def evaluated(path: Path, given: dict[str, str], watch: ChildWatch) -> dict[str, Any]:
     """The URDF, the values of all arguments, and which of them were asked for; or what went wrong, and where."""
     import xacro
 
@@ -143,7 +143,7 @@ def evaluated(path: Path, given: dict[str, str], watch: Watch) -> dict[str, Any]
     try:
         text = xacro.process_file(str(path), mappings=arguments).toxml()
         if len(text) > MOST_TEXT:
-            raise _Refused(f"the URDF has more than {MOST_TEXT:,} characters")
+            raise _Refusal(f"the URDF has more than {MOST_TEXT:,} characters")
     except Exception as error:
         return _fault(error, getattr(xacro, "filestack", None) or [])
     finally:

@@ -30,7 +30,7 @@ class ChainBounds:
         self.normal = plane.normal
 
     def of(self, low: np.ndarray, high: np.ndarray):
-        """chord, turn, middle and moves, as in `Knots`, of intervals from `low` to `high`."""
+        """chord, turn, middle and moves, as in `BodyKnots`, of intervals from `low` to `high`."""
         course = self.chain.course(low, high)
         poses = self.chain.poses_at(0.5 * (low + high))
         bent = self._bend(course)

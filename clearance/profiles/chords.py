@@ -19,7 +19,7 @@ MOST_PARTS = 4096
 
 
 @dataclass(frozen=True, eq=False)
-class Knots:
+class BodyKnots:
     """The instants at which a body is projected.
 
     Attributes:
@@ -41,7 +41,7 @@ class Knots:
 
 def knots_of(
     chain: Chain, shape: Polyhedron, plane: Plane, limit: float, *, solid: bool, first: int = 0
-) -> Knots:
+) -> BodyKnots:
     """The steps, and instants between them, so that no chord is left by more than `limit` [m].
 
     Args:
@@ -66,13 +66,13 @@ def knots_of(
     order = np.argsort(low, kind="stable")
     instant = np.append(low[order], high[order[-1]])
     poses = np.ascontiguousarray(chain.poses_at(instant)[:, -1])
-    return Knots(first + instant, poses, moves[order], chord[order], turn[order], middle[order])
+    return BodyKnots(first + instant, poses, moves[order], chord[order], turn[order], middle[order])
 
 
-def standing(pose: np.ndarray, first: int = 0) -> Knots:
+def standing(pose: np.ndarray, first: int = 0) -> BodyKnots:
     """The one instant of a body that never moves, at a (4, 4) pose [m], from a step on."""
     none, instant = np.zeros(0), np.full(1, float(first))
-    return Knots(instant, pose[None], none.astype(bool), none, none, np.zeros((0, 4, 4)))
+    return BodyKnots(instant, pose[None], none.astype(bool), none, none, np.zeros((0, 4, 4)))
 
 
 def _split(low: np.ndarray, high: np.ndarray, chord: np.ndarray, limit: float):

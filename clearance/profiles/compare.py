@@ -39,7 +39,7 @@ class Exceedance:
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class OutlineComparison:
     """What differs between outline a and outline b, in their unit (metres for profiles).
 
     Attributes:
@@ -74,7 +74,7 @@ class Comparison:
         return self.verdict == "within"
 
 
-def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> Comparison:
+def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> OutlineComparison:
     """Outline a against outline b.
 
     Args:
@@ -96,7 +96,7 @@ def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> 
         if maker is not None:
             makers[side] = maker
     beyond = (*_beyond("a", a, forth), *_beyond("b", b, back))
-    return Comparison(a, b, found, forth, back, gained, lost, limit, beyond, makers)
+    return OutlineComparison(a, b, found, forth, back, gained, lost, limit, beyond, makers)
 
 
 def _beyond(side: str, drawn: DrawnOutline, profile: Deviation) -> list[Exceedance]:
@@ -123,7 +123,7 @@ def _beyond(side: str, drawn: DrawnOutline, profile: Deviation) -> list[Exceedan
     return found
 
 
-def as_data(found: Comparison) -> dict[str, Any]:
+def as_data(found: OutlineComparison) -> dict[str, Any]:
     """A comparison as JSON-ready values."""
     whole = found.found
     return {

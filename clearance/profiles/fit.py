@@ -21,7 +21,7 @@ from clearance.profiles.fit_report import held_rates, sensitivities, touching
 from clearance.profiles.fit_result import Fit
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_starts import starts_of
-from clearance.profiles.fit_target import FitCandidate, Target
+from clearance.profiles.fit_target import FitCandidate, FitTarget
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.profile import Profile
 from clearance.sketch import Sketch
@@ -69,7 +69,7 @@ def fit(
     drawn = shape.at(shape.start)
     if drawn is None:
         raise BadShape("the sketch cannot be drawn", where="sketch")
-    target = Target(outline, shape, drawn, mode, margin)
+    target = FitTarget(outline, shape, drawn, mode, margin)
     search = (NearestFit if mode == "nearest" else BoundedFit)(shape, target, drawn)
     best, tried = _best(search, starts_of(shape, outline, mode, starts))
     if best is None:

@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_rows import FitRows, Slope, rows_of
+from clearance.profiles.fit_rows import FitRows, FitSlope, rows_of
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.fit_target import FitCandidate, Target
+from clearance.profiles.fit_target import FitCandidate, FitTarget
 
 MOST_TOLD = 32
 """Touching points that are reported."""
 
 
 def tight_rows(
-    shape: SketchShape, target: Target, best: FitCandidate
+    shape: SketchShape, target: FitTarget, best: FitCandidate
 ) -> tuple[FitRows, np.ndarray]:
     """The rows that attain the distance (nearest) or the gap, and the sign that makes each grow."""
     rows = best.rows
@@ -29,7 +29,7 @@ def tight_rows(
 
 
 def sensitivities(
-    shape: SketchShape, target: Target, best: FitCandidate
+    shape: SketchShape, target: FitTarget, best: FitCandidate
 ) -> dict[str, tuple[float, float]]:
     """For each free dimension how the distance, or the gap, changes when it grows and when it shrinks."""
     rows, sign = tight_rows(shape, target, best)
@@ -39,14 +39,14 @@ def sensitivities(
     return {name: (float(up[i]), float(down[i])) for i, name in enumerate(shape.free)}
 
 
-def touching(shape: SketchShape, target: Target, best: FitCandidate) -> np.ndarray:
+def touching(shape: SketchShape, target: FitTarget, best: FitCandidate) -> np.ndarray:
     """(k, 2) different points that attain the distance or the gap."""
     points = tight_rows(shape, target, best)[0].point
     _, first = np.unique(np.round(points / (1e-7 * shape.size)), axis=0, return_index=True)
     return points[np.sort(first)][:MOST_TOLD]
 
 
-def held_rates(shape: SketchShape, target: Target, best: FitCandidate) -> dict[str, float]:
+def held_rates(shape: SketchShape, target: FitTarget, best: FitCandidate) -> dict[str, float]:
     """How the objective changes with each held dimension that matters, the strongest first."""
     names, slopes, change = _held_slopes(shape, target, best)
     if not names:
@@ -63,7 +63,7 @@ def held_rates(shape: SketchShape, target: Target, best: FitCandidate) -> dict[s
     return dict(sorted(found.items(), key=lambda item: -abs(item[1])))
 
 
-def _held_slopes(shape: SketchShape, target: Target, best: FitCandidate):
+def _held_slopes(shape: SketchShape, target: FitTarget, best: FitCandidate):
     """Names, neighbouring shapes and change of the score of the held dimensions that can change."""
     names, slopes, change = [], [], []
     step = 1e-6 * shape.size
@@ -72,6 +72,6 @@ def _held_slopes(shape: SketchShape, target: Target, best: FitCandidate):
         ahead = shape.changed(name, step, best.placed.numbers)
         if ahead is not None and behind is not None:
             names.append(name)
-            slopes.append(Slope(behind.pieces, ahead.pieces, 2.0 * step))
+            slopes.append(FitSlope(behind.pieces, ahead.pieces, 2.0 * step))
             change.append((target.score(ahead) - target.score(behind)) / (2.0 * step))
     return names, slopes, change

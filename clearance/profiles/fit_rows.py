@@ -47,7 +47,7 @@ class Gaps(NamedTuple):
         return self._replace(distance=sign * self.distance, normal=sign * self.normal)
 
 
-class Slope(NamedTuple):
+class FitSlope(NamedTuple):
     """Two neighbouring shapes, how far apart one of their numbers is (0 where it cannot change), and the change
     of the area for each unit of it."""
 
@@ -110,7 +110,7 @@ def joined_gaps(*parts: Gaps) -> Gaps:
     return Gaps(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def rows_of(gaps: Gaps, here: ContourPieces, slopes: list[Slope | RigidSlope]) -> FitRows:
+def rows_of(gaps: Gaps, here: ContourPieces, slopes: list[FitSlope | RigidSlope]) -> FitRows:
     """Gaps of the shape `here` with their slopes."""
     own = here.point(gaps.piece, gaps.share)
     columns = [(slope.moved(gaps, own) * gaps.normal).sum(axis=1) for slope in slopes]

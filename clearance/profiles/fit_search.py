@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.profiles.fit_placed import PlacedShape, greatest_numbers, least_numbers
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.fit_target import Places, Target
+from clearance.profiles.fit_target import FitTarget, Places
 
 MOST_ROWS = 700
 """Rows of a linear program: those nearest to mattering."""
@@ -24,7 +24,7 @@ STEPS = 30
 class FitSearch:
     """A shape, what it is to be, and the places on it that are looked at."""
 
-    def __init__(self, shape: SketchShape, target: Target, drawn: PlacedShape) -> None:
+    def __init__(self, shape: SketchShape, target: FitTarget, drawn: PlacedShape) -> None:
         self.shape, self.target = shape, target
         self.samples = drawn.pieces.spread(SAMPLES)
         self.tiny = 1e-12 * shape.size

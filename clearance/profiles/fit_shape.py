@@ -15,7 +15,7 @@ from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
 from clearance.profiles.contour import Contour
 from clearance.profiles.drawn_chains import contours_of_chains, drawn_chains
 from clearance.profiles.fit_placed import PlacedShape
-from clearance.profiles.fit_rows import RigidSlope, Slope
+from clearance.profiles.fit_rows import FitSlope, RigidSlope
 from clearance.profiles.outline_file import require_closed, require_solved
 from clearance.profiles.sketch_copy import copied
 from clearance.sketch import Sketch
@@ -103,16 +103,16 @@ class SketchShape:
         finally:
             self.sketch.set(name, before)
 
-    def slopes(self, here: PlacedShape) -> list[Slope | RigidSlope]:
+    def slopes(self, here: PlacedShape) -> list[FitSlope | RigidSlope]:
         """How the shape changes with each number: the shape a little further, or before where that cannot be."""
-        found: list[Slope | RigidSlope] = []
+        found: list[FitSlope | RigidSlope] = []
         for i in range(len(self.free)):
             step = 1e-6 * self.scale[i]
             step = min(step, 1e-3 * abs(here.numbers[i])) or step
             found.append(
                 self._slope(here, i, step)
                 or self._slope(here, i, -step)
-                or Slope(here.pieces, here.pieces, 0.0)
+                or FitSlope(here.pieces, here.pieces, 0.0)
             )
         pivot = here.contours[0].vertices[0]
         if self.slides:
@@ -121,14 +121,14 @@ class SketchShape:
             found.append(RigidSlope(np.zeros(2), pivot, 1.0))
         return found
 
-    def _slope(self, here: PlacedShape, i: int, step: float) -> Slope | None:
+    def _slope(self, here: PlacedShape, i: int, step: float) -> FitSlope | None:
         numbers = here.numbers.copy()
         numbers[i] += step
         there = self.at(numbers)
         if there is None:
             return None
         width = float(numbers[i] - here.numbers[i])
-        return Slope(here.pieces, there.pieces, width, (there.area - here.area) / width)
+        return FitSlope(here.pieces, there.pieces, width, (there.area - here.area) / width)
 
     def placed_sketch(self, numbers: np.ndarray, original: Sketch) -> Sketch:
         """The sketch itself at these numbers, free dimensions driven as they were."""

@@ -53,7 +53,7 @@ class FitCandidate:
     chosen: np.ndarray
 
 
-class Target:
+class FitTarget:
     """An outline, and what a shape should be to it.
 
     Attributes:

@@ -18,7 +18,7 @@ from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, add_cover
 from clearance.kernels.profile.swept_hulls import edge_hulls, triangle_hulls
-from clearance.profiles.chords import Knots
+from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 
 CHUNK = 64
@@ -47,7 +47,7 @@ class Hulls:
 class Silhouette:
     """One body seen along a plane's normal, at its knots."""
 
-    def __init__(self, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
+    def __init__(self, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
         self.shape, self.knots, self.plane = shape, knots, plane
 
     @cached_property

@@ -32,7 +32,7 @@ from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
 
 if TYPE_CHECKING:
-    from clearance.profiles.section import Section
+    from clearance.profiles.cross_section import CrossSection
 
 TOLERANCE = 5e-4
 """[m] How far a swept profile may exceed what is swept, by default."""
@@ -162,7 +162,7 @@ def _last_step(bodies: Sequence[SweptBody]) -> int:
 
 def _views(
     bodies: Sequence[SweptBody], plane: Plane, section: float | None, tolerance: float
-) -> list[Silhouette | Section]:
+) -> list[Silhouette | CrossSection]:
     if section is None:
         return [
             Silhouette(
@@ -172,10 +172,10 @@ def _views(
             )
             for one in bodies
         ]
-    from clearance.profiles.section import Section
+    from clearance.profiles.cross_section import CrossSection
 
     return [
-        Section(
+        CrossSection(
             one.label,
             one.body.shape,
             one.knots(plane, CUT_SHARE * tolerance, solid=True),
@@ -185,7 +185,7 @@ def _views(
     ]
 
 
-def _page(views: Sequence[Silhouette | Section]) -> Raster:
+def _page(views: Sequence[Silhouette | CrossSection]) -> Raster:
     boxes = np.array([view.box() for view in views])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     pixel = float((high - low).max()) / PIXELS

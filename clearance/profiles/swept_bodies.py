@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.errors import BadShape, UnknownLink, UnknownObstacle, nearest_name
 from clearance.profiles.chain import Chain, chain_of
-from clearance.profiles.chords import Knots, knots_of, standing
+from clearance.profiles.chords import BodyKnots, knots_of, standing
 from clearance.profiles.plane import Plane
 from clearance.simulate.holders import holding_link
 from clearance.world.body import Body
@@ -62,7 +62,7 @@ class SweptBody:
     chain: Chain | None
     pose: np.ndarray | None = None
 
-    def knots(self, plane: Plane, limit: float, *, solid: bool) -> Knots:
+    def knots(self, plane: Plane, limit: float, *, solid: bool) -> BodyKnots:
         """The instants at which it is looked at, in steps of the run."""
         if self.chain is None:
             assert self.pose is not None, "what nothing carries stands at a pose"

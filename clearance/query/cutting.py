@@ -53,7 +53,7 @@ class BrokenRim(Exception):
 
 
 @dataclass(frozen=True)
-class Task:
+class CuttingTask:
     """Bodies about a common origin: the first plane number of each, and what counts as on a plane [m]."""
 
     bodies: list[Polytope]
@@ -62,7 +62,7 @@ class Task:
     tolerance: float
 
     @classmethod
-    def about(cls, bodies: list[Polytope], origin: np.ndarray) -> Task:
+    def about(cls, bodies: list[Polytope], origin: np.ndarray) -> CuttingTask:
         """The task; the smallest body bounds all coordinates that remain."""
         bases = np.concatenate([[0], np.cumsum([body.n_faces for body in bodies])])
         least = min(bodies, key=lambda body: body.size)
@@ -95,7 +95,7 @@ class Task:
 class Cutting:
     """A trivalent polytope that is being cut."""
 
-    def __init__(self, task: Task, i_first: int) -> None:
+    def __init__(self, task: CuttingTask, i_first: int) -> None:
         body = task.bodies[i_first]
         form = body.trivalent
         n = len(form.corner)
@@ -204,7 +204,7 @@ def by_edges(block: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndar
     return np.array(trivalent_moments(block, state, table, no_body, none, none, none.ravel()))
 
 
-def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
+def cut_down(task: CuttingTask, side: float = 0.0) -> Cutting | None:
     """What all bodies share, or its half on one `side` (1 or -1); None if rounding leaves nothing.
 
     The smallest body is cut by the others, those first whose surface comes nearest to the common point: what
@@ -224,7 +224,7 @@ def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
     return cutting if cutting.by(*rest) else None
 
 
-def cut_whole(task: Task) -> Cutting:
+def cut_whole(task: CuttingTask) -> Cutting:
     """What all bodies share, of which the halves are known already.
 
     Raises:

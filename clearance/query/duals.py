@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.query.cutting import Task
+from clearance.query.cutting import CuttingTask
 from clearance.query.region import Region
 
 
-def dual_region(task: Task) -> Region:
+def dual_region(task: CuttingTask) -> Region:
     """The region by one hull over all planes' dual points about the common point, by Qhull.
 
     Source: Tereshchenko (2013), section 2.3.
@@ -29,7 +29,7 @@ def dual_region(task: Task) -> Region:
     return _rings_of_dual(task, places, planes)
 
 
-def _rings_of_dual(task: Task, places: np.ndarray, planes: np.ndarray) -> Region:
+def _rings_of_dual(task: CuttingTask, places: np.ndarray, planes: np.ndarray) -> Region:
     """Around each plane its dual triangles follow each other: (plane, b, c) after (plane, a, b)."""
     after = {
         (t[k], t[(k + 1) % 3]): (t[(k + 2) % 3], i)

@@ -20,7 +20,7 @@ from clearance.errors import BadDimension
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query.common_point import CommonPoint, checked_bodies, common_point
-from clearance.query.cutting import BrokenRim, Cutting, Task, cut_down, cut_whole
+from clearance.query.cutting import BrokenRim, Cutting, CuttingTask, cut_down, cut_whole
 from clearance.query.duals import dual_region
 from clearance.query.region import Region
 from clearance.query.thin import is_thin, refined
@@ -126,7 +126,7 @@ def intersect(
     if met.point is None:  # apart
         return Intersection("apart", 0.0, None, met, "none")
     if met.relation == "overlap":
-        region, moments, used = _region(Task.about(bodies, met.point), method, threads)
+        region, moments, used = _region(CuttingTask.about(bodies, met.point), method, threads)
         if moments[0] > 0.0:
             centroid = met.point + moments[1:] / moments[0]
             return Intersection("overlap", float(moments[0]), centroid, met, used, region)
@@ -136,7 +136,7 @@ def intersect(
 
 
 def _region(
-    task: Task, method: str, threads: int
+    task: CuttingTask, method: str, threads: int
 ) -> tuple[list[Cutting] | Region | None, np.ndarray, str]:
     """(the region, its moments, the way)."""
     if method != "dual":
@@ -158,7 +158,7 @@ def _region(
     return region, region.moments(), "dual"
 
 
-def _cut(task: Task, threads: int) -> list[tuple[Cutting, np.ndarray] | None]:
+def _cut(task: CuttingTask, threads: int) -> list[tuple[Cutting, np.ndarray] | None]:
     """The region whole, or where there is much to do in two halves, whatever the number of threads."""
     if task.seam < HALVED_FROM or len(task.bodies) < 3:
         return [_part(task)]
@@ -176,7 +176,7 @@ def _cut(task: Task, threads: int) -> list[tuple[Cutting, np.ndarray] | None]:
         worker.join()
 
 
-def _answer(other: Future, task: Task) -> None:
+def _answer(other: Future, task: CuttingTask) -> None:
     """The half on the far side, or why there is none."""
     try:
         other.set_result(_part(task, -1.0))
@@ -184,7 +184,7 @@ def _answer(other: Future, task: Task) -> None:
         other.set_exception(error)
 
 
-def _part(task: Task, side: float = 0.0) -> tuple[Cutting, np.ndarray] | None:
+def _part(task: CuttingTask, side: float = 0.0) -> tuple[Cutting, np.ndarray] | None:
     """What is left on one side, and its moments."""
     made = cut_down(task, side)
     return None if made is None else (made, made.moments())

@@ -11,14 +11,14 @@ import numpy as np
 
 from clearance.geometry.edges import rings_of
 from clearance.kernels.polytope.faces import ring_moments
-from clearance.query.cutting import Cutting, Task, cut_whole
+from clearance.query.cutting import Cutting, CuttingTask, cut_whole
 
 
 @dataclass(frozen=True, eq=False)
 class Region:
     """Faces about the task's origin: places (c, 3), the plane of each face, face starts, corners as places."""
 
-    task: Task
+    task: CuttingTask
     places: np.ndarray
     planes: np.ndarray
     starts: np.ndarray

@@ -15,7 +15,7 @@ from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.cut import CUT, N_ROWS, cut_by_planes
 from clearance.kernels.polytope.faces import face_rings
 from clearance.kernels.polytope.thin import stretched_planes, supporting_triples
-from clearance.query.cutting import ON_PLANE, Task, by_edges
+from clearance.query.cutting import ON_PLANE, CuttingTask, by_edges
 from clearance.query.region import Region
 
 THIN = 0.02
@@ -28,12 +28,12 @@ MOST_CORNERS = 12
 _CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
-def is_thin(task: Task, volume: float, reach: float) -> bool:
+def is_thin(task: CuttingTask, volume: float, reach: float) -> bool:
     """True if the volume [m^3] of a region with coordinates up to `reach` [m] has lost digits."""
     return volume < THIN * reach * reach * task.tolerance / ON_PLANE
 
 
-def refined(task: Task, places: np.ndarray) -> tuple[Region, np.ndarray] | None:
+def refined(task: CuttingTask, places: np.ndarray) -> tuple[Region, np.ndarray] | None:
     """(region, moments about the origin) given the corners (n, 3) of the region found; None if it fails.
 
     It fails where more than `MOST_PLANES` planes are near, or rounding leaves nothing.
@@ -63,7 +63,9 @@ def _frame_of(places: np.ndarray, margin: float) -> tuple[np.ndarray, np.ndarray
     return axes * (0.5 * margin * (high - low)), axes @ (0.5 * (low + high))
 
 
-def _near_faces(task: Task, frame: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _near_faces(
+    task: CuttingTask, frame: np.ndarray, middle: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """(k,) plane numbers and (k, 3, 3) corners of all planes that come near the box."""
     names, corners = [], []
     for base, body in zip(task.bases, task.bodies, strict=False):

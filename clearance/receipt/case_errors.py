@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.receipt.proof.motion_data import Errors, Held
+from clearance.receipt.proof.motion_data import Errors, MountFrames
 from clearance.world.budget import EXACT, Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, Forest, forest_of
@@ -120,9 +120,9 @@ def _standing(
             yield i, np.zeros(3), _place_of(budget, case.obstacles[body.i_body].name)
 
 
-def _held(rows: Sequence[Row] | Iterator[Row]) -> Held:
+def _held(rows: Sequence[Row] | Iterator[Row]) -> MountFrames:
     kept = [row for row in rows if row[2] != EXACT]
-    return Held(
+    return MountFrames(
         np.array([which for which, _, _ in kept], dtype=np.int64),
         np.array([at for _, at, _ in kept], dtype=np.float64).reshape(-1, 3),
         np.array([place.xyz for _, _, place in kept]),

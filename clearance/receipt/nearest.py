@@ -12,7 +12,7 @@ import numpy as np
 from clearance.receipt.proof.error_terms import along_of
 from clearance.receipt.proof.halving import farthest, farthest_points
 from clearance.receipt.proof.items import Items
-from clearance.receipt.proof.placing import Placed
+from clearance.receipt.proof.placing import PlacedViews
 from clearance.receipt.proof.separation import Sides, dot
 from clearance.receipt.proof.stage import Stage
 
@@ -43,7 +43,7 @@ def nearest_directions(stage: Stage, items: Items) -> tuple[np.ndarray, np.ndarr
     return found, slack
 
 
-def _by_errors(stage: Stage, at: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
+def _by_errors(stage: Stage, at: PlacedViews, side: Sides, u: np.ndarray) -> np.ndarray:
     """(k,) [m] what errors at most do to a part along u (3, k), in one direction of time."""
     assert at.terms is not None
     turn, place = at.turn[:, :, side.place], at.at[:, side.place]
@@ -52,7 +52,7 @@ def _by_errors(stage: Stage, at: Placed, side: Sides, u: np.ndarray) -> np.ndarr
     return farthest(stage.halves, side.body, side.node, nothing, errors)[0]
 
 
-def _directions(stage: Stage, at: Placed, a: Sides, b: Sides) -> tuple[np.ndarray, np.ndarray]:
+def _directions(stage: Stage, at: PlacedViews, a: Sides, b: Sides) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors and how far apart the parts are along them; 0 where they are not."""
     n = len(a.place)
     w = _support(stage, at, a, b, np.repeat([[1.0], [0.0], [0.0]], n, axis=1)).T
@@ -76,7 +76,7 @@ def _directions(stage: Stage, at: Placed, a: Sides, b: Sides) -> tuple[np.ndarra
     return u, np.maximum(best, 0.0)
 
 
-def _support(stage: Stage, at: Placed, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
+def _support(stage: Stage, at: PlacedViews, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
     """(3, k) the least point of the second part less the greatest of the first, along u (3, k)."""
     tips = []
     for side, sign in ((a, 1.0), (b, -1.0)):

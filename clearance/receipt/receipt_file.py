@@ -154,7 +154,7 @@ def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
         raise ValueError("rules")
 
 
-class GoneThrough:
+class EvidenceReader:
     """A receipt's evidence, as it is asked for."""
 
     def __init__(self, receipt: Receipt) -> None:

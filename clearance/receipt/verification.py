@@ -21,7 +21,7 @@ from clearance.receipt.proof.depths import depths_reached
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
-from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, GoneThrough, Receipt, read_receipt
+from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, EvidenceReader, Receipt, read_receipt
 from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.world.case import Case, Omission
 
@@ -165,9 +165,9 @@ def _inputs_of(receipt: Receipt) -> tuple[tuple[str, str], ...]:
 def _failure(data: CaseData, receipt: Receipt) -> str:
     for rule, interval in missing(receipt.claims, data, receipt.head["kind"]):
         return f"nothing is claimed of rule {rule} in interval {interval}"
-    evidence = GoneThrough(receipt)
+    evidence = EvidenceReader(receipt)
     try:
-        depths = depths_reached(data.stretches, len(data.shapes), GoneThrough(receipt).deeds)
+        depths = depths_reached(data.stretches, len(data.shapes), EvidenceReader(receipt).deeds)
         halves = halves_of(data.shapes, depths)
         found = failure_in(data.stretches, data.shapes, halves, receipt.claims, evidence)
     except BadEvidence as error:

@@ -84,7 +84,7 @@ def write_receipt(
     return place / FILE_NAME
 
 
-class _Proven(NamedTuple):
+class _Claims(NamedTuple):
     """What is claimed of which numbers, and what proves it."""
 
     data: CaseData
@@ -92,7 +92,7 @@ class _Proven(NamedTuple):
     found: Found
 
 
-def _proven(record: Record, kind: str, progress: Progress | None) -> _Proven:
+def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:
     """The evidence, of what tolerances leave too where that can be found.
 
     Raises:
@@ -104,7 +104,7 @@ def _proven(record: Record, kind: str, progress: Progress | None) -> _Proven:
     claims = _kept(claims_of(record, data), data, kind)
     found = evidence_for(data.stretches, data.shapes, halves, claims, progress=progress)
     if not with_errors.has_errors:
-        return _Proven(data, claims, found)
+        return _Claims(data, claims, found)
     n_rules, n_stretches = len(data.rules), len(data.stretches)
     exact = claims_of(record, with_errors)
     for share in GIVEN_UP:
@@ -116,8 +116,8 @@ def _proven(record: Record, kind: str, progress: Progress | None) -> _Proven:
             )  # fmt: skip
         except BadInput:
             continue
-        return _Proven(with_errors, both, found.and_then(more))
-    return _Proven(data, claims, found)
+        return _Claims(with_errors, both, found.and_then(more))
+    return _Claims(data, claims, found)
 
 
 def _kept(claims: np.ndarray, data: CaseData, kind: str) -> np.ndarray:

@@ -22,7 +22,7 @@ MOST_POINTS = 2000
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ClearanceCurve:
     """Clearance over time: (n,) [s] and (n,) [m], NaN where nothing is known."""
 
     name: str
@@ -30,7 +30,7 @@ class Curve:
     clearances: np.ndarray
 
     @property
-    def thinned(self) -> Curve:
+    def thinned(self) -> ClearanceCurve:
         """The curve with at most `MOST_POINTS`: of each stretch its least, at the time where that is."""
         n = len(self.times)
         if n <= MOST_POINTS:
@@ -39,10 +39,10 @@ class Curve:
         ends = np.append(starts[1:], n)
         far = np.where(np.isnan(self.clearances), np.inf, self.clearances)
         least = np.array([a + np.argmin(far[a:b]) for a, b in zip(starts, ends, strict=True)])
-        return Curve(self.name, self.times[least], self.clearances[least])
+        return ClearanceCurve(self.name, self.times[least], self.clearances[least])
 
 
-def chart(curves: Sequence[Curve], fail: float, called: str = "fail") -> Markup:
+def chart(curves: Sequence[ClearanceCurve], fail: float, called: str = "fail") -> Markup:
     """The curves in one picture, in seconds and millimetres, with a limit [m] and what it is called."""
     thinned = [curve.thinned for curve in curves]
     axes = _Axes.of(thinned, fail)
@@ -70,7 +70,7 @@ class _Axes:
     high: float
 
     @staticmethod
-    def of(curves: Sequence[Curve], fail: float) -> _Axes:
+    def of(curves: Sequence[ClearanceCurve], fail: float) -> _Axes:
         times = np.concatenate([curve.times for curve in curves])
         values = np.concatenate([curve.clearances for curve in curves])
         known = values[np.isfinite(values)]
@@ -86,7 +86,7 @@ class _Axes:
         share = (clearance - self.low) / (self.high - self.low)
         return HEIGHT - _BOTTOM - share * (HEIGHT - _TOP - _BOTTOM)
 
-    def parts(self, curve: Curve) -> list[str]:
+    def parts(self, curve: ClearanceCurve) -> list[str]:
         """The corners of each stretch in which something is known."""
         known = np.isfinite(curve.clearances)
         edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))

@@ -12,9 +12,9 @@ import numpy as np
 from markupsafe import Markup
 
 from clearance.errors import BadInput
-from clearance.findings.comparison import Change, ComparedFinding, Comparison
+from clearance.findings.comparison import ComparedFinding, Comparison, FindingChange
 from clearance.findings.finding import NOT_PROVEN
-from clearance.report.comparison_chart import Curve, chart
+from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
 from clearance.report.markup import element, section, table
@@ -45,7 +45,7 @@ def write_comparison(comparison: Comparison, before: Path, now: Path, folder: Pa
     write_file(folder / FILE_NAME, page.encode("utf-8"))
 
 
-def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> str:
+def page_of(comparison: Comparison, curves: list[ClearanceCurve], names: tuple[str, str]) -> str:
     """The whole page."""
     text = comparison_text(comparison)
     content = _curves(comparison, curves, names) + _findings(comparison)
@@ -72,7 +72,7 @@ def _header(comparison: Comparison, text: str) -> Markup:
     return element("div", title, element("p", badge, class_=classes), class_="title") + told
 
 
-def _curves(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> Markup:
+def _curves(comparison: Comparison, curves: list[ClearanceCurve], names: tuple[str, str]) -> Markup:
     key = [
         element("span", element("i"), f"{letter}: {name}", class_=letter.lower())
         for letter, name in zip("AB", names, strict=True)
@@ -110,10 +110,10 @@ def _row(row: ComparedFinding) -> Markup:
     ]
     classes = ["number", "number", None, None, None]
     cells += [element("td", text, class_=kind) for text, kind in zip(rest, classes, strict=True)]
-    return element("tr", *cells, class_="faint" if row.change is Change.GONE else None)
+    return element("tr", *cells, class_="faint" if row.change is FindingChange.GONE else None)
 
 
-def _curve(name: str, place: Path) -> Curve | None:
+def _curve(name: str, place: Path) -> ClearanceCurve | None:
     """The curve of a report folder: the clearance of each step, or the bound where only that is known."""
     if not (place / _TABLE).is_file():
         return None
@@ -129,10 +129,12 @@ def _curve(name: str, place: Path) -> Curve | None:
         ) from None
 
 
-def curve_of(name: str, steps: pa.Table) -> Curve:
+def curve_of(name: str, steps: pa.Table) -> ClearanceCurve:
     """The curve of a table of steps: their clearances, or their bounds where only those are known."""
     known = {column: steps[column].to_numpy() for column in ("time", "clearance")}
     if "lower_bound" in steps.column_names:
         bound = steps["lower_bound"].to_numpy()
         known["clearance"] = np.where(np.isnan(known["clearance"]), bound, known["clearance"])
-    return Curve(name, known["time"].astype(np.float64), known["clearance"].astype(np.float64))
+    return ClearanceCurve(
+        name, known["time"].astype(np.float64), known["clearance"].astype(np.float64)
+    )

@@ -18,7 +18,7 @@ MOST_PARTS = 2000
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class PageCurve:
     """One curve.
 
     Attributes:
@@ -33,12 +33,12 @@ class Curve:
     filled: bool = False
 
 
-def more_curves(record: Record) -> tuple[Curve, ...]:
+def more_curves(record: Record) -> tuple[PageCurve, ...]:
     """The curves; none where there are neither tolerances nor a recording."""
     return tuple(_curves(record))
 
 
-def _curves(record: Record) -> Iterator[Curve]:
+def _curves(record: Record) -> Iterator[PageCurve]:
     if record.asked is not None:
         yield _thinned("as asked", record.asked.times, record.asked.clearances, "dash")
     if record.budget:
@@ -54,9 +54,9 @@ def _curves(record: Record) -> Iterator[Curve]:
 
 def _thinned(
     name: str, times: np.ndarray, values: np.ndarray, dash: str = "solid", filled: bool = False
-) -> Curve:
+) -> PageCurve:
     n_parts = min(len(times), MOST_PARTS)
     starts = np.arange(n_parts) * len(times) // n_parts
     ends = np.append(starts[1:], len(times)) - 1
     middles = 0.5 * (times[starts] + times[ends])
-    return Curve(name, middles, np.fmin.reduceat(values, starts), dash, filled)
+    return PageCurve(name, middles, np.fmin.reduceat(values, starts), dash, filled)

@@ -24,7 +24,7 @@ from clearance.errors import Unavailable
 from clearance.extras import importing, install
 from clearance.report.head import head_of
 from clearance.report.markup import element
-from clearance.report.more_curves import Curve
+from clearance.report.more_curves import PageCurve
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
 from clearance.report.wording import contact_text, count
@@ -45,7 +45,7 @@ def page_of(
     pictures: dict[str, str] | None = None,
     curves: PairCurves | None = None,
     findings: Markup = NOTHING,
-    more: Sequence[Curve] = (),
+    more: Sequence[PageCurve] = (),
 ) -> str:
     """The whole page.
 
@@ -151,7 +151,7 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
     return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
 
 
-def _more(curves: Sequence[Curve]) -> dict[str, Any]:
+def _more(curves: Sequence[PageCurve]) -> dict[str, Any]:
     """Curves beside that of the clearance; nothing where there are none."""
     told = [
         {
@@ -166,7 +166,7 @@ def _more(curves: Sequence[Curve]) -> dict[str, Any]:
     return {"more": told} if told else {}
 
 
-def _page_script(curves: Sequence[Curve]) -> str:
+def _page_script(curves: Sequence[PageCurve]) -> str:
     """The page's own script; after the one that draws further curves, where there are some."""
     return (_own("more_curves.js") if curves else "") + _own("page.js")
 

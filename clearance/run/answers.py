@@ -13,7 +13,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from clearance.run.as_asked import as_asked
+from clearance.run.commanded_case import commanded_case
 from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.budget_answer import RuleBudget
@@ -23,7 +23,7 @@ from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
-    AskedCourse,
+    CommandedCourse,
     CrossCheck,
     PairTest,
     ProfileAnswer,
@@ -348,15 +348,17 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         budget_of_pairs=None if answers.budget is None else partial(_budget_of_pairs, plan),
         today=question.today,
         body_gaps=question.body_gaps,
-        asked=_asked(question) if question.motion == "recorded" else None,
+        asked=_commanded(question) if question.motion == "recorded" else None,
     )
 
 
-def _asked(question: Question) -> AskedCourse:
-    """What the case comes to at the steps of what was asked, where its robots have done something else."""
-    asked = Question(as_asked(question.case), certify=False, contact="none", today=question.today)
+def _commanded(question: Question) -> CommandedCourse:
+    """What the case comes to at the steps of what was commanded, where its robots have done something else."""
+    asked = Question(
+        commanded_case(question.case), certify=False, contact="none", today=question.today
+    )
     record = answered(asked, DEFAULT_RESOURCES)
-    return AskedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
+    return CommandedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
 
 
 def _of_pairs(

@@ -24,7 +24,7 @@ from clearance.kernels.motion.world import World
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
-from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
@@ -73,7 +73,7 @@ def certify_motion(
         *log.bounds,
         gap,
         dict(zip(COUNTERS, log.tally.tolist(), strict=True)),
-        _moment_of(Moments(what.case, what.motions, what.pairs), log.bounds, found),
+        _moment_of(MomentQuery(what.case, what.motions, what.pairs), log.bounds, found),
         notices,
     )
 
@@ -94,7 +94,7 @@ def no_finer_than_rounding(
 
 
 def _moment_of(
-    moments: Moments, bounds: IntervalBounds, found: Measurement
+    moments: MomentQuery, bounds: IntervalBounds, found: Measurement
 ) -> Callable[[int], Moment]:
     """Measures the pair of an interval where it was seen nearest; at the nearer end where that is a step."""
 

@@ -50,7 +50,7 @@ class Moment:
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class MomentQuery:
     """Measures a pair at any moment between two steps of a case's motion."""
 
     case: Case
@@ -65,7 +65,7 @@ class Moments:
         """
         return self._measured(
             i_pair,
-            _Placed(
+            _Place(
                 step + int(share == 1.0),
                 share % 1.0,
                 tuple(motion.positions_after(step, share) for motion in self.motions),
@@ -79,9 +79,9 @@ class Moments:
         positions = tuple(motion.positions[step] for motion in self.motions)
         steps = np.array([step])
         columns = joined_positions(self.case, self.motions, steps)[0]
-        return self._measured(i_pair, _Placed(step, 0.0, positions, columns), touches=False)
+        return self._measured(i_pair, _Place(step, 0.0, positions, columns), touches=False)
 
-    def _measured(self, i_pair: int, at: _Placed, touches: bool) -> Moment:
+    def _measured(self, i_pair: int, at: _Place, touches: bool) -> Moment:
         a, b = self.pairs[i_pair]
         poses = forest_of(self.case).poses(at.columns[None])
         found = distance(
@@ -108,7 +108,7 @@ class Moments:
         )
 
 
-class _Placed(NamedTuple):
+class _Place(NamedTuple):
     """When all is where: the step, the share of the way to the next, the robots' joints, and all columns."""
 
     step: int

@@ -16,7 +16,7 @@ THIN = 1e-7
 """[m] Radius of the balls that stand for the points themselves."""
 
 
-class Overlap(NamedTuple):
+class BodyOverlap(NamedTuple):
     """How two bodies that touch are parted.
 
     Attributes:
@@ -36,7 +36,7 @@ class Overlaps:
     def __init__(self, a: Polyhedron, b: Polyhedron) -> None:
         self.shapes = a, b
 
-    def at(self, pose_a: np.ndarray, pose_b: np.ndarray) -> Overlap | None:
+    def at(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
         """That at two poses (4, 4) [m]; None where they are apart, or no way out is known: the middle of a ball
         is inside a solid."""
         if any(isinstance(shape, PointCloud) for shape in self.shapes):
@@ -46,11 +46,11 @@ class Overlaps:
         found = contact(*self.shapes, pose_a=pose_a, pose_b=pose_b, rough=True)
         if found is None:
             return None
-        return Overlap(
+        return BodyOverlap(
             found.penetration, found.penetration_at_least, -found.direction, found.centroid
         )
 
-    def _of_balls(self, pose_a: np.ndarray, pose_b: np.ndarray) -> Overlap | None:
+    def _of_balls(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
         """A ball that reaches depth past a point of the other body holds it until one is moved so far."""
         found = self._thin.distances(pose_a[None], pose_b[None])
         distance, (on_a, on_b) = float(found.distances[0]), found.points[0]
@@ -58,7 +58,7 @@ class Overlaps:
         length = float(np.linalg.norm(on_b - on_a))
         if depth < 0.0 or distance <= THIN or length <= THIN:
             return None
-        return Overlap(depth, depth, (on_b - on_a) / length, (on_a + on_b) / 2.0)
+        return BodyOverlap(depth, depth, (on_b - on_a) / length, (on_a + on_b) / 2.0)
 
     @cached_property
     def _thin(self) -> Query:

@@ -29,7 +29,7 @@ PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
 
 
-class OfPairs(Protocol):
+class PairMeasurer(Protocol):
     """Measures and proves some pairs of a run alone."""
 
     def __call__(self, is_meant: PairTest, need: str | None = None) -> tuple[RuleAnswer, ...]:
@@ -127,8 +127,8 @@ class ProfileAnswer:
 
 
 @dataclass(frozen=True, eq=False)
-class AskedCourse:
-    """The clearances of what was asked, beside those of what was done.
+class CommandedCourse:
+    """The clearances of what was commanded, beside those of what was done.
 
     Attributes:
         times: (n,) [s]. clearances: (n,) [m] of the pair that stands worst at each step; NaN where there is none.
@@ -216,10 +216,10 @@ class Record(Samples):
     notices: tuple[Notice, ...] = ()
     contacts: ContactSequence | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
-    of_pairs: OfPairs | None = None
+    of_pairs: PairMeasurer | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
-    asked: AskedCourse | None = None
+    asked: CommandedCourse | None = None
     body_gaps: bool = False
     budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 

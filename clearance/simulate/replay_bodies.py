@@ -114,7 +114,7 @@ def carries_of(record: Record, bodies: Sequence[BodyIndex]) -> tuple[DrawnCarry,
 
 
 @dataclass(frozen=True, eq=False)
-class PlacedBodies:
+class ReplayBodies:
     """Where all bodies of a record are at some frames.
 
     Attributes:
@@ -127,7 +127,7 @@ class PlacedBodies:
 
 def placed_bodies(
     record: Record, bodies: Sequence[BodyIndex], frames: Sequence[FramePlace]
-) -> PlacedBodies:
+) -> ReplayBodies:
     """The poses of all bodies at the frames."""
     poses = np.empty((len(bodies), len(frames), 4, 4))
     shown = np.ones((len(bodies), len(frames)), dtype=bool)
@@ -142,7 +142,7 @@ def placed_bodies(
             _put(bodies, before, frame, poses[:, i], shown[:, i])
         if frame.time_b is not None:
             _put_second(record, bodies, frame, poses[:, i])
-    return PlacedBodies(list(poses), list(shown))
+    return ReplayBodies(list(poses), list(shown))
 
 
 def _by_phase(record: Record, frames: Sequence[FramePlace]) -> Iterator[tuple[Phase, np.ndarray]]:

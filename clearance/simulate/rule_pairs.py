@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.simulate.measure import pairs_within
-from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.names import pair_names
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
@@ -139,6 +139,6 @@ def _moment(answer: SectionAnswer, step: int, pair: int) -> Moment:
     section = answer.section
     case, motions = section.phase.case, section.phase.motions
     if section.tied:
-        return Moments(case, motions, section.pairs).at(step, pair)
+        return MomentQuery(case, motions, section.pairs).at(step, pair)
     names = pair_names(case, section.pairs)
     return SampleMoments(names, motions).at(answer.found, "", step)

@@ -105,7 +105,7 @@ def _holds(section: Section, moment: Moment) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class _Near:
+class _NearPair:
     """A pair at the moment.
 
     Attributes:
@@ -159,7 +159,7 @@ def n_joint_columns(case: Case) -> int:
     return sum(len(placed.robot.moving_joints) for placed in case.robots)
 
 
-def _near(section: Section, moment: Moment) -> list[_Near]:
+def _near(section: Section, moment: Moment) -> list[_NearPair]:
     """The pairs of a section that are at most `BAND` farther than the moment's."""
     case, own = section.phase.case, moment.step - section.phase.first
     motions = section.phase.motions
@@ -179,7 +179,7 @@ def _near(section: Section, moment: Moment) -> list[_Near]:
         query = Query(*(body.shape_in(case) for body in pair))
         distance = float(query.distances(places[pair.a], places[pair.b]).distances[0])
         if distance <= reach:
-            found.append(_Near(section, pair, columns, distance))
+            found.append(_NearPair(section, pair, columns, distance))
     return found
 
 
@@ -195,7 +195,7 @@ def _gap(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray
     return float(np.linalg.norm(np.maximum(apart, 0.0))) * (1.0 - 1e-9) - 1e-12
 
 
-def _rates(near: list[_Near]) -> Iterator[Rate]:
+def _rates(near: list[_NearPair]) -> Iterator[Rate]:
     """All that move at least one of the pairs, the least of the slopes of all pairs each way."""
     case = near[0].case
     n, column = n_joint_columns(case), 0
@@ -210,7 +210,7 @@ def _rates(near: list[_Near]) -> Iterator[Rate]:
     yield from _of_places(near, case)
 
 
-def _of_places(near: list[_Near], case: Case) -> Iterator[Rate]:
+def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
     """Of bases and obstacles that stand or move by themselves.
 
     Of parts that are picked up or let go elsewhere where they are moved nothing is told: their way depends on how

@@ -152,7 +152,7 @@ def least_unsynchronised(
         intervals,
         steps_tally,
         intervals_tally,
-        _Moments(what, intervals).of_interval,
+        _TwoClockQuery(what, intervals).of_interval,
         tuple(dict.fromkeys(notice for _, notices in finest for notice in notices)),
     )
 
@@ -293,7 +293,7 @@ class _Work:
 
 
 @dataclass(frozen=True, eq=False)
-class _Moments:
+class _TwoClockQuery:
     """Measures the pair of an interval at the two times at which it was seen nearest."""
 
     what: PairsOfTwoClocks

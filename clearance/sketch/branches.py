@@ -20,7 +20,7 @@ from clearance.kernels.sketch.equations import (
 )
 from clearance.kernels.sketch.graph.graph import POINT, TURN
 from clearance.kernels.sketch.solve.execute import FAILED
-from clearance.sketch.execution import WRONG_SIDE, Outcome, run
+from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
 from clearance.sketch.start import Sides, sides_hold, started
@@ -44,7 +44,9 @@ def choices(problem: Problem) -> np.ndarray:
     return np.flatnonzero(points | lines)
 
 
-def run_with_sides(problem: Problem, before: np.ndarray, sides: Sides, effort: int = 2) -> Outcome:
+def run_with_sides(
+    problem: Problem, before: np.ndarray, sides: Sides, effort: int = 2
+) -> ExecutionResult:
     """The outcome of a problem; where a `same_side` does not hold, the nearest one in which all do."""
     outcome = run(problem, before, sides, effort)
     if outcome.broken != WRONG_SIDE or effort == 0:
@@ -84,7 +86,7 @@ def _nearest_choices(problem: Problem, sides: Sides) -> list[int]:
 def _by_roots(problem: Problem, sides: Sides, outcome) -> list:
     """Outcomes at other roots of the small numeric clusters."""
     return [
-        Outcome(x, outcome.fates, -1, residual)
+        ExecutionResult(x, outcome.fates, -1, residual)
         for x, residual in other_solutions(problem, outcome.x)
         if sides_hold(x, sides, problem.size)
     ]

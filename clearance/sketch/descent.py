@@ -34,7 +34,7 @@ FLAT = 1e-5
 """[-] Share of the sum that an undamped step must promise; less is a minimum."""
 
 
-class Place(NamedTuple):
+class Iterate(NamedTuple):
     """Numbers (n,), the equations' errors (m,) there, their derivative, and the sum of squared errors."""
 
     x: np.ndarray
@@ -55,21 +55,21 @@ class ProblemPart:
         self.first, self.n = numbered(problem, self.vertices)
         self.enough = self.rows.size * (FLOOR * problem.size) ** 2
 
-    def at(self, x: np.ndarray) -> Place:
+    def at(self, x: np.ndarray) -> Iterate:
         """The equations at some numbers."""
         from scipy.sparse import coo_array
 
         f, i, j, value = spread(self.system, self.rows, x, self.first)
         matrix = coo_array((value, (i, j)), (f.size, self.n)).tocsc()
-        return Place(x, f, matrix, float(f @ f))
+        return Iterate(x, f, matrix, float(f @ f))
 
-    def moved(self, x: np.ndarray, step: np.ndarray) -> Place:
+    def moved(self, x: np.ndarray, step: np.ndarray) -> Iterate:
         """The equations after a step (n,) of the columns."""
         out = x.copy()
         step_by(self.system, self.vertices, step, 1.0, out, self.first)
         return self.at(out)
 
-    def curvature(self, place: Place):
+    def curvature(self, place: Iterate):
         """(n, n) half the second derivative of the sum of squares."""
         from scipy.sparse import coo_array
 
@@ -84,7 +84,7 @@ def descend(
     damping: float = FIRST,
     longest: int = LONGEST,
     corrections: int = CORRECTIONS,
-) -> Place:
+) -> Iterate:
     """Where the sum of squares ends that goes down from x: a root, or another minimum."""
     place = part.at(x)
     for _ in range(longest):
@@ -98,8 +98,8 @@ def descend(
 
 
 def _step(
-    part: ProblemPart, place: Place, damping: float, corrections: int
-) -> tuple[Place, float, bool]:
+    part: ProblemPart, place: Iterate, damping: float, corrections: int
+) -> tuple[Iterate, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
     from scipy.sparse import eye_array
 
@@ -147,8 +147,8 @@ def _factored(matrix):
 
 
 def _corrected(
-    part: ProblemPart, place: Place, step: np.ndarray, factor, corrections: int
-) -> Place:
+    part: ProblemPart, place: Iterate, step: np.ndarray, factor, corrections: int
+) -> Iterate:
     """The place after a step, corrected for what the equations' curvature adds to it while that helps."""
     goal, length = place.error + place.matrix @ step, float(np.linalg.norm(step))
     best = part.moved(place.x, step)

@@ -35,7 +35,7 @@ WRONG_SIDE = -2
 """In place of the broken equation's row: all equations hold, a `same_side` does not."""
 
 
-class Outcome:
+class ExecutionResult:
     """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do)."""
 
     def __init__(self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float) -> None:
@@ -51,7 +51,7 @@ def run(
     sides: Sides = (),
     effort: int = 2,
     turned: np.ndarray | None = None,
-) -> Outcome:
+) -> ExecutionResult:
     """Solves a problem from the numbers `before` (n,).
 
     Lengths are divided by a power of two near the size first: a sketch that is drawn twice as large has
@@ -97,7 +97,7 @@ def _in_units(problem: Problem, unit: float) -> Problem:
 
 def _run_at_unit(
     problem: Problem, before: np.ndarray, sides: Sides, effort: int, turned: np.ndarray | None
-) -> Outcome:
+) -> ExecutionResult:
     """`run` for a problem of a size near 1."""
     size, dependent = problem.size, problem.plan.dependent
     x, sketch = started(problem, before, sides)
@@ -121,7 +121,7 @@ def _run_at_unit(
     if problem.contacts is not None and broken == -1 and effort == 2:
         x = _touching(problem, problem.contacts, x, active)[problem.alias]
         residual, broken = _verdict(problem, x)
-    outcome = Outcome(x, fates, broken, residual)
+    outcome = ExecutionResult(x, fates, broken, residual)
     if broken == -1 and sides and not sides_hold(x, sides, size):
         outcome.broken = WRONG_SIDE
     return outcome

@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.kernels.sketch.equations import POINT_POINT
 from clearance.kernels.sketch.graph.graph import RADIUS
-from clearance.sketch.descent import CORRECTIONS, Place, ProblemPart, descend
+from clearance.sketch.descent import CORRECTIONS, Iterate, ProblemPart, descend
 from clearance.sketch.problem import Problem
 
 GAIN = 0.02
@@ -56,7 +56,7 @@ def solve_from(problem: Problem, part: int, x: np.ndarray, tolerance: float) -> 
     return None
 
 
-def _descended(work: ProblemPart, place: Place | None, tolerance: float) -> Place | None:
+def _descended(work: ProblemPart, place: Iterate | None, tolerance: float) -> Iterate | None:
     """The root that is reached from a minimum over folds; None for none."""
     left = ALTOGETHER
     while place is not None and np.abs(place.error).max() > tolerance:
@@ -65,7 +65,7 @@ def _descended(work: ProblemPart, place: Place | None, tolerance: float) -> Plac
     return place
 
 
-def _unfolded(work: ProblemPart, place: Place, most: int) -> tuple[Place | None, int]:
+def _unfolded(work: ProblemPart, place: Iterate, most: int) -> tuple[Iterate | None, int]:
     """(a lower minimum beyond a fold, None when there is none; how many folds were tried)."""
     for k, fold in enumerate(folds(work, place)[:most]):
         start = place.x.copy()
@@ -76,7 +76,7 @@ def _unfolded(work: ProblemPart, place: Place, most: int) -> tuple[Place | None,
     return None, most
 
 
-def folds(work: ProblemPart, place: Place) -> list[Fold]:
+def folds(work: ProblemPart, place: Iterate) -> list[Fold]:
     """The folds at a minimum that promise to gain, the best first."""
     whole = float(np.linalg.norm(place.error))
     out = []
@@ -90,7 +90,7 @@ def folds(work: ProblemPart, place: Place) -> list[Fold]:
     return sorted(out, key=lambda fold: (fold.price, fold.variable))
 
 
-def _joined(work: ProblemPart, place: Place):
+def _joined(work: ProblemPart, place: Iterate):
     """By point: its first variable, the points it has distances from (k, 2), their errors (k,), and the
     distances now (k,)."""
     s = work.system

@@ -26,7 +26,7 @@ from clearance.kernels.sketch.graph.graph import (
     merge,
     vertices,
 )
-from clearance.kernels.sketch.graph.plan import Plan, make_plan, peeled_plan
+from clearance.kernels.sketch.graph.plan import ConstructionPlan, make_plan, peeled_plan
 from clearance.kernels.sketch.solve.place import System
 from clearance.kernels.sketch.solve.start import counts, row_parts
 from clearance.sketch.contacts import Contacts, contacts_of
@@ -119,7 +119,7 @@ class Problem:
     fate: np.ndarray
     absolute: np.ndarray
     theta_of: np.ndarray
-    plan: Plan
+    plan: ConstructionPlan
     part: np.ndarray
     n_parts: int
     hold: np.ndarray
@@ -196,7 +196,10 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     if tables.together:
         rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == 6))
         fate[rows] = MERGED
-    same, merged = _Joined(alias, weight, repeated), _Merged(parent, scale, shift, fate)
+    same, merged = (
+        _NumberAliases(alias, weight, repeated),
+        _MergedNumbers(parent, scale, shift, fate),
+    )
     out = _fresh(tables, same, merged, var, value, size, length_scale)
     out.system = out.system._replace(coef=coef)
     return out
@@ -219,7 +222,7 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     return coef
 
 
-class _Joined(NamedTuple):
+class _NumberAliases(NamedTuple):
     """(n,) which number stands for each, and for how many each stands; rows that say so once more."""
 
     alias: np.ndarray
@@ -227,7 +230,7 @@ class _Joined(NamedTuple):
     repeated: list[int]
 
 
-class _Merged(NamedTuple):
+class _MergedNumbers(NamedTuple):
     """(n + 1,) each number is `scale` times that of `parent`, plus `shift`; (m,) what became of each row."""
 
     parent: np.ndarray
@@ -236,7 +239,7 @@ class _Merged(NamedTuple):
     fate: np.ndarray
 
 
-def _fresh(tables, same: _Joined, merged: _Merged, var, value, size, length_scale):
+def _fresh(tables, same: _NumberAliases, merged: _MergedNumbers, var, value, size, length_scale):
     """The problem with a plan of its own."""
     alias, weight, repeated = same
     parent, scale, shift, fate = merged

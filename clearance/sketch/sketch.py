@@ -24,7 +24,7 @@ from clearance.sketch.relations import Relations
 
 if TYPE_CHECKING:
     from clearance.planar.curve import Curve
-    from clearance.sketch.execution import Outcome
+    from clearance.sketch.execution import ExecutionResult
     from clearance.sketch.problem import Problem
     from clearance.sketch.result import SketchResult
     from clearance.sketch.solver import Solver
@@ -317,7 +317,9 @@ class Sketch:
         if self._solver is not None:
             self._solver.changed(constraint)
 
-    def _result(self, problem: Problem, before: np.ndarray, outcome: Outcome) -> SketchResult:
+    def _result(
+        self, problem: Problem, before: np.ndarray, outcome: ExecutionResult
+    ) -> SketchResult:
         from clearance.sketch.result import SketchResult
 
         return SketchResult(self, problem, before, outcome)

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.sketch.branches import run_with_sides
 from clearance.sketch.degenerate import check_degenerate
-from clearance.sketch.execution import Outcome
+from clearance.sketch.execution import ExecutionResult
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import Problem, problem_of, tables_of
 from clearance.sketch.start import sides_hold
@@ -48,13 +48,15 @@ class Solver:
             self.stale = False
         return self.problem
 
-    def solve(self) -> tuple[Problem, np.ndarray, Outcome]:
+    def solve(self) -> tuple[Problem, np.ndarray, ExecutionResult]:
         """See `Sketch.solve`."""
         problem = self.current()
         before = np.array(self.sketch._lists.numbers)
         return self._finish(problem, before, run_with_sides(problem, before, self.sides))
 
-    def drag(self, point, position: tuple[float, float]) -> tuple[Problem, np.ndarray, Outcome]:
+    def drag(
+        self, point, position: tuple[float, float]
+    ) -> tuple[Problem, np.ndarray, ExecutionResult]:
         """See `Sketch.drag`."""
         problem = self.current()
         before = np.array(self.sketch._lists.numbers)
@@ -73,8 +75,8 @@ class Solver:
         return self._finish(problem, before, outcome)
 
     def _finish(
-        self, problem: Problem, before: np.ndarray, outcome: Outcome
-    ) -> tuple[Problem, np.ndarray, Outcome]:
+        self, problem: Problem, before: np.ndarray, outcome: ExecutionResult
+    ) -> tuple[Problem, np.ndarray, ExecutionResult]:
         if outcome.broken == -1:
             check_degenerate(self.sketch, problem, outcome.x)
             self.sketch._lists.numbers[:] = outcome.x.tolist()

@@ -27,7 +27,7 @@ from clearance.simulate.replay_bodies import LINK, MOVING, PART, STANDING, Drawn
 from clearance.simulate.status import STATUSES
 
 if TYPE_CHECKING:
-    from clearance.view.viewer import Stage
+    from clearance.view.viewer import LiveScene
 
 COLOURS = {"clear": 0x2B7A4B, "near": 0xC77D0A, "violated": 0xC0281C, "contact": 0x8A0F45}
 ROBOTS, LINK_NOT_MEASURED = (0x5C7390, 0x7D6796, 0x4B7F78, 0x94705C), 0xA9B4C0
@@ -46,10 +46,10 @@ class Playback:
 
     def __init__(self, replay: Replay) -> None:
         with importing("view", "the live view"):
-            from clearance.view.viewer import Stage
+            from clearance.view.viewer import LiveScene
 
         self.replay = replay
-        self._stage = Stage()
+        self._stage = LiveScene()
         fill(self._stage, replay)
 
     @property
@@ -117,7 +117,7 @@ def _replay_in(folder: Path) -> Replay:
     return load_replay(folder / FILE_NAME)
 
 
-def fill(stage: Stage, replay: Replay) -> None:
+def fill(stage: LiveScene, replay: Replay) -> None:
     """Puts everything that `replay` holds on the stage: bodies, marks, animation, controls,
     camera."""
     times = (replay.times - replay.times[0]).tolist()
@@ -146,14 +146,14 @@ def _look(body: DrawnBody) -> tuple[int, float]:
     return OTHERS[body.kind]
 
 
-def _show(stage: Stage, path: str, shown: np.ndarray, times: list[float]) -> None:
+def _show(stage: LiveScene, path: str, shown: np.ndarray, times: list[float]) -> None:
     """Hides a body while it is not in the cell."""
     if not shown.all():
         seen = np.broadcast_to(shown, len(times)).astype(bool).tolist()
         stage.animate(path, "visible", "bool", times, seen)
 
 
-def _place(stage: Stage, path: str, poses: np.ndarray, times: list[float]) -> None:
+def _place(stage: LiveScene, path: str, poses: np.ndarray, times: list[float]) -> None:
     from scipy.spatial.transform import Rotation
 
     first = np.eye(4)
@@ -164,7 +164,7 @@ def _place(stage: Stage, path: str, poses: np.ndarray, times: list[float]) -> No
         stage.animate(path, "quaternion", "quaternion", times, poses[:, 3:].tolist())
 
 
-def _marks(stage: Stage, replay: Replay, times: list[float], size: float) -> None:
+def _marks(stage: LiveScene, replay: Replay, times: list[float], size: float) -> None:
     """One line with two dots for each status that occurs; the one that holds is visible."""
     positions, turns, scales = line_tracks(replay.lines)
     for code in np.unique(replay.status).tolist():
@@ -186,7 +186,7 @@ def _marks(stage: Stage, replay: Replay, times: list[float], size: float) -> Non
         stage.animate(path, "visible", "bool", times, (replay.status == code).tolist())
 
 
-def _contacts(stage: Stage, replay: Replay, times: list[float], size: float) -> None:
+def _contacts(stage: LiveScene, replay: Replay, times: list[float], size: float) -> None:
     """Each overlap in red, with an arrow along the way out; seen in its frame only."""
     shown = zip(replay.contacts, replay.regions, strict=True)
     for i, (contact, (vertices, triangles)) in enumerate(shown):
@@ -224,7 +224,7 @@ def line_tracks(lines: np.ndarray) -> tuple[list, list, list]:
     return (0.5 * (lines[:, :3] + lines[:, 3:])).tolist(), turns.tolist(), scales.tolist()
 
 
-def _controls(stage: Stage, replay: Replay, times: list[float]) -> None:
+def _controls(stage: LiveScene, replay: Replay, times: list[float]) -> None:
     """A step slider and the buttons; times aim at the middle of a frame, which rounding cannot
     miss."""
     middles = _middles(np.array(times)).tolist()

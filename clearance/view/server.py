@@ -37,15 +37,19 @@ class PageServer:
         known = {"host": f"{LOOPBACK}:{self.port}"}
         app = tornado.web.Application(
             [
-                (f"/{secret}/", _Page, {**known, "content": page.encode(), "kind": "text/html"}),
+                (
+                    f"/{secret}/",
+                    _PageHandler,
+                    {**known, "content": page.encode(), "kind": "text/html"},
+                ),
                 (
                     f"/{secret}/script.js",
-                    _Page,
+                    _PageHandler,
                     {**known, "content": script, "kind": "text/javascript"},
                 ),
-                (f"/{secret}/scene", _Scene, {**known, "messages": messages}),
+                (f"/{secret}/scene", _SceneHandler, {**known, "messages": messages}),
             ],
-            default_handler_class=_Nothing,
+            default_handler_class=_NotFoundHandler,
             default_handler_args=known,
             log_function=lambda handler: None,
         )
@@ -73,7 +77,7 @@ class PageServer:
             self._thread.join()
 
 
-class _Guarded(tornado.web.RequestHandler):
+class _GuardedHandler(tornado.web.RequestHandler):
     """Answers only who has asked for the address by its number, from a page of ours or from none."""
 
     _host: str
@@ -95,7 +99,7 @@ class _Guarded(tornado.web.RequestHandler):
         self.set_header("X-Frame-Options", "DENY")
 
 
-class _Page(_Guarded):
+class _PageHandler(_GuardedHandler):
     def initialize(self, host: str, content: bytes, kind: str) -> None:
         self._host, self._content, self._kind = host, content, kind
 
@@ -104,7 +108,7 @@ class _Page(_Guarded):
         self.finish(self._content)
 
 
-class _Nothing(_Guarded):
+class _NotFoundHandler(_GuardedHandler):
     def initialize(self, host: str) -> None:
         self._host = host
 
@@ -113,7 +117,7 @@ class _Nothing(_Guarded):
         raise tornado.web.HTTPError(404)
 
 
-class _Scene(_Guarded, tornado.websocket.WebSocketHandler):
+class _SceneHandler(_GuardedHandler, tornado.websocket.WebSocketHandler):
     def initialize(self, host: str, messages: Sequence[bytes]) -> None:
         self._host, self._messages = host, messages
 

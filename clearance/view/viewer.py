@@ -69,7 +69,7 @@ POINT = 0.004
 """[m] How large a point of a cloud is drawn, whatever the radius of its ball."""
 
 
-class Stage:
+class LiveScene:
     """A scene, and a server that gives it to browsers."""
 
     def __init__(self) -> None:

@@ -55,7 +55,7 @@ def cell_of(held: Sequence[object], told: Hashable) -> Cell:
     return cell
 
 
-class OfCell(Protocol):
+class CellOwner(Protocol):
     """What has a cell: a case."""
 
     @property
@@ -72,7 +72,7 @@ def once_a_cell(most: int) -> Callable[[Callable[..., Found]], Callable[..., Fou
         known: OrderedDict[tuple[Cell, tuple], Found] = OrderedDict()
 
         @wraps(work)
-        def found(case: OfCell, *others: Any) -> Found:
+        def found(case: CellOwner, *others: Any) -> Found:
             key = (case.cell, others)
             if key in known:
                 with suppress(KeyError):  # another thread may have let go of it

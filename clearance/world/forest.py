@@ -72,7 +72,7 @@ def forest_of(case: Case) -> Forest:
     Raises:
         UnknownLink: a mount on what is not there. BadInput: actors that stand on each other in a ring.
     """
-    return _Planting(case).forest()
+    return _Planter(case).forest()
 
 
 def joined_positions(
@@ -156,7 +156,7 @@ def _link_names(case: Case) -> dict[str, tuple[int, int]]:
     return names
 
 
-class _Planting:
+class _Planter:
     """Lays the trees of a case behind one another, what carries before what is carried."""
 
     def __init__(self, case: Case) -> None:

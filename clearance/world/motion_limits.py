@@ -23,9 +23,7 @@ class MotionLimit:
     acceleration: float = math.inf
 
     def __post_init__(self) -> None:
-        for name in ("velocity", "acceleration"):
-            if not getattr(self, name) > 0.0:
-                raise BadDimension(f"{name} {getattr(self, name):g} is given", valid="above 0")
+        _check_above_0(velocity=self.velocity, acceleration=self.acceleration)
 
 
 @dataclass(frozen=True)
@@ -43,6 +41,10 @@ class PathTolerance:
     goal: float = math.inf
 
     def __post_init__(self) -> None:
-        for name in ("trajectory", "goal"):
-            if not getattr(self, name) > 0.0:
-                raise BadDimension(f"{name} {getattr(self, name):g} is given", valid="above 0")
+        _check_above_0(trajectory=self.trajectory, goal=self.goal)
+
+
+def _check_above_0(**numbers: float) -> None:
+    for name, number in numbers.items():
+        if not number > 0.0:
+            raise BadDimension(f"{name} {number:g} is given", valid="above 0")

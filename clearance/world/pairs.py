@@ -161,7 +161,7 @@ def _selected(
 ) -> Selection:
     """The same, from which rows of `allow` and of rules are active, and who carries what."""
     active = (allow, rules)
-    return _Selecting(case, active, dict(carried), absent_robots, absent_obstacles).selection()
+    return _Selector(case, active, dict(carried), absent_robots, absent_obstacles).selection()
 
 
 def nothing_to_measure() -> NothingToMeasure:
@@ -173,7 +173,7 @@ def nothing_to_measure() -> NothingToMeasure:
 
 
 @dataclass(eq=False)
-class _Selecting:
+class _Selector:
     """Sorts the pairs of a case, in a stretch of its run, into those that are measured and those that are not."""
 
     case: Case

@@ -30,7 +30,7 @@ from rows import write_csv
 
 from clearance.batch.answer import answer_of
 from clearance.batch.dask_engine import DaskEngine, local_cluster
-from clearance.batch.engine import InThisProcess
+from clearance.batch.engine import LocalEngine
 from clearance.batch.item import Item
 from clearance.batch.keys import program
 from clearance.batch.manifest import Changes, items_of
@@ -226,8 +226,8 @@ PARTS = {"rates": _rates, "workers": _workers, "many": _bulk}
 
 
 @contextmanager
-def _here(n_cases: int) -> Iterator[InThisProcess]:
-    yield InThisProcess()
+def _here(n_cases: int) -> Iterator[LocalEngine]:
+    yield LocalEngine()
 
 
 def scene_batch(folder: Path, scene: str, n_cases: int, n_steps: int = 300) -> Path:

@@ -9,11 +9,11 @@ budgets instead.
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
+from clock import least_time
 from inputs import SCENES
 
 import clearance as cl
@@ -165,14 +165,9 @@ def naive(case: Case, section: Section, pair: int) -> float:
     return total
 
 
-def cpu(work: Callable[[], object], repeats: int = 5) -> float:
-    """[ms] the least of several."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return 1e3 * min(times)
+def milliseconds(work: Callable[[], object]) -> float:
+    """[ms] of CPU time, the least of five."""
+    return 1e3 * least_time(work, 5)
 
 
 def sections_of(
@@ -204,10 +199,12 @@ def table(n_random: int, n_ascended: int) -> None:
             taken = nominal - worst
             proven_between(pairs, rows, CERTIFY_GAP)
             certify_motion(section.in_motion, found, CERTIFY_GAP)
-            steps = cpu(lambda s=section: measure(s.in_motion))
-            extra = cpu(lambda p=pairs, f=found: proven_of_steps(p, f))
-            motion = cpu(lambda s=section, f=found: certify_motion(s.in_motion, f, CERTIFY_GAP))
-            more = cpu(lambda p=pairs, r=rows: proven_between(p, r, CERTIFY_GAP))
+            steps = milliseconds(lambda s=section: measure(s.in_motion))
+            extra = milliseconds(lambda p=pairs, f=found: proven_of_steps(p, f))
+            motion = milliseconds(
+                lambda s=section, f=found: certify_motion(s.in_motion, f, CERTIFY_GAP)
+            )
+            more = milliseconds(lambda p=pairs, r=rows: proven_between(p, r, CERTIFY_GAP))
             names = "-".join(name_of(case, body).split("/")[-1] for body in section.pairs[pair])
             print(
                 f"{name}, {names}, {nominal * 1e3:.3f}, {rows.proven[step] * 1e3:.3f}, {worst * 1e3:.3f}, "

@@ -60,7 +60,7 @@ def _signed(body: Iterable[int]) -> list[int]:
 def findings() -> bytes:
     """`findings.json` of one pair that breaks its rule."""
     from clearance.findings.doubts import Doubt
-    from clearance.findings.finding import Finding, WaivedBy
+    from clearance.findings.finding import AppliedWaiver, Finding
     from clearance.findings.findings_file import FindingList, findings_text
     from clearance.findings.measured_as import (
         MeasuredAs,
@@ -82,7 +82,7 @@ def findings() -> bytes:
         unmeasured=(MeasuredPairs(("base",), ("*",)),),
     )
     doubt = Doubt("warning", "meshes", "a mesh is left out")
-    waived = WaivedBy(0.002, "soft", "A. Smith", "2027-03-31", 0.003)
+    waived = AppliedWaiver(0.002, "soft", "A. Smith", "2027-03-31", 0.003)
     found = Finding(
         16 * "0", "clearance", "default", "tip", "post", 0, "violated", 0.035, 0.034, 0.04, 0.06, 2.5, None, 132,
         True,

@@ -124,10 +124,10 @@ def xacro(path: Path) -> object:
     """What is evaluated in the process that is started for it, and then read as URDF."""
     from clearance.errors import BadSyntax
     from clearance.load.urdf_elements import parse_document
-    from clearance.load.xacro_process import Watch, evaluated
+    from clearance.load.xacro_process import ChildWatch, evaluated
 
     with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
-        made = evaluated(path, {}, Watch())
+        made = evaluated(path, {}, ChildWatch())
     if "problem" in made:
         raise BadSyntax(made["problem"], where=path.name)
     parse_document(made["urdf"].encode())

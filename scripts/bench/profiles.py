@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from clock import timed
 
 import clearance as cl
 from clearance.profiles.chain import chain_of
@@ -41,13 +42,9 @@ DEFAULT = ROOT.parent / "shared" / "cases" / "kuka_iiwa_valve_wall" / "case.yaml
 
 
 def least(action, times: int) -> tuple[float, object]:
-    """Least CPU time of several runs [s], after one that warms up, and the last result."""
-    found, took = action(), []
-    for _ in range(times):
-        before = time.process_time()
-        found = action()
-        took.append(time.process_time() - before)
-    return min(took), found
+    """Least CPU time of several runs [s], after one that warms up, and its result."""
+    action()
+    return min((timed(action) for _ in range(times)), key=lambda row: row[0])
 
 
 def plain_union(case, plane: Plane, samples: int) -> tuple[float, int]:

@@ -13,11 +13,11 @@ import csv
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from budget import typical
+from clock import least_time
 from inputs import SCENES, SHARED
 
 import clearance as cl
@@ -33,16 +33,6 @@ WITH_TOLERANCES = (
 )  # fmt: skip
 
 
-def least(work: Callable[[], object], times: int = 3) -> float:
-    """[s] of CPU time."""
-    found = []
-    for _ in range(times):
-        begun = time.process_time()
-        work()
-        found.append(time.process_time() - begun)
-    return min(found)
-
-
 def row_with_tolerances(path: Path) -> tuple:
     """The row of a case file with the tolerances of a typical cell: what they leave is proven too."""
     case = cl.load_case(path)
@@ -54,7 +44,10 @@ def row_with_tolerances(path: Path) -> tuple:
         receipt = cl.write_receipt(run, place)
         written, size = time.process_time() - begun, receipt.stat().st_size
         found = cl.verify(place, case)
-        times = [least(lambda: cl.check(case)), least(lambda: cl.verify(place, case), 1)]
+        times = [
+            least_time(lambda: cl.check(case), 3),
+            least_time(lambda: cl.verify(place, case), 1),
+        ]
     told = min(one.least for one in run.record.budget)
     proven = [bound for rule, bound in found.bounds.items() if rule.endswith("with tolerances")]
     return (
@@ -76,10 +69,10 @@ def row(path: Path) -> tuple:
         written, size = time.process_time() - begun, receipt.stat().st_size
         found = cl.verify(place)
         times = [
-            least(lambda: cl.check(case)),
-            least(lambda: cl.verify(place, case)),
-            least(lambda: cl.check(path)),
-            least(lambda: cl.verify(place)),
+            least_time(lambda: cl.check(case), 3),
+            least_time(lambda: cl.verify(place, case), 3),
+            least_time(lambda: cl.check(path), 3),
+            least_time(lambda: cl.verify(place), 3),
         ]
     return (
         path.parent.name, len(run.steps), found.n_pairs, f"{size / 1e3:.0f}",

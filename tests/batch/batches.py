@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from clearance.batch.answer import BatchAnswer, answer_of
-from clearance.batch.engine import InThisProcess
+from clearance.batch.engine import LocalEngine
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.output import write_answer
 from clearance.batch.run import Outcome, run_batch
@@ -66,7 +66,7 @@ def run_here(
     items = items_of([str(manifest)], changes or Changes())
     store, told = open_store(place, fresh=options.get("fresh", False)), Told()
     outcome = Outcome(items)
-    run_batch(outcome, store, lambda n: nullcontext(engine or InThisProcess()), told, **options)
+    run_batch(outcome, store, lambda n: nullcontext(engine or LocalEngine()), told, **options)
     answer = answer_of(outcome, store, strict=strict)
     write_answer(answer, store)
     return told, answer

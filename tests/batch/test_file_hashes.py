@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from clearance.batch.file_hashes import RACY, FileHashes, Seen, seen
+from clearance.batch.file_hashes import RACY, FileHashes, FileStamp, seen
 
 LONG_AGO = 10**9 * 10**9
 
@@ -64,6 +64,6 @@ def test_a_file_that_is_gone_has_no_hash(tmp_path):
 
 
 def test_a_settled_mark_lies_more_than_the_clocks_grain_before_reading():
-    assert Seen(0, 0, 0, 10, 10, 11 + RACY, "").is_settled
-    assert not Seen(0, 0, 0, 10, 11, 11 + RACY, "").is_settled
-    assert not Seen(0, 0, 0, 11, 10, 11 + RACY, "").is_settled
+    assert FileStamp(0, 0, 0, 10, 10, 11 + RACY, "").is_settled
+    assert not FileStamp(0, 0, 0, 10, 11, 11 + RACY, "").is_settled
+    assert not FileStamp(0, 0, 0, 11, 10, 11 + RACY, "").is_settled

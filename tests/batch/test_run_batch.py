@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from clearance.batch import file_hashes, rows
-from clearance.batch.engine import InThisProcess
+from clearance.batch.engine import LocalEngine
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import Changes, items_of
@@ -165,7 +165,7 @@ def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
 def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
     """One that begins and ends while the other measures."""
 
-    class Meanwhile(InThisProcess):
+    class Meanwhile(LocalEngine):
         def results(self, queue):
             run_here(other, tmp_path / "out")
             yield from super().results(queue)

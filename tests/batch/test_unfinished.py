@@ -6,7 +6,7 @@ import json
 import pytest
 
 from clearance.batch import engine
-from clearance.batch.engine import InThisProcess
+from clearance.batch.engine import LocalEngine
 from clearance.cli import run
 from tests.batch.batches import ANSWER, answer_bytes, write_cell, write_path
 from tests.report.junit_schema import valid_suite
@@ -34,7 +34,7 @@ def is_withdrawn(store):
     return set(answer_bytes(store)) == {"junit.xml", "batch.html"}
 
 
-class Stopped(InThisProcess):
+class Stopped(LocalEngine):
     """Stops after the first task, as one that is interrupted does."""
 
     def results(self, queue):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.findings.comparison import TOLERANCE, Change, compared
+from clearance.findings.comparison import TOLERANCE, FindingChange, compared
 from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
 from clearance.findings.findings_file import FindingList, finding_list_of
 from tests.findings.gates import load_gates, write_gates, write_way
@@ -75,13 +75,13 @@ def test_what_was_asked_for_of_each_step_does_not_matter(before, tmp_path):
 def test_what_is_measured_in_another_way_is_not_comparable(changed, why, before, tmp_path):
     comparison = compared(before, found(tmp_path / "now", BEFORE, **changed))
     assert comparison.whole == why and not comparison.passed
-    assert {row.change for row in comparison.rows} == {Change.NOT_COMPARABLE}
+    assert {row.change for row in comparison.rows} == {FindingChange.NOT_COMPARABLE}
 
 
 def test_other_limits_are_not_comparable(before, tmp_path):
     now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
     (row,) = compared(before, now).rows
-    assert (row.change, row.why) == (Change.NOT_COMPARABLE, "rule 'default' is another")
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "rule 'default' is another")
 
 
 def test_another_robot_is_not_comparable(before, tmp_path):
@@ -89,7 +89,7 @@ def test_another_robot_is_not_comparable(before, tmp_path):
     robots = tuple(dataclasses.replace(r, sha256="0" * 64) for r in now.measured.robots)
     now = dataclasses.replace(now, measured=dataclasses.replace(now.measured, robots=robots))
     (row,) = compared(before, now).rows
-    assert (row.change, row.why) == (Change.NOT_COMPARABLE, "robot 'gantry_box' is another")
+    assert (row.change, row.why) == (FindingChange.NOT_COMPARABLE, "robot 'gantry_box' is another")
 
 
 def test_what_a_list_leaves_out_is_not_known(before, tmp_path):
@@ -139,4 +139,4 @@ def test_joints_that_are_further_beyond_their_limits_are_not_unchanged(before):
     first, second = (dataclasses.replace(before, findings=(each,)) for each in (joints, other))
     assert [str(row.change) for row in compared(first, first).rows] == ["unchanged"]
     (row,) = compared(first, second).rows
-    assert row.change == Change.NOT_COMPARABLE and row.alarms and "in words" in row.why
+    assert row.change == FindingChange.NOT_COMPARABLE and row.alarms and "in words" in row.why

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from tests.oracle.rationals import cross, dot, minus
 
 Vector = tuple[Fraction, Fraction, Fraction]
 
@@ -21,18 +22,6 @@ def on_grid(points: list[Vector]) -> list[tuple[int, int, int]]:
     """The points times their least common denominator: integers, many times as quick as Fractions."""
     scale = math.lcm(*(x.denominator for point in points for x in point))
     return [tuple(x.numerator * (scale // x.denominator) for x in point) for point in points]
-
-
-def minus(a: Vector, b: Vector) -> Vector:
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
-def dot(a: Vector, b: Vector) -> Fraction:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def area_vector(face: list[Vector]) -> Vector:

@@ -15,7 +15,7 @@ from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.timing import Timing
-from tests.oracle.kinematics import Pose, link_poses, on, seen_from
+from tests.oracle.kinematics import Pose, link_poses, on, rotation_of, seen_from
 
 STANDING = np.eye(4)
 
@@ -72,7 +72,7 @@ class Places:
         table = obstacle.moves
         place = _row(table.times, table.positions, table.timing, time)
         turn = _row(table.times, table.quaternions, table.timing, time, turns=True)
-        return on(below, [[*row, x] for row, x in zip(_rotation(turn), place, strict=True)])
+        return on(below, [[*row, x] for row, x in zip(rotation_of(turn), place, strict=True)])
 
 
 def _positions(placed: PlacedRobot, time: Fraction) -> dict[str, Fraction]:
@@ -113,14 +113,3 @@ def _own_time(times: np.ndarray, timing: Timing, time: Fraction) -> Fraction:
     if own > last and timing.after == "loop":
         return first + (own - first) % (last - first)
     return max(first, min(own, last))
-
-
-def _rotation(quaternion: Sequence[Fraction]) -> list[list[Fraction]]:
-    """Of x, y, z, w of any length but 0, which rationals need no root for."""
-    x, y, z, w = quaternion
-    s = 2 / (x * x + y * y + z * z + w * w)
-    return [
-        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
-        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
-        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
-    ]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tests.strategies import BOX_FACES
+
 _UNITS = {
     "mm": "#{0}=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.));",
     "m": "#{0}=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT($,.METRE.));",
@@ -81,14 +83,7 @@ def box_step(size=(10.0, 20.0, 30.0), unit: str = "mm", uncertainty: float = 1e-
     vertices = [writer.vertex(c) for c in corners]
     edges: dict[tuple[int, int], str] = {}
     faces = []
-    for ring in (
-        (0, 1, 3, 2),
-        (4, 6, 7, 5),
-        (0, 4, 5, 1),
-        (2, 3, 7, 6),
-        (0, 2, 6, 4),
-        (1, 5, 7, 3),
-    ):
+    for ring in BOX_FACES:
         used = []
         for a, b in zip(ring, (*ring[1:], ring[0]), strict=True):
             if (b, a) not in edges and (a, b) not in edges:

@@ -24,21 +24,16 @@ def part(*places):
         place.write_bytes(cube_stl())
 
 
-def test_the_package_is_found_above_the_urdf(tmp_path):
-    folder = tmp_path / "arms" / "urdf" / "deep"
+@pytest.mark.parametrize(
+    ("urdf_in", "origin"),
+    [("arms/urdf/deep", "../../meshes/part.stl"), ("other/urdf", "../../arms/meshes/part.stl")],
+)
+def test_the_package_is_found_above_the_urdf_or_beside_folders_above_it(tmp_path, urdf_in, origin):
+    folder = tmp_path / urdf_in
     folder.mkdir(parents=True)
     part(tmp_path / "arms" / "meshes" / "part.stl")
     found = load_urdf(folder, ASKED)
-    assert found.bodies[0].origin == "../../meshes/part.stl"
-    assert found.notices == ()
-
-
-def test_the_package_is_found_beside_folders_above_the_urdf(tmp_path):
-    folder = tmp_path / "other" / "urdf"
-    folder.mkdir(parents=True)
-    part(tmp_path / "arms" / "meshes" / "part.stl")
-    found = load_urdf(folder, ASKED)
-    assert found.bodies[0].origin == "../../arms/meshes/part.stl"
+    assert found.bodies[0].origin == origin
     assert found.notices == ()
 
 

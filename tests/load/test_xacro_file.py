@@ -13,7 +13,7 @@ from clearance.load.input_files import InputFiles
 from clearance.load.robot_request import RobotRequest
 from clearance.load.urdf import load_urdf
 from clearance.load.xacro_file import expanded
-from clearance.load.xacro_process import Watch, evaluated
+from clearance.load.xacro_process import ChildWatch, evaluated
 from tests.load.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
@@ -200,7 +200,7 @@ def test_work_without_end_is_ended(tmp_path, monkeypatch):
 
 
 def test_more_than_reading_is_refused():
-    watch = Watch()
+    watch = ChildWatch()
     watch.on = True
     watch("open", ("/a/b.xacro", "r", 0))
     watch("open", ("/a/b.pyc", "rb", 0))
@@ -227,7 +227,7 @@ def test_a_file_cut_off_anywhere_is_refused(tmp_path):
     ]:
         path.write_text(texts[0])
         other.write_text(texts[1])
-        answer = evaluated(path, {}, Watch())
+        answer = evaluated(path, {}, ChildWatch())
         if texts == (main, macro):
             assert b'<link name="2"/>' in answer["urdf"].encode()
         else:

@@ -10,17 +10,17 @@ from __future__ import annotations
 import itertools
 from fractions import Fraction
 
-Point = tuple[int, int, int]
+from tests.oracle.rationals import Point, cross, dot, minus
 
 
 def squared_depth(a: list[Point], b: list[Point]) -> Fraction:
     """The square of the shortest translation that parts the hulls of `a` and `b`; 0 where they are apart."""
     least = None
     for n in _normals(a, b):
-        out = max(_dot(n, q) for q in b) - min(_dot(n, p) for p in a)
+        out = max(dot(n, q) for q in b) - min(dot(n, p) for p in a)
         if out <= 0:
             return Fraction(0)
-        square = Fraction(out * out, _dot(n, n))
+        square = Fraction(out * out, dot(n, n))
         least = square if least is None or square < least else least
     return least
 
@@ -28,25 +28,13 @@ def squared_depth(a: list[Point], b: list[Point]) -> Fraction:
 def _normals(a: list[Point], b: list[Point]):
     for corners in (a, b):
         for p, q, r in itertools.combinations(corners, 3):
-            yield from _both(_cross(_minus(q, p), _minus(r, p)))
-    edges = [[_minus(q, p) for p, q in itertools.combinations(c, 2)] for c in (a, b)]
+            yield from _both(cross(minus(q, p), minus(r, p)))
+    edges = [[minus(q, p) for p, q in itertools.combinations(c, 2)] for c in (a, b)]
     for e, f in itertools.product(*edges):
-        yield from _both(_cross(e, f))
+        yield from _both(cross(e, f))
 
 
 def _both(n: Point):
     if any(n):
         yield n
         yield (-n[0], -n[1], -n[2])
-
-
-def _minus(p: Point, q: Point) -> Point:
-    return (p[0] - q[0], p[1] - q[1], p[2] - q[2])
-
-
-def _dot(p: Point, q: Point) -> int:
-    return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-
-
-def _cross(p: Point, q: Point) -> Point:
-    return (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])

@@ -7,7 +7,7 @@ what a float can tell, so that integers stay short.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from tests.oracle.rationals import cross, root
@@ -67,6 +67,17 @@ def seen_from(pose: Iterable, world_from_body: Iterable) -> Pose:
     back = [[column[i] / volume for column in columns] for i in range(3)]
     shift = [-sum(row[k] * rows[k][3] for k in range(3)) for row in back]
     return _times([[*row, x] for row, x in zip(back, shift, strict=True)], _pose(world_from_body))
+
+
+def rotation_of(quaternion: Sequence[Fraction]) -> list[list[Fraction]]:
+    """(3, 3) of a quaternion x, y, z, w of any length but 0, which needs no root."""
+    x, y, z, w = quaternion
+    s = 2 / (x * x + y * y + z * z + w * w)
+    return [
+        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
+        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
+        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
+    ]
 
 
 def _position(joint, by_name: Mapping, positions: Mapping[str, float]) -> Fraction:

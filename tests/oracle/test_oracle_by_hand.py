@@ -8,17 +8,10 @@ import numpy as np
 import pytest
 
 from tests import oracle
+from tests.strategies import BOX_FACES
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 CUBE_VERTS = list(itertools.product((0, 1), repeat=3))
-CUBE_FACES = [
-    (0, 1, 3, 2),
-    (4, 6, 7, 5),
-    (0, 4, 5, 1),
-    (2, 3, 7, 6),
-    (0, 2, 6, 4),
-    (1, 5, 7, 3),
-]
 
 
 def moved(polygon, by):
@@ -197,7 +190,7 @@ def test_scaling_by_any_factor_scales_the_answer_exactly():
 
 def test_cubes():
     def measure(pose, of=oracle.polyhedron_distance_sq):
-        return of(CUBE_VERTS, CUBE_FACES, CUBE_VERTS, CUBE_FACES, None, pose)
+        return of(CUBE_VERTS, BOX_FACES, CUBE_VERTS, BOX_FACES, None, pose)
 
     assert measure(shifted(3, 0, 0)) == 4
     assert measure(shifted(2, 3, 3)) == 9  # corner to corner: 1, 2, 2
@@ -210,24 +203,24 @@ def test_cubes():
 
 def test_the_nearest_faces_of_two_cubes_are_those_that_hold_nearest_points():
     """Side by side 2 apart: all nearest points are on x = 1 and x = 3, and on the rims of four faces beside."""
-    faced = {f for f, face in enumerate(CUBE_FACES) if all(CUBE_VERTS[v][0] == 1 for v in face)}
-    beside = {f for f, face in enumerate(CUBE_FACES) if any(CUBE_VERTS[v][0] == 1 for v in face)}
-    opposite = {f for f, face in enumerate(CUBE_FACES) if any(CUBE_VERTS[v][0] == 0 for v in face)}
-    cube = (CUBE_VERTS, CUBE_FACES)
+    faced = {f for f, face in enumerate(BOX_FACES) if all(CUBE_VERTS[v][0] == 1 for v in face)}
+    beside = {f for f, face in enumerate(BOX_FACES) if any(CUBE_VERTS[v][0] == 1 for v in face)}
+    opposite = {f for f, face in enumerate(BOX_FACES) if any(CUBE_VERTS[v][0] == 0 for v in face)}
+    cube = (CUBE_VERTS, BOX_FACES)
     sq, pairs = oracle.nearest_faces(*cube, *cube, pose_b=shifted(3, 0, 0))
     assert sq == 4 and {f for f, _ in pairs} == beside and {g for _, g in pairs} == opposite
     assert faced < beside and pairs == sorted(pairs)
     for f, g in itertools.product(range(6), range(6)):
-        p = [CUBE_VERTS[v] for v in CUBE_FACES[f]]
-        q = moved([CUBE_VERTS[v] for v in CUBE_FACES[g]], (3, 0, 0))
+        p = [CUBE_VERTS[v] for v in BOX_FACES[f]]
+        q = moved([CUBE_VERTS[v] for v in BOX_FACES[g]], (3, 0, 0))
         assert ((f, g) in pairs) == (oracle.polygon_distance_sq(p, q) == sq)
 
 
 def test_cubes_that_touch_have_one_pair_of_faces_that_do():
-    cube = (CUBE_VERTS, CUBE_FACES)
+    cube = (CUBE_VERTS, BOX_FACES)
     sq, ((f, g),) = oracle.nearest_faces(*cube, *cube, pose_b=shifted(1, 1, 1))
-    assert sq == 0 and {(1, 1, 1)} <= {CUBE_VERTS[v] for v in CUBE_FACES[f]}
-    assert {(0, 0, 0)} <= {CUBE_VERTS[v] for v in CUBE_FACES[g]}
+    assert sq == 0 and {(1, 1, 1)} <= {CUBE_VERTS[v] for v in BOX_FACES[f]}
+    assert {(0, 0, 0)} <= {CUBE_VERTS[v] for v in BOX_FACES[g]}
 
 
 def test_a_rotated_pose_is_taken_as_given():
@@ -241,7 +234,7 @@ def test_a_rotated_pose_is_taken_as_given():
     ]
     # its greatest x is 3/5; a cube whose least x is 2
     sq = oracle.polyhedron_distance_sq(
-        CUBE_VERTS, CUBE_FACES, CUBE_VERTS, CUBE_FACES, turn, shifted(2, 0, 0)
+        CUBE_VERTS, BOX_FACES, CUBE_VERTS, BOX_FACES, turn, shifted(2, 0, 0)
     )
     assert sq == Fraction(7, 5) ** 2
 
@@ -257,32 +250,32 @@ def test_containment():
         ((2, 0, 0), False),  # in the plane of faces and on the line of edges
         ((0.5, 0.5, -1), False),
     ]:
-        assert oracle.contains(point, CUBE_VERTS, CUBE_FACES) is expected
-    assert oracle.contains((5.5, 0.5, 0.5), CUBE_VERTS, CUBE_FACES, shifted(5, 0, 0))
+        assert oracle.contains(point, CUBE_VERTS, BOX_FACES) is expected
+    assert oracle.contains((5.5, 0.5, 0.5), CUBE_VERTS, BOX_FACES, shifted(5, 0, 0))
 
 
 def test_winding_counts_how_often():
     inner = [tuple(0.25 + 0.5 * x for x in v) for v in CUBE_VERTS]
-    second = [tuple(i + 8 for i in face) for face in CUBE_FACES]
-    assert oracle.winding_number((0.5, 0.5, 0.5), CUBE_VERTS + inner, CUBE_FACES + second) == 2
+    second = [tuple(i + 8 for i in face) for face in BOX_FACES]
+    assert oracle.winding_number((0.5, 0.5, 0.5), CUBE_VERTS + inner, BOX_FACES + second) == 2
     hollow = [face[::-1] for face in second]
-    assert oracle.winding_number((0.5, 0.5, 0.5), CUBE_VERTS + inner, CUBE_FACES + hollow) == 0
-    assert oracle.winding_number((0.1, 0.5, 0.5), CUBE_VERTS + inner, CUBE_FACES + hollow) == 1
-    assert not oracle.contains((0.5, 0.5, 0.5), CUBE_VERTS + inner, CUBE_FACES + hollow)
+    assert oracle.winding_number((0.5, 0.5, 0.5), CUBE_VERTS + inner, BOX_FACES + hollow) == 0
+    assert oracle.winding_number((0.1, 0.5, 0.5), CUBE_VERTS + inner, BOX_FACES + hollow) == 1
+    assert not oracle.contains((0.5, 0.5, 0.5), CUBE_VERTS + inner, BOX_FACES + hollow)
 
 
 def test_one_part_of_two_inside_is_contact():
     small = [tuple(0.25 + 0.5 * x for x in v) for v in CUBE_VERTS]
     away = [tuple(x + 9 for x in v) for v in CUBE_VERTS]
-    both = CUBE_FACES + [tuple(i + 8 for i in face) for face in CUBE_FACES]
-    assert oracle.solid_distance_sq(CUBE_VERTS, CUBE_FACES, away + small, both) == 0
-    assert oracle.solid_distance_sq(CUBE_VERTS, CUBE_FACES, away + small, both, closed_a=False) > 0
+    both = BOX_FACES + [tuple(i + 8 for i in face) for face in BOX_FACES]
+    assert oracle.solid_distance_sq(CUBE_VERTS, BOX_FACES, away + small, both) == 0
+    assert oracle.solid_distance_sq(CUBE_VERTS, BOX_FACES, away + small, both, closed_a=False) > 0
 
 
 def test_an_open_surface_holds_nothing():
     with pytest.raises(ValueError, match="not closed"):
         # without its face x = 1 the rays through the gap count differently
-        oracle.contains((0.9, 0.5, 0.5), CUBE_VERTS, CUBE_FACES[:1] + CUBE_FACES[2:])
+        oracle.contains((0.9, 0.5, 0.5), CUBE_VERTS, BOX_FACES[:1] + BOX_FACES[2:])
 
 
 def test_root():

@@ -13,9 +13,8 @@ import numpy as np
 
 from clearance import Polyhedron, distance, polygon_distance
 from tests.reached import reached
-from tests.strategies import BOX_FACES, FAMILIES, rotations
+from tests.strategies import BOX_FACES, CUBE_CORNERS, FAMILIES, rotations
 
-CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 NAMES = (
     "anywhere",
     "needles",
@@ -51,7 +50,7 @@ def body_pairs(n):
         pose[:3, :3] = rotations(random, 1)[0]
         pose[:3, 3] = random.normal(size=3) * (2.0, 0.7, 0.01)[i % 3]
         scale = (0.5, 0.5, 0.1)[i % 3]
-        yield Polyhedron(CORNERS, BOX_FACES), Polyhedron(CORNERS * scale, BOX_FACES), pose
+        yield Polyhedron(CUBE_CORNERS, BOX_FACES), Polyhedron(CUBE_CORNERS * scale, BOX_FACES), pose
 
 
 def body_answers(n):

@@ -18,9 +18,8 @@ from clearance.kernels.search.scratch import new_scratch
 from tests import oracle
 from tests.examples import examples, first_fast
 from tests.made_cases import torus
-from tests.strategies import BOX_FACES, QUARTER_TURNS, poses, rotations
+from tests.strategies import BOX_FACES, CUBE_CORNERS, QUARTER_TURNS, poses, rotations
 
-CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 OCTAHEDRON = np.array(
     [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
 )
@@ -35,7 +34,7 @@ def is_contained(a, b, pose_a, pose_b, table):
 
 
 def cube(half):
-    return Polyhedron(CORNERS * half, BOX_FACES)
+    return Polyhedron(CUBE_CORNERS * half, BOX_FACES)
 
 
 def at(x, y, z):
@@ -57,7 +56,7 @@ def test_rays_through_corners_and_edges_are_no_special_case(turn):
         pose = at(*(turn @ (x, y, z)))
         near = distance(outer, tiny, pose_b=pose)
         sq = oracle.solid_distance_sq(
-            4.0 * OCTAHEDRON, OCTAHEDRON_FACES, CORNERS * 0.125, BOX_FACES, None, pose
+            4.0 * OCTAHEDRON, OCTAHEDRON_FACES, CUBE_CORNERS * 0.125, BOX_FACES, None, pose
         )
         assert near.contact == (sq == 0)
         assert (near.face_a == -1) == (max(x, y, z) < 5.0)
@@ -69,14 +68,16 @@ def test_one_ulp_inside_or_outside(ulps):
     inner = np.nextafter(1.0 - 0.25, np.inf * ulps) if ulps < 0 else np.nextafter(1.25, np.inf)
     pose = at(inner, 0.0, 0.0)
     near = distance(cube(1.0), cube(0.25), pose_b=pose)
-    sq = oracle.solid_distance_sq(CORNERS, BOX_FACES, CORNERS * 0.25, BOX_FACES, None, pose)
+    sq = oracle.solid_distance_sq(
+        CUBE_CORNERS, BOX_FACES, CUBE_CORNERS * 0.25, BOX_FACES, None, pose
+    )
     assert near.contact == (sq == 0) == (ulps < 0)
 
 
 @given(poses(reach=1.0), poses(reach=1.0), st.sampled_from([1.0, 0.25, 0.01]), st.booleans())
 @examples(60)
 def test_any_poses_like_the_oracle(pose_a, pose_b, size, swapped):
-    shapes = [(CORNERS, BOX_FACES), (CORNERS * 0.3 * size, BOX_FACES)]
+    shapes = [(CUBE_CORNERS, BOX_FACES), (CUBE_CORNERS * 0.3 * size, BOX_FACES)]
     if swapped:
         shapes.reverse()
     near = distance(*(Polyhedron(*s) for s in shapes), pose_a=pose_a, pose_b=pose_b)
@@ -87,7 +88,7 @@ def test_any_poses_like_the_oracle(pose_a, pose_b, size, swapped):
 
 def test_the_inside_of_a_cavity_is_outside():
     hollow = Polyhedron(
-        np.concatenate([2.0 * CORNERS, CORNERS]),
+        np.concatenate([2.0 * CUBE_CORNERS, CUBE_CORNERS]),
         [*BOX_FACES, *[tuple(8 + i for i in reversed(face)) for face in BOX_FACES]],
     )
     assert not distance(hollow, cube(0.5), pose_b=at(0.25, 0.0, 0.125)).contact
@@ -95,7 +96,7 @@ def test_the_inside_of_a_cavity_is_outside():
 
 
 def test_an_open_box_holds_nothing():
-    assert not distance(Polyhedron(CORNERS, BOX_FACES[1:]), cube(0.5)).contact
+    assert not distance(Polyhedron(CUBE_CORNERS, BOX_FACES[1:]), cube(0.5)).contact
 
 
 def test_both_poses_are_taken_exactly():
@@ -110,7 +111,7 @@ def test_both_poses_are_taken_exactly():
         pose_b[:3, 3] = pose_a[:3, :3] @ face_point + pose_a[:3, 3]
         if (
             oracle.polyhedron_distance_sq(
-                CORNERS, BOX_FACES, CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
+                CUBE_CORNERS, BOX_FACES, CUBE_CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
             )
             == 0
         ):
@@ -118,7 +119,7 @@ def test_both_poses_are_taken_exactly():
         found = call(is_contained, a, b, pose_a, pose_b)
         corner = [pose_b[:3, 3].tolist()[k] for k in range(3)]
         assert found == oracle.contains(
-            [Fraction(x) + Fraction(2) ** -60 for x in corner], CORNERS, BOX_FACES, pose_a
+            [Fraction(x) + Fraction(2) ** -60 for x in corner], CUBE_CORNERS, BOX_FACES, pose_a
         )
 
 

@@ -10,7 +10,7 @@ from clearance import Polyhedron, distance
 from clearance.geometry.shapes import sphere
 from tests import oracle
 from tests.examples import examples
-from tests.strategies import BOX_FACES, QUARTER_TURNS, boxes, poses, rotations
+from tests.strategies import BOX_FACES, CUBE_CORNERS, QUARTER_TURNS, boxes, poses, rotations
 
 
 def pose_of(random, reach):
@@ -57,27 +57,29 @@ def test_touching_is_decided_by_one_bit(gap, turn):
 def test_rotations_off_by_what_is_allowed_are_taken_as_given():
     """The truth is the distance of R v + t with the R given, orthonormal or not."""
     random = np.random.default_rng(11)
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-    cube = Polyhedron(corners, BOX_FACES)
+    cube = Polyhedron(CUBE_CORNERS, BOX_FACES)
     for _ in range(20):
         pose_a, pose_b = pose_of(random, 0.0), pose_of(random, 3.0)
         pose_a[:3, :3] *= 1.0 + 2e-7
         pose_b[:3, :3] += random.uniform(-1e-7, 1e-7, (3, 3))
         near = distance(cube, cube, pose_a=pose_a, pose_b=pose_b)
-        sq = oracle.solid_distance_sq(corners, BOX_FACES, corners, BOX_FACES, pose_a, pose_b)
+        sq = oracle.solid_distance_sq(
+            CUBE_CORNERS, BOX_FACES, CUBE_CORNERS, BOX_FACES, pose_a, pose_b
+        )
         assert near.contact == (sq == 0)
         assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
 
 
 def test_far_from_the_origin_nothing_is_lost():
     random = np.random.default_rng(12)
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-    cube = Polyhedron(corners, BOX_FACES)
+    cube = Polyhedron(CUBE_CORNERS, BOX_FACES)
     for _ in range(20):
         pose_a, pose_b = pose_of(random, 1e8), pose_of(random, 2.0)
         pose_b[:3, 3] += pose_a[:3, 3]
         near = distance(cube, cube, pose_a=pose_a, pose_b=pose_b)
-        sq = oracle.solid_distance_sq(corners, BOX_FACES, corners, BOX_FACES, pose_a, pose_b)
+        sq = oracle.solid_distance_sq(
+            CUBE_CORNERS, BOX_FACES, CUBE_CORNERS, BOX_FACES, pose_a, pose_b
+        )
         assert near.contact == (sq == 0)
         assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq)
 

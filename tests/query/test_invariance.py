@@ -170,7 +170,6 @@ def test_batches_give_the_same_bytes_from_several_threads(n_threads):
 
 
 def _some_boxes(random):
-    from tests.strategies import BOX_FACES
+    from tests.strategies import BOX_FACES, CUBE_CORNERS
 
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-    return [(corners * 10.0 ** random.uniform(-2, 0, 3), BOX_FACES) for _ in range(8)]
+    return [(CUBE_CORNERS * 10.0 ** random.uniform(-2, 0, 3), BOX_FACES) for _ in range(8)]

@@ -10,7 +10,7 @@ from clearance.kernels.polytope.body import HEAD, INVERSE_WIDTH, ROW
 from clearance.kernels.polytope.exits import cell_of, is_in_ball
 from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
-from clearance.query.cutting import Cutting, Task, cut_down
+from clearance.query.cutting import Cutting, CuttingTask, cut_down
 from clearance.query.intersection import intersect
 from tests.reached import reached
 
@@ -74,7 +74,7 @@ def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
 @pytest.mark.parametrize("sparse", [0.0, 2.0])
 def test_closing_up_rows_changes_no_bit(sparse, monkeypatch):
     bodies = cluster(12, 200, 1)
-    task = Task.about(bodies, common_point(bodies).point)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
     usual = cut_down(task).moments()
     monkeypatch.setattr(cutting, "SPARSE", sparse)
     cut = cut_down(task)
@@ -85,7 +85,7 @@ def test_closing_up_rows_changes_no_bit(sparse, monkeypatch):
 @pytest.mark.parametrize(("m", "n", "spread"), [(2, 2000, 0.4), (2, 1500, 0.05), (5, 300, 0.3)])
 def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
     bodies = cluster(m, n, 3, spread)
-    task = Task.about(bodies, common_point(bodies).point)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
     cut = cut_down(task)
     by_faces = cut.moments()
     by_edges = cutting.by_edges(cut.block, cut.state, cut.table)
@@ -94,7 +94,7 @@ def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
 
 def test_a_body_of_its_own_faces_only_has_its_volume():
     body = cluster(2, 50, 0)[0]
-    cut = Cutting(Task.about([body], body.centroid), 0)
+    cut = Cutting(CuttingTask.about([body], body.centroid), 0)
     moments = cut.moments()
     assert moments[0] == pytest.approx(body.volume, rel=1e-15)
     assert moments[1:4] / moments[0] == pytest.approx(np.zeros(3), abs=1e-15)
@@ -103,7 +103,7 @@ def test_a_body_of_its_own_faces_only_has_its_volume():
 def test_bodies_are_taken_by_the_room_they_leave():
     big = Polytope(np.array(np.meshgrid([-3, 3], [-3, 3], [-3, 3])).reshape(3, 8).T * 1.0)
     bodies = [big, *cluster(3, 30, 2, 0.3)]
-    task = Task.about(bodies, common_point(bodies).point)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
     rooms = [body.offsets_about(task.origin).min() for body in bodies]
     assert task.order[-1] == 0 and sorted(task.order) == [0, 1, 2, 3]
     assert task.order[0] == min(range(4), key=lambda k: bodies[k].volume)
@@ -130,7 +130,7 @@ def test_a_moved_body_is_the_hull_of_the_moved_corners():
 @pytest.mark.parametrize("room", [cutting.ROOM, 1])
 def test_bodies_cut_in_one_call_are_cut_as_one_by_one(room, monkeypatch):
     bodies = cluster(12, 100, 4, spread=0.05)
-    task = Task.about(bodies, common_point(bodies).point)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
     one_by_one = Cutting(task, task.order[0])
     assert all(one_by_one.by(k) for k in task.order[1:])
     monkeypatch.setattr(

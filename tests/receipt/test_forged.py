@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -45,11 +44,6 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     saved(loose(), folder)
     return folder
-
-
-@pytest.fixture
-def folder(report, tmp_path):
-    return Path(shutil.copytree(report, tmp_path / "report"))
 
 
 def proven(folder, case=None) -> bool:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from clearance.receipt.case_data import case_data
-from clearance.receipt.proof.joint_paths import Pieces
+from clearance.receipt.proof.joint_paths import IntervalPieces
 from clearance.receipt.proof.motion_data import NONE
 from clearance.receipt.proof.views import links_above
 from tests import cells
@@ -21,7 +21,7 @@ def test_no_point_is_farther_off_than_its_bounds_say(seed):
         views = stage.views
         for interval in range(stretch.n_intervals):
             low = rng.integers(0, 4) / 4
-            piece = Pieces(np.array([interval]), np.array([low]), np.array([low + 0.25]))
+            piece = IntervalPieces(np.array([interval]), np.array([low]), np.array([low + 0.25]))
             wanted = np.ones(len(views.frames), dtype=bool)
             at = stage._placed(piece, wanted)
             for view, body in enumerate(views.bodies):

@@ -7,7 +7,7 @@ import pytest
 
 from clearance.errors import BadSyntax, ClearanceError
 from clearance.receipt.proof.proving import SIZES, BadEvidence
-from clearance.receipt.receipt_file import MAGIC, GoneThrough, Receipt, receipt_bytes, receipt_of
+from clearance.receipt.receipt_file import MAGIC, EvidenceReader, Receipt, receipt_bytes, receipt_of
 
 
 def small():
@@ -62,7 +62,7 @@ def test_heads_that_say_what_cannot_be_are_refused(head):
 
 
 def test_evidence_that_ends_too_soon_is_none():
-    evidence = GoneThrough(small())
+    evidence = EvidenceReader(small())
     assert list(evidence.deeds(3)) == [4, 1, 2] and not evidence.at_end
     with pytest.raises(BadEvidence):
         evidence.deeds(2)

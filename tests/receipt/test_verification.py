@@ -1,7 +1,6 @@
 """Receipts of whole runs: proven again, and nothing that is changed goes unseen."""
 
 import json
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -26,11 +25,6 @@ def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     saved(turning_arm(), folder)
     return folder
-
-
-@pytest.fixture
-def folder(report, tmp_path):
-    return Path(shutil.copytree(report, tmp_path / "report"))
 
 
 def verified(folder, case=None):

@@ -8,6 +8,7 @@ import pytest
 import clearance as cl
 from tests import oracle
 from tests.made_cases import faces_of
+from tests.oracle.kinematics import rotation_of
 from tests.oracle.rationals import exact_points
 from tests.simulate import floating
 from tests.simulate.floating import two_floating
@@ -19,17 +20,6 @@ def of_length_one(q):
     """Fractions on a grid of 2^-150."""
     length = oracle.root(sum(x * x for x in q))
     return [Fraction(round(x / length * GRID), GRID) for x in q]
-
-
-def exact_rotation(q):
-    """(3, 3) of a quaternion of any length, in fractions."""
-    x, y, z, w = q
-    s = 2 / (x * x + y * y + z * z + w * w)
-    return [
-        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
-        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
-        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
-    ]
 
 
 def bisected(before, after, share):
@@ -49,7 +39,7 @@ def bisected(before, after, share):
 
 def placed_exactly(points, base, before, after, share):
     """Corners, at a share of the way from one row (x, y, z, quaternion) to the next, in fractions."""
-    rows = exact_rotation(bisected(before[3:], after[3:], share))
+    rows = rotation_of(bisected(before[3:], after[3:], share))
     there = [
         Fraction(base[i]) + Fraction(before[i]) + share * (Fraction(after[i]) - Fraction(before[i]))
         for i in range(3)

@@ -44,12 +44,17 @@ def ball_through_wall():
     )
 
 
-@pytest.mark.parametrize("need", ["steps", "limit"])
-def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts(need):
+def whole_run(need):
+    """The ball's case and motion, what is measured of all its steps, and those in contact."""
     case = ball_through_wall()
     motion = kinematic_motion(case.robots[0])
     whole = measured(case, motion, np.arange(motion.n_steps), need)
-    touching = np.flatnonzero(whole.clearance == 0.0)
+    return case, motion, whole, np.flatnonzero(whole.clearance == 0.0)
+
+
+@pytest.mark.parametrize("need", ["steps", "limit"])
+def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts(need):
+    case, motion, whole, touching = whole_run(need)
     assert len(touching) > 20
     for start in (0, 1, 10, 21):
         part = measured(case, motion, touching[start:], need)
@@ -60,10 +65,7 @@ def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts(need):
 
 @pytest.mark.parametrize("need", ["steps", "pairs"])
 def test_every_row_before_in_and_after_contact_is_that_of_its_step_alone(need):
-    case = ball_through_wall()
-    motion = kinematic_motion(case.robots[0])
-    whole = measured(case, motion, np.arange(motion.n_steps), need)
-    touching = np.flatnonzero(whole.clearance == 0.0)
+    case, motion, whole, touching = whole_run(need)
     assert 5 < touching[0] < touching[-1] < motion.n_steps - 5 and len(touching) > 20
     for step in range(motion.n_steps):
         alone = measured(case, motion, np.array([step]), need)

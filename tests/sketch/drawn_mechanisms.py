@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from clearance.sketch import Sketch
-from tests.sketch.drawn_outlines import ring
+from tests.sketch.drawn_outlines import of_kind, ring
 
 
 def four_bar():
@@ -20,7 +20,7 @@ def four_bar():
 def four_bar_over_fixed_ends():
     """The two fixed ends have their distance already."""
     s = four_bar()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.distance(p[0], p[3], 5.0, name="base")
     return s
 
@@ -44,7 +44,7 @@ def scissors():
 
 def scissors_whose_feet_are_level_as_well_as_the_tops():
     s = scissors()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.horizontal(p[0], p[3]), s.horizontal(p[2], p[1], name="tops")
     return s
 
@@ -72,7 +72,7 @@ def peaucellier():
 def peaucellier_on_its_line():
     """That it runs on that line is a theorem, which no count sees."""
     s = peaucellier()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     rail = s.line((0.5 * (3.7**2 - 1.9**2), 0.0), (0.5 * (3.7**2 - 1.9**2), 1.0))
     s.fix(rail), s.incident(p[5], rail, name="on_the_line")
     return s
@@ -124,7 +124,7 @@ def planets():
 def planets_of_equal_radius():
     """Their radius follows from sun and ring."""
     s = planets()
-    c = [e for e in s.entities.values() if e.what == "circle"][2:]
+    c = of_kind(s, "circle")[2:]
     s.equal_radius(c[0], c[1], name="alike")
     return s
 
@@ -142,7 +142,7 @@ def incircle():
 
 def incircle_too_large():
     s = incircle()
-    c = next(e for e in s.entities.values() if e.what == "circle")
+    c = of_kind(s, "circle")[0]
     s.radius(c, 1.5, name="too_large")
     return s
 
@@ -164,8 +164,8 @@ def hexagon():
 
 def hexagon_whose_sides_are_the_radius():
     s = hexagon()
-    p = [e for e in s.entities.values() if e.what == "point"]
-    c = next(e for e in s.entities.values() if e.what == "circle")
+    p = of_kind(s, "point")
+    c = of_kind(s, "circle")[0]
     s.radius(c, 2.0), s.distance(p[1], p[2], 2.0, name="side")
     return s
 
@@ -186,7 +186,7 @@ def coincident_chain():
 
 def coincident_twice():
     s = coincident_chain()
-    e = [k for k in s.entities.values() if k.what == "segment"]
+    e = of_kind(s, "segment")
     s.coincident(e[1].ends[0], e[0].ends[1], name="again")
     return s
 
@@ -237,7 +237,7 @@ def truss():
 
 def truss_with_a_level_top():
     s = truss()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     for k in range(7):
         s.horizontal(p[9 + k], p[10 + k])
     return s

@@ -12,6 +12,11 @@ def ring(s, places, closed=True):
     return p, [s.segment(*e) for e in (ends if closed else ends[:-1])]
 
 
+def of_kind(s, what):
+    """The entities of a kind, in the order in which they were drawn."""
+    return [e for e in s.entities.values() if e.what == what]
+
+
 def rectangle(w=None, h=None, square=3, rough=0.1):
     s = Sketch()
     p, e = ring(s, [(0, 0), (4 + rough, rough), (4, 2.5), (-rough, 2.4)])
@@ -68,7 +73,7 @@ def rectangle_level():
 
 def rectangle_level_and_square():
     s = rectangle_level()
-    lines = [e for e in s.entities.values() if e.what == "segment"]
+    lines = of_kind(s, "segment")
     s.perpendicular(lines[0], lines[1], name="again")
     return s
 
@@ -100,7 +105,7 @@ def rhombus():
 
 def rhombus_whose_diagonals_cross_at_right_angles():
     s = rhombus()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.perpendicular(s.line(p[0], p[2]), s.line(p[1], p[3]), name="crossing")
     return s
 
@@ -245,21 +250,21 @@ def bracket():
 
 def bracket_with_all_six_lengths():
     s = bracket()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.distance(p[2], p[3], 4.0, name="inner"), s.distance(p[3], p[4], 3.0, name="upper")
     return s
 
 
 def bracket_with_a_wrong_inner_length():
     s = bracket()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.distance(p[2], p[3], 3.7, name="inner")
     return s
 
 
 def bracket_with_holes():
     s = bracket()
-    e = [k for k in s.entities.values() if k.what == "segment"]
+    e = of_kind(s, "segment")
     a, b = s.circle((4, 0.5), 0.2), s.circle((0.5, 3), 0.25)
     s.equal_radius(a, b), s.diameter(a, 0.5)
     s.distance(a.center, e[0], 0.5), s.distance(a.center, e[1], 1.0)
@@ -285,7 +290,7 @@ def mirrored_half():
 
 def mirrored_half_measured_on_both_sides():
     s = mirrored_half()
-    p = [e for e in s.entities.values() if e.what == "point"]
+    p = of_kind(s, "point")
     s.distance(p[4], p[5], math.sqrt(2.0), name="other_side")
     return s
 

@@ -11,7 +11,7 @@ from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
 from clearance.kernels.budget.errors import BodyRows
-from clearance.kernels.budget.pieces import Pieces, bound_of_pieces
+from clearance.kernels.budget.pieces import TrianglePairs, bound_of_pieces
 from clearance.kernels.budget.reach import along_at_rest, reach_of_point
 from clearance.kernels.budget.tilted import tilted
 from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
@@ -57,7 +57,7 @@ class LeftScratch(NamedTuple):
     found: BodyRows
     kept: AlongRows
     own: AlongRows
-    pieces: Pieces
+    pieces: TrianglePairs
     scratch: Scratch
 
 
@@ -67,8 +67,8 @@ class SearchState(NamedTuple):
     Attributes:
         views: along the direction of the nearest points, tilted by the errors. u: that direction (frame of a).
         nearest: [m] the distance of those points.
-        lower_bound, target, least: [m] as in `Left` and `Aim`. enough: [m] at a step, what is `REFINED` below what
-            occurs.
+        lower_bound, target, least: [m] as in `PairLeft` and `Aim`. enough: [m] at a step, what is `REFINED`
+            below what occurs.
     """
 
     views: Views
@@ -94,7 +94,7 @@ class _Faces(NamedTuple):
     apart: float
 
 
-class _Taken(NamedTuple):
+class _ErrorEffect(NamedTuple):
     """The nearest points of two faces: [m] what errors take there, and what motion takes beside them."""
 
     taken: float
@@ -163,9 +163,9 @@ def taken_at(lent, p, q, direction, m, bodies, aim):
     u, v, q = direction.u, direction.v, move_back(m, q)
     whole = moved_of_point(p, 0, u, work.own) + moved_of_point(q, 1, v, work.own)
     if aim.is_step:
-        return _Taken(whole, 0.0)
+        return _ErrorEffect(whole, 0.0)
     taken = along_at_rest(work.found, bodies.a, u, p) + along_at_rest(work.found, bodies.b, v, q)
-    return _Taken(taken, max(0.0, whole - taken))
+    return _ErrorEffect(taken, max(0.0, whole - taken))
 
 
 @inline(force=True)

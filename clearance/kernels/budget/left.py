@@ -71,7 +71,7 @@ class Start(NamedTuple):
     are_known: bool
 
 
-class Left(NamedTuple):
+class PairLeft(NamedTuple):
     """What is left of a pair.
 
     Attributes:
@@ -333,8 +333,9 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         search = looked.search
         if looked.gives_up:
             forget(scene.state.fronts, pair)
-            return Left(-math.inf, search.least - thin, -math.inf, False, search.u)
+            return PairLeft(-math.inf, search.least - thin, -math.inf, False, search.u)
     if moved < math.inf:
         keep(scene.state.fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
     lower_bound = min(lower_bound, search.lower_bound)
-    return Left(lower_bound - thin, search.least - thin, search.enough - thin, True, search.u)
+    lower_bound, least, enough = lower_bound - thin, search.least - thin, search.enough - thin
+    return PairLeft(lower_bound, least, enough, True, search.u)

@@ -38,7 +38,7 @@ TRIED = 6
 """Times that the nearest points of two triangles are brought nearer by turns; any direction is sound."""
 
 
-class Pieces(NamedTuple):
+class TrianglePairs(NamedTuple):
     """Pairs of triangles that wait: (n, 18) corners, of a in its frame, then of b in its own [m]; bounds (n,)."""
 
     corners: np.ndarray
@@ -83,7 +83,7 @@ class _Triangle(NamedTuple):
 @shared
 def new_pieces():
     """Room for pieces."""
-    return Pieces(np.empty((MOST_WAITING, 18)), np.empty(MOST_WAITING))
+    return TrianglePairs(np.empty((MOST_WAITING, 18)), np.empty(MOST_WAITING))
 
 
 @inline
@@ -182,7 +182,7 @@ def _middle(a, b):
     return Vec3(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
 
 
-class _Seen(NamedTuple):
+class _PieceBounds(NamedTuple):
     """A pair of pieces: [m] a lower bound, what occurs at near points, and how unlike each is moved."""
 
     bound: float
@@ -200,7 +200,9 @@ def _look(lent, p, q, m, bodies, slack):
     d = sub(y, x)
     length = math.sqrt(dot(d, d))
     if not length > 0.0:
-        return _Seen(-math.inf, -math.inf, math.sqrt(_longest_sq(p)), math.sqrt(_longest_sq(q)))
+        return _PieceBounds(
+            -math.inf, -math.inf, math.sqrt(_longest_sq(p)), math.sqrt(_longest_sq(q))
+        )
     u = Vec3(d.x / length, d.y / length, d.z / length)
     v = turn_back(m, u)
     look_along(found, body_a, 0, u, own)
@@ -219,7 +221,7 @@ def _look(lent, p, q, m, bodies, slack):
     bound = near + dot(u, m.t) - far - slack
     at_rest = along_at_rest(found, body_a, u, x)
     at_rest += along_at_rest(found, body_b, v, turn_back(m, sub(y, m.t)))
-    return _Seen(bound, length - at_rest, unlike_a, most - fewest)
+    return _PieceBounds(bound, length - at_rest, unlike_a, most - fewest)
 
 
 @inline

@@ -194,7 +194,7 @@ def budget_moments(scene, asked, rows, tally, table):
         rows.share[place] = -1.0
 
 
-class _Over(NamedTuple):
+class _PairInterval(NamedTuple):
     """A pair over an interval: [m] bound and least seen, and where that was, or -1."""
 
     lower_bound: float
@@ -236,7 +236,7 @@ def _hold(lent, step, pair, look, least, asked, tally):
             waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
             waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
             n_waiting += 2
-    return _Over(lower_bound, least, share), n_parts > 1, look
+    return _PairInterval(lower_bound, least, share), n_parts > 1, look
 
 
 @kernel(reference_counts=False)

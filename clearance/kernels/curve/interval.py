@@ -51,6 +51,13 @@ def _box(points, n, column):
     return low, high
 
 
+@inline
+def _put_boxes(out, row, points, n):
+    """Writes the range of x and that of y."""
+    out[row, 0], out[row, 1] = _box(points, n, 0)
+    out[row, 2], out[row, 3] = _box(points, n, 1)
+
+
 @kernel(reference_counts=False)
 def enclose(pieces, derivatives, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
@@ -65,20 +72,16 @@ def enclose(pieces, derivatives, i, t0, t1, points, out):
     for k in range(n + 1):
         points[k, 0] /= points[k, 2]
         points[k, 1] /= points[k, 2]
-    out[0, 0], out[0, 1] = _box(points, n, 0)
-    out[0, 2], out[0, 3] = _box(points, n, 1)
+    _put_boxes(out, 0, points, n)
     n = cut(one, i, t0, t1, points)
     d0, d1 = _box(points, n, 2)
-    out[1, 0], out[1, 1] = _box(points, n, 0)
-    out[1, 2], out[1, 3] = _box(points, n, 1)
+    _put_boxes(out, 1, points, n)
     n = cut(two, i, t0, t1, points)
     e0, e1 = _box(points, n, 2)
-    out[2, 0], out[2, 1] = _box(points, n, 0)
-    out[2, 2], out[2, 3] = _box(points, n, 1)
+    _put_boxes(out, 2, points, n)
     n = cut(three, i, t0, t1, points)
     f0, f1 = _box(points, n, 2)
-    out[3, 0], out[3, 1] = _box(points, n, 0)
-    out[3, 2], out[3, 3] = _box(points, n, 1)
+    _put_boxes(out, 3, points, n)
     if not rational:
         return
     for c in range(0, 4, 2):

@@ -202,6 +202,8 @@ def _foot_where_rising(pieces, i, x, y, a, b, slope, points, n):
     """Where the distance is least on [a, b], if its square's slope rises there: (t, distance, lower bound).
 
     `slope` is what `rising_slope` gives for `points`, the control points about (x, y).
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
     """
     at_a, at_b, _, _, rise = slope
     t = a if at_a >= 0.0 else b
@@ -292,6 +294,8 @@ def _newton_defect_sq(here, x, y, t, a, b, rise, points, n):
 
     With H = half the square's slope times w^3, by the parameter of `points`: H rises by at least `rise`, so
     its root is |H| / rise away, and on the way the half square falls by at most |H| / min w^3 a unit.
+
+    Many arguments: a point, an interval and its control points, which stand together nowhere else.
     """
     slope = (here.x - x) * here.dx + (here.y - y) * here.dy
     if (t == a and slope >= 0.0) or (t == b and slope <= 0.0):

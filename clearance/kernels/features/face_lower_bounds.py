@@ -152,7 +152,10 @@ def _beyond(surface, face, corner, third, w):
 
 @inline(one_caller=True)
 def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
-    """True if all of a bent fan but the triangle with middle corner `k` is farther than `least` for certain."""
+    """True if all of a bent fan but the triangle with middle corner `k` is farther than `least` for certain.
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
     n = rounded(pair.w)
     length = math.sqrt(dot(n, n))
     w = turn_back(frames.a, Vec3(n.x / length, n.y / length, n.z / length))

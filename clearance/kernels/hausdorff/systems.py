@@ -95,6 +95,9 @@ def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
     """Whether system (13) for two cells has no root in T, or one, which is then found; and what that cost.
 
     The same cell twice stands for two feet in it.
+
+    Many arguments: settings, state and arrays of a search are tuples already; numba would pass one of all array by
+    array.
     """
     one, two = table.cells[level, k], table.cells[level, m]
     boxes_one, boxes_two, gap = table.boxes[k], table.boxes[m], boxes.room[4]
@@ -157,6 +160,9 @@ def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
     """Finds all candidates on one part of A; see the module.
 
     What the budget, the depth or the room leaves open is bounded.
+
+    Many arguments: settings, state and arrays of a search are tuples already; numba would pass one of all array by
+    array.
     """
     fits_first = begin_table(b_parts, systems.ends_b, table)
     stack = np.empty((2 * DEEPEST + 4, 3))  # of intervals: t0, t1, level

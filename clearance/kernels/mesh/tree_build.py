@@ -172,7 +172,7 @@ def _full_groups(order, first, last, cut, middles):
     return first + WIDTH * min(max(groups, 1), most)
 
 
-class Room(NamedTuple):
+class BuildScratch(NamedTuple):
     """Where boxes are fitted, and the up to four parts of the node in hand: first and last, area, box."""
 
     v: np.ndarray
@@ -190,7 +190,7 @@ class Room(NamedTuple):
 
 @inline
 def _room():
-    return Room(
+    return BuildScratch(
         np.empty((3, 3)), np.empty((3, 3)), np.eye(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
         np.empty((WIDTH, 2), dtype=np.int64), np.empty(WIDTH), np.empty((WIDTH, 3)),
         np.empty((WIDTH, 12), dtype=np.float32),

@@ -185,7 +185,10 @@ def _face_lower_bound(a, b, faces, direction, moving):
 
 @inline(one_caller=True)
 def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, table):
-    """([m] a lower bound on the faces' distance over the interval, what is seen then, True if they touch)."""
+    """([m] a lower bound on the faces' distance over the interval, what is seen then, True if they touch).
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
     face_a, face_b, m = faces.a, faces.b, faces.frames.m
     slack, margin, views = moving.slack, margin_of(moving.slack), search.views
     target = search.least - search.allowed

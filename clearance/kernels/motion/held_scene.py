@@ -89,7 +89,10 @@ def nearest_at_positions(held, positions, rows, tally, table):
 
 @kernel(reference_counts=False)
 def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally, table):
-    """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step."""
+    """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step.
+
+    Many arguments: scene, state, rows and addresses are tuples already; numba passes a tuple array by array.
+    """
     look = at[LOOK]
     at[LOOK] = 0
     bodies = state.due.bodies[: all_due(world.frames, state.due)]

@@ -149,7 +149,10 @@ def nearest_by_boxes(surface, world, bodies, state, winner):
 
 @inline(one_caller=True)
 def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
-    """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on."""
+    """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on.
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
     placed, answers, witness_faces = state.placed, state.answers, state.witness_faces
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_by(world, pair, placed)
@@ -236,7 +239,10 @@ class RowNearest(NamedTuple):
 
 @inline(one_caller=True)
 def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table):
-    """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer."""
+    """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer.
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
     gap = state.within[pair] if goal.each else best.gap
     lower_bound = carried(world, pair, state)
     if lower_bound <= 0.0 or gap < np.inf:
@@ -346,7 +352,10 @@ def sweep(surface, world, path, goal, first, found, tally, table):
 
 @kernel(reference_counts=False)
 def _sweep(surface, world, path, goal, effort, state, found, tally, table):
-    """`sweep`, with the arrays of its state. The rows after a first look are overwritten."""
+    """`sweep`, with the arrays of its state. The rows after a first look are overwritten.
+
+    Many arguments: those of `sweep`, and what it has made; called once a sweep.
+    """
     positions, steps, rows = path.positions, path.steps, found.rows
     within, lower_bounds, order = state.within, state.lower_bounds, state.order
     placed, due = state.placed, state.due

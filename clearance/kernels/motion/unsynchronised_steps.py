@@ -142,7 +142,11 @@ def _note(row, step_b, pair, hit, found):
 
 @inline
 def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
-    """Measures a pair at a step of either clock, if it can be the least there; True if it is."""
+    """Measures a pair at a step of either clock, if it can be the least there; True if it is.
+
+    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
+    array.
+    """
     row_a, row_b = _rows_of(clocks, pair, row, step_b)
     within = found.clearance[row] * NOT_LESS
     bound = bound_between(clocks.tree_a.boxes, row_a, clocks.tree_b.boxes, row_b, within)
@@ -257,7 +261,11 @@ def _look_at_pair(surface, asked, seen_enough, state, tally, table):
 
 @inline
 def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
-    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time)."""
+    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
+
+    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
+    array.
+    """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns
     leaf_a, leaf_b = middle_leaf(tree_a, r.node_a), middle_leaf(tree_b, r.node_b)

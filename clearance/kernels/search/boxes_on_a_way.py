@@ -52,7 +52,7 @@ class Ways(NamedTuple):
     turns: np.ndarray
 
 
-class Beside(NamedTuple):
+class BoxGap(NamedTuple):
     """Two boxes at a step, each seen from the other.
 
     Attributes:
@@ -98,7 +98,7 @@ def _beside(bounds_a, bounds_b, frame_a, frame_b):
         size(frame_a.t) + size(frame_b.t) + size(middle_a) + size(middle_b)
         + size(half_a) + size(half_b)
     )  # fmt: skip
-    return Beside(
+    return BoxGap(
         _apart(relative(frame_a, frame_b), middle_a, half_a, middle_b, half_b) - room,
         _apart(relative(frame_b, frame_a), middle_b, half_b, middle_a, half_a) - room,
         np.sqrt(gap_sq(move(frame_a, middle_a), move(frame_b, middle_b))) + room,

@@ -95,6 +95,8 @@ def _wait_for_near(a, b, near, nodes, marks, bounds, slack, scratch, n_waiting):
 
     Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. What is turned
     away stays too. Returns (waiting, marks that stay, the least bound of those, that of those beyond the cut).
+
+    Many arguments: it is inlined into the inner loop, whose locals they are.
     """
     within = marks & marks_within(bounds, near.cut)
     far = least_of(bounds, marks ^ within)

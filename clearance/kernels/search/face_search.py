@@ -120,7 +120,10 @@ def settle_waiting(table, bodies, search, limits, least, scratch):
 
 @inline(force=True)
 def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
-    """Lets a face pair wait to be refined; where too many wait, those are refined that can still win."""
+    """Lets a face pair wait to be refined; where too many wait, those are refined that can still win.
+
+    Many arguments: it is inlined into the inner loop, whose locals they are.
+    """
     near, progress = search.near, search.progress
     margin = margin_of(limits.slack)
     n_waiting, refined = progress.n_waiting, progress.refined

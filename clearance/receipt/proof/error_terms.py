@@ -34,7 +34,7 @@ class Error(NamedTuple):
 
 
 class Terms(NamedTuple):
-    """The errors of all views in all pieces, (..., k) each as in `placing.Placed`; a view without some has zeros.
+    """The errors of all views in all pieces, (..., k) each as in `placing.PlacedViews`; zero where it has none.
 
     Attributes:
         bars: (t, 3, k) size times axis of turns. pins: (t, 3, k) [m] where. slides: (s, 3, k) [m].
@@ -85,7 +85,7 @@ def _rows(errors, n_pieces: int, of) -> np.ndarray:
     return found
 
 
-class Along(NamedTuple):
+class DirectionTerms(NamedTuple):
     """f of rows along their directions U, in the frames of their bodies: a point p there has
 
         f = constant + sum |turns . p + offsets| + sum angles |u x p - centres|.
@@ -101,9 +101,9 @@ class Along(NamedTuple):
     angles: np.ndarray
     constant: np.ndarray
 
-    def of(self, rows: np.ndarray) -> Along:
+    def of(self, rows: np.ndarray) -> DirectionTerms:
         """Some of the rows."""
-        return Along(*(np.take(part, rows, axis=-1) for part in self))
+        return DirectionTerms(*(np.take(part, rows, axis=-1) for part in self))
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """(c, r) f at points (3, c, r)."""
@@ -128,7 +128,7 @@ class Along(NamedTuple):
 
 def along_of(
     terms: Terms, turn: np.ndarray, at: np.ndarray, place: np.ndarray, u: np.ndarray
-) -> Along:
+) -> DirectionTerms:
     """f of rows (r,) at places of `terms`, whose bodies are turned by (3, 3, r) and at (3, r), along u (3, r)."""
     if not terms.turns[place].any():
         names = "bars", "pins", "centres", "angles"
@@ -140,7 +140,7 @@ def along_of(
     apart = centres - at[None]
     length = np.sqrt((u * u).sum(axis=0))
     constant = np.abs((slides * u[None]).sum(axis=1)).sum(axis=0) + length * terms.shift[place]
-    return Along(
+    return DirectionTerms(
         _turned_back(turn, across),
         offsets,
         own_u,

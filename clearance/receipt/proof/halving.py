@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.receipt.proof.error_terms import OUTWARD, Along
+from clearance.receipt.proof.error_terms import OUTWARD, DirectionTerms
 from clearance.receipt.proof.motion_data import Shape
 
 FEW = 8
@@ -129,7 +129,7 @@ def farthest(
     bodies: np.ndarray,
     nodes: np.ndarray,
     along: np.ndarray,
-    errors: Along | None = None,
+    errors: DirectionTerms | None = None,
 ) -> np.ndarray:
     """(t, k) the greatest `along . p` of the points of some nodes, or of boxes that hold them; of balls of their
     middles.
@@ -157,7 +157,7 @@ def farthest(
     return found
 
 
-def _over_boxes(errors: Along, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def _over_boxes(errors: DirectionTerms, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """(8, k) no point of the boxes (3, 8, k) has more added to it."""
     half = 0.5 * (high - low)
     radius = np.sqrt((half * half).sum(axis=0)) * OUTWARD

@@ -23,7 +23,7 @@ HALF_TURN = 2.0**-20
 """[-] Nearer than this to a right angle between quaternions, which way round is shorter is left open."""
 
 
-class Pieces(NamedTuple):
+class IntervalPieces(NamedTuple):
     """Pieces of intervals: which (k,), and from where to where, 0 to 1, (k,) each; multiples of a power of 1/2."""
 
     interval: np.ndarray
@@ -47,7 +47,9 @@ class Arcs(NamedTuple):
     angle: np.ndarray
 
 
-def joint_positions(stretch: Stretch, arcs: dict[int, Arcs], pieces: Pieces) -> JointPositions:
+def joint_positions(
+    stretch: Stretch, arcs: dict[int, Arcs], pieces: IntervalPieces
+) -> JointPositions:
     """Those of the joints above all links in some pieces."""
     joints, i = stretch.joints, pieces.interval
     moved = np.where((joints.columns != NONE) & (joints.kinds != BALL))[0]

@@ -57,7 +57,7 @@ class Joints(NamedTuple):
     offsets: np.ndarray
 
 
-class Held(NamedTuple):
+class MountFrames(NamedTuple):
     """Frames that may be off and that something stands on, beside those of its own joint.
 
     Attributes:
@@ -82,8 +82,8 @@ class Errors(NamedTuple):
     joint: np.ndarray
     xyz: np.ndarray
     angle: np.ndarray
-    of_links: Held
-    of_bodies: Held
+    of_links: MountFrames
+    of_bodies: MountFrames
 
 
 class Stretch(NamedTuple):

@@ -18,13 +18,18 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.receipt.proof.error_terms import Error, Terms, terms_of
-from clearance.receipt.proof.joint_paths import Arcs, JointPositions, Pieces, joint_positions
+from clearance.receipt.proof.joint_paths import (
+    Arcs,
+    IntervalPieces,
+    JointPositions,
+    joint_positions,
+)
 from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Stretch
 from clearance.receipt.proof.views import Views
-from clearance.receipt.proof.ways import Balls, Frames, across_rows, bounds_of, steps_of
+from clearance.receipt.proof.ways import Balls, PieceFrames, across_rows, bounds_of, steps_of
 
 
-class Placed(NamedTuple):
+class PlacedViews(NamedTuple):
     """Views in the middle of pieces, (..., k) each: place view * pieces + piece is that of a view in a piece.
 
     Attributes:
@@ -49,15 +54,15 @@ def placed(
     arcs: dict[int, Arcs],
     views: Views,
     balls: Balls,
-    pieces: Pieces,
+    pieces: IntervalPieces,
     wanted: np.ndarray,
-) -> Placed:
+) -> PlacedViews:
     """The views in some pieces; those that are not `wanted` (views,) are left undefined."""
     joints = joint_positions(stretch, arcs, pieces)
     frames = _frames(stretch, arcs, views, pieces, joints, views.frames_of(np.flatnonzero(wanted)))
     n = len(pieces.interval)
     shape = len(views.frames) * n
-    found = Placed(
+    found = PlacedViews(
         np.zeros((3, 3, shape)), np.zeros((3, shape)), np.zeros((3, shape)), np.zeros((3, shape)),
         np.zeros(shape), np.zeros(shape), np.zeros(shape),
     )  # fmt: skip
@@ -86,12 +91,12 @@ def _frames(
     stretch: Stretch,
     arcs: dict[int, Arcs],
     views: Views,
-    pieces: Pieces,
+    pieces: IntervalPieces,
     positions: JointPositions,
     wanted: np.ndarray,
-) -> Frames:
+) -> PieceFrames:
     n, shape = len(pieces.interval), (len(views.above), len(pieces.interval), 3)
-    found = Frames(np.empty((*shape, 3)), *(np.zeros(shape) for _ in range(5)))
+    found = PieceFrames(np.empty((*shape, 3)), *(np.zeros(shape) for _ in range(5)))
     still = np.broadcast_to(np.eye(3), (n, 3, 3)), *(np.zeros((n, 3)) for _ in range(3))
     joints = stretch.joints
     for frame in np.flatnonzero(wanted).tolist():

@@ -13,14 +13,14 @@ import numpy as np
 
 from clearance.receipt.proof.error_terms import OUTWARD, along_of
 from clearance.receipt.proof.halving import Halves, farthest
-from clearance.receipt.proof.placing import Placed
+from clearance.receipt.proof.placing import PlacedViews
 
 BYTE, SHORT, LONG = 2**7 - 1, 2**15 - 1, 2**31 - 1
 """The greatest coordinate of directions of one, two and four bytes a coordinate."""
 
 
 class Sides(NamedTuple):
-    """One body of each row: (k,) its place in `Placed`, and its body and node in `Halves`."""
+    """One body of each row: (k,) its place in `PlacedViews`, and its body and node in `Halves`."""
 
     place: np.ndarray
     body: np.ndarray
@@ -41,7 +41,7 @@ def directions(codes: np.ndarray, most: int) -> np.ndarray:
     return np.stack([ux, uy, z]).astype(np.float64)
 
 
-def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
+def along(halves: Halves, placed: PlacedViews, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
     """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf where u is 0."""
     length = np.sqrt(dot(u, u))
     apart = -(_greatest(halves, placed, b, -u) + _greatest(halves, placed, a, u)).max(axis=0)
@@ -51,7 +51,7 @@ def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> 
     return np.where(length > 0.0, bound, -np.inf) - _lost(halves, placed, a, b, placed.rest)
 
 
-def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.ndarray:
+def _greatest(halves: Halves, placed: PlacedViews, side: Sides, u: np.ndarray) -> np.ndarray:
     """(2, k) the greatest u . (x + t v(x)), and what errors do to it, over each part, for t = -1 and 1."""
     turn, at, omega, v0 = (np.take(part, side.place, axis=-1) for part in placed[:4])
     bent, shift = across(u, omega), dot(u, v0)
@@ -62,7 +62,7 @@ def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.
     return farthest(halves, side.body, side.node, own, errors) + moved
 
 
-def as_balls(halves: Halves, placed: Placed, a: Sides, b: Sides) -> np.ndarray:
+def as_balls(halves: Halves, placed: PlacedViews, a: Sides, b: Sides) -> np.ndarray:
     """(k,) [m] no row's parts come nearer than this, by balls that hold them and as far as they can move."""
     between = centre_of(halves, placed, b) - centre_of(halves, placed, a)
     radii = np.zeros(len(a.place))
@@ -74,7 +74,7 @@ def as_balls(halves: Halves, placed: Placed, a: Sides, b: Sides) -> np.ndarray:
     return apart - _lost(halves, placed, a, b, placed.way)
 
 
-def centre_of(halves: Halves, placed: Placed, side: Sides) -> np.ndarray:
+def centre_of(halves: Halves, placed: PlacedViews, side: Sides) -> np.ndarray:
     """(3, k) [m] the middles of the parts' boxes."""
     node = halves.first_node[side.body] + side.node
     middle = 0.5 * (halves.low[:, node] + halves.high[:, node])
@@ -83,7 +83,7 @@ def centre_of(halves: Halves, placed: Placed, side: Sides) -> np.ndarray:
     return turned + placed.at[:, side.place]
 
 
-def _lost(halves: Halves, placed: Placed, a: Sides, b: Sides, moves: np.ndarray) -> np.ndarray:
+def _lost(halves: Halves, placed: PlacedViews, a: Sides, b: Sides, moves: np.ndarray) -> np.ndarray:
     """(k,) [m] what balls about corners, rounding, and `moves` of both sides take away."""
     own = halves.radius[a.body] + halves.radius[b.body]
     sides = sum(moves[s.place] + placed.rounding[s.place] for s in (a, b))

@@ -11,9 +11,9 @@ import numpy as np
 
 from clearance.receipt.proof.halving import Halves
 from clearance.receipt.proof.items import Items
-from clearance.receipt.proof.joint_paths import Pieces, arcs_of
+from clearance.receipt.proof.joint_paths import IntervalPieces, arcs_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT, Shape, Stretch
-from clearance.receipt.proof.placing import Placed, placed
+from clearance.receipt.proof.placing import PlacedViews, placed
 from clearance.receipt.proof.separation import Sides, along, as_balls, centre_of, dot
 from clearance.receipt.proof.views import views_of
 from clearance.receipt.proof.ways import Balls
@@ -46,7 +46,7 @@ class Stage:
         far = claimed == NOT_CLAIMED
         self.wanted = np.where(far, -np.inf, claimed * UNIT + stretch.padding[:, None])
         n = stretch.n_intervals
-        whole = Pieces(np.arange(n), np.zeros(n), np.ones(n))
+        whole = IntervalPieces(np.arange(n), np.zeros(n), np.ones(n))
         self.whole = self._placed(whole, np.ones(len(self.views.frames), dtype=bool))
         self.apart = np.zeros(self.wanted.shape, dtype=bool)
 
@@ -64,7 +64,7 @@ class Stage:
             )
         return found
 
-    def middles(self, items: Items) -> Iterator[tuple[np.ndarray, Placed, Sides, Sides]]:
+    def middles(self, items: Items) -> Iterator[tuple[np.ndarray, PlacedViews, Sides, Sides]]:
         """Some of the items in the middle of their time: rows, where all is then, and both sides."""
         middle = items._replace(start=items.start + items.span // 2, span=np.ones_like(items.span))
         everything = np.arange(len(items.pair))
@@ -91,7 +91,7 @@ class Stage:
         self.apart[whole.pair[item], interval] = True
 
     def _sides(
-        self, items: Items, own: np.ndarray, pieces: np.ndarray, at: Placed
+        self, items: Items, own: np.ndarray, pieces: np.ndarray, at: PlacedViews
     ) -> tuple[Sides, Sides]:
         pair = items.pair[own]
         views, bodies = self.views.pairs[pair], self.stretch.pairs[pair]
@@ -121,7 +121,7 @@ class Stage:
             chosen = order[first:last]
             here = parts.of(slice(start, start + PIECES))
             size = 0.5**here.depth
-            pieces = Pieces(here.start, here.part * size, (here.part + 1) * size)
+            pieces = IntervalPieces(here.start, here.part * size, (here.part + 1) * size)
             seen = self._seen(own.pair[chosen])
             yield rows[chosen], which[chosen] - start, self._placed(pieces, seen)
 
@@ -130,7 +130,7 @@ class Stage:
         seen[self.views.pairs[pairs]] = True
         return seen
 
-    def _placed(self, pieces: Pieces, wanted: np.ndarray) -> Placed:
+    def _placed(self, pieces: IntervalPieces, wanted: np.ndarray) -> PlacedViews:
         return placed(self.stretch, self.arcs, self.views, self.balls, pieces, wanted)
 
 

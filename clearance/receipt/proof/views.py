@@ -42,19 +42,24 @@ class Views(NamedTuple):
 
 def views_of(stretch: Stretch) -> Views:
     """The views of all pairs of a stretch."""
-    return _Looking(stretch).views()
+    return _ViewCollector(stretch).views()
 
 
 def links_above(joints: Joints, link: int) -> list[int]:
     """A link and all above it, nearest first."""
+    return chain_above(joints.parents, link)
+
+
+def chain_above(above: np.ndarray, one: int) -> list[int]:
+    """One and all above it, nearest first; `above` (n,) is `NONE` at the top."""
     found = []
-    while link != NONE:
-        found.append(link)
-        link = int(joints.parents[link])
+    while one != NONE:
+        found.append(one)
+        one = int(above[one])
     return found
 
 
-class _Looking:
+class _ViewCollector:
     """Gathers frames and views, each once."""
 
     def __init__(self, stretch: Stretch) -> None:

@@ -12,14 +12,14 @@ import numpy as np
 
 from clearance.receipt.proof.error_terms import OUTWARD, Error
 from clearance.receipt.proof.joint_paths import JointPositions
-from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, Held, Stretch
-from clearance.receipt.proof.views import Views
+from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, MountFrames, Stretch
+from clearance.receipt.proof.views import Views, chain_above
 
 LEVEL = 2.0**-44
 """[-] Of how far a body reaches, for each link on the way to it: more than poses and sums are rounded by."""
 
 
-class Frames(NamedTuple):
+class PieceFrames(NamedTuple):
     """Frames in the middle of pieces, (frames, pieces, ...) each; axis and joint are those it hangs by."""
 
     turn: np.ndarray
@@ -66,11 +66,11 @@ class Step(NamedTuple):
 
 
 def steps_of(
-    view: int, stretch: Stretch, views: Views, positions: JointPositions, frames: Frames
+    view: int, stretch: Stretch, views: Views, positions: JointPositions, frames: PieceFrames
 ) -> list[Step]:
     """From a body to the base; what stands in the world on frames that may be off has one step."""
     found = []
-    chain = _chain(views, int(views.frames[view]))
+    chain = chain_above(views.above, int(views.frames[view]))
     joints = stretch.joints
     for frame in chain:
         link = int(views.links[frame])
@@ -100,7 +100,7 @@ def _errors_at(
     kind: int,
     frame: int,
     positions: JointPositions,
-    frames: Frames,
+    frames: PieceFrames,
 ) -> list[Error]:
     """What may be off where a link hangs."""
     if errors is None:
@@ -113,7 +113,7 @@ def _errors_at(
     return found + _held(errors.of_links, link, frames.turn[frame], frames.at[frame])
 
 
-def _held(held: Held, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
+def _held(held: MountFrames, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
     """Those of the frames that a link or body stands on."""
     found = []
     for i in np.flatnonzero(held.which == which).tolist():
@@ -133,7 +133,7 @@ def bounds_of(
     views: Views,
     balls: Balls,
     steps: Sequence[Step],
-    frames: Frames,
+    frames: PieceFrames,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(pieces,) each, way, rest and rounding of one view."""
     middle, radius = balls.middle[view], float(balls.radius[view])
@@ -183,15 +183,6 @@ def _motions(step: Step) -> list[Motion]:
     joint = Motion(step.axis, None if step.kind == SLIDING else step.at, most, step.bend)
     rest = [e for e in step.errors if e.axis is None]
     return [joint, *(Motion(e.axis, e.origin, still + e.size, still) for e in rest)]
-
-
-def _chain(views: Views, frame: int) -> list[int]:
-    """A frame and all above it."""
-    found = []
-    while frame != NONE:
-        found.append(frame)
-        frame = int(views.above[frame])
-    return found
 
 
 def _off(pose: np.ndarray) -> float:

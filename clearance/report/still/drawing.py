@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.report.still.camera import Camera
 from clearance.report.still.edges import normals, seen_edges
-from clearance.report.still.raster import NONE, Screen, Window, covered, drawn_segments
+from clearance.report.still.raster import NONE, PixelWindow, Screen, covered, drawn_segments
 from clearance.report.still.scene import Still, StillBody, rgb
 
 PAPER, EDGE, GRID, REGION, WAY_OUT = map(rgb, (0xFAFBFC, 0x1C2530, 0xDDE2E6, 0xE01010, 0x4A0008))
@@ -113,7 +113,7 @@ def _draw_clear(
     place[seen] += body.opacity * (colours[found.owner[seen]] - place[seen])
 
 
-def _in(whole: np.ndarray, window: Window) -> np.ndarray:
+def _in(whole: np.ndarray, window: PixelWindow) -> np.ndarray:
     return whole[window.top : window.bottom, window.left : window.right]
 
 

@@ -1,6 +1,6 @@
 """A PNG of the worst moment: what the page shows first, the gap from near in a corner, and what it is in words.
 
-A door of matplotlib, which sets the words. Not for: drawing bodies (`drawing`), nor the motion (`page`).
+An adapter of matplotlib, which sets the words. Not for: drawing bodies (`drawing`), nor the motion (`page`).
 """
 
 from __future__ import annotations

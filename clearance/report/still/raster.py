@@ -23,7 +23,7 @@ SMALL = 4096
 NONE = -1
 
 
-class Window(NamedTuple):
+class PixelWindow(NamedTuple):
     """A part of the picture: columns and rows from the first to before the last."""
 
     left: int
@@ -32,10 +32,10 @@ class Window(NamedTuple):
     bottom: int
 
 
-class Covered(NamedTuple):
+class Coverage(NamedTuple):
     """What is nearest in a window: (rows, columns) depth, and which triangle, or `NONE`."""
 
-    window: Window
+    window: PixelWindow
     depth: np.ndarray
     owner: np.ndarray
 
@@ -65,7 +65,7 @@ class Screen(NamedTuple):
         return self.flat(seen)[0] if seen[0, 2] > self.camera.near else None
 
 
-def covered(screen: Screen, corners: np.ndarray) -> Covered:
+def covered(screen: Screen, corners: np.ndarray) -> Coverage:
     """What triangles (n, 3, 3) [m] in the world cover."""
     seen = screen.camera.seen_from_it(corners.reshape(-1, 3)).reshape(-1, 3, 3)
     ahead, owners = triangles_ahead(seen, screen.camera.near)
@@ -75,7 +75,7 @@ def covered(screen: Screen, corners: np.ndarray) -> Covered:
     flat, owners, boxes = flat[kept], owners[kept], boxes[kept]
     window = _around(boxes)
     shape = (window.bottom - window.top, window.right - window.left)
-    found = Covered(window, np.zeros(shape), np.full(shape, NONE, dtype=np.int64))
+    found = Coverage(window, np.zeros(shape), np.full(shape, NONE, dtype=np.int64))
     planes = _planes_of(flat)
     n_pixels = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     small = np.flatnonzero(n_pixels <= SMALL)
@@ -97,13 +97,13 @@ def _boxes(flat: np.ndarray, screen: Screen) -> np.ndarray:
     return np.hstack([np.clip(low, 0.0, most), np.clip(high, 0.0, most)]).astype(np.int64)
 
 
-def _around(boxes: np.ndarray) -> Window:
+def _around(boxes: np.ndarray) -> PixelWindow:
     if not len(boxes):
-        return Window(0, 0, 0, 0)
-    return Window(*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
+        return PixelWindow(0, 0, 0, 0)
+    return PixelWindow(*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
 
 
-class Planes(NamedTuple):
+class ScreenPlanes(NamedTuple):
     """Of triangles on the screen: what grows evenly over them, from their first corner.
 
     Attributes:
@@ -116,9 +116,9 @@ class Planes(NamedTuple):
     slopes: np.ndarray
     depth: np.ndarray
 
-    def of(self, rows: np.ndarray | int) -> Planes:
+    def of(self, rows: np.ndarray | int) -> ScreenPlanes:
         """Those of some triangles."""
-        return Planes(self.corner[rows], self.slopes[rows], self.depth[rows])
+        return ScreenPlanes(self.corner[rows], self.slopes[rows], self.depth[rows])
 
     def at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Whether points are in the triangles, and the depth there."""
@@ -129,7 +129,7 @@ class Planes(NamedTuple):
         return (second >= 0.0) & (third >= 0.0) & (second + third <= 1.0), self.depth + depth
 
 
-def _planes_of(flat: np.ndarray) -> Planes:
+def _planes_of(flat: np.ndarray) -> ScreenPlanes:
     """The planes of triangles (n, 3, 3); of one without area nothing is inside."""
     a, b, c = flat[:, 0], flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
     area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
@@ -137,10 +137,12 @@ def _planes_of(flat: np.ndarray) -> Planes:
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = turned / area[:, None, None]
     depth = b[:, 2, None] * shares[:, 0] + c[:, 2, None] * shares[:, 1]
-    return Planes(a[:, :2], np.concatenate([shares, depth[:, None]], axis=1), a[:, 2])
+    return ScreenPlanes(a[:, :2], np.concatenate([shares, depth[:, None]], axis=1), a[:, 2])
 
 
-def _cover_small(found: Covered, planes: Planes, owners: np.ndarray, boxes: np.ndarray) -> None:
+def _cover_small(
+    found: Coverage, planes: ScreenPlanes, owners: np.ndarray, boxes: np.ndarray
+) -> None:
     """Takes in triangles, all pixels of their boxes at once."""
     wide, high = boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1]
     of = np.repeat(np.arange(len(boxes)), wide * high)
@@ -155,7 +157,7 @@ def _cover_small(found: Covered, planes: Planes, owners: np.ndarray, boxes: np.n
     found.owner[y[wins], x[wins]] = owners[of[wins]]
 
 
-def _cover_large(found: Covered, planes: Planes, owner: int, box: np.ndarray) -> None:
+def _cover_large(found: Coverage, planes: ScreenPlanes, owner: int, box: np.ndarray) -> None:
     """Takes in one triangle."""
     left, top, right, bottom = box.tolist()
     x, y = np.arange(left, right)[None] + 0.5, np.arange(top, bottom)[:, None] + 0.5

@@ -23,7 +23,7 @@ from clearance.kernels.sketch.graph.peel import ClosedSteps, peel
 from clearance.kernels.sketch.graph.plan_steps import IN_BODY, IN_CORE, PEELED, PlanSteps
 
 
-class Plan(NamedTuple):
+class ConstructionPlan(NamedTuple):
     """A construction plan: its steps, and what is known of the graph.
 
     Attributes:
@@ -170,7 +170,9 @@ def _finished(draft, core, circuits):
         room.block_vertex[: room.block_vertex_start[n_blocks]], room.block_row_start[: n_blocks + 1],
         room.block_row[: room.block_row_start[n_blocks]],
     )  # fmt: skip
-    return Plan(steps, core.body_of, core.held, circuits.dependent, circuits.start, circuits.rows)
+    return ConstructionPlan(
+        steps, core.body_of, core.held, circuits.dependent, circuits.start, circuits.rows
+    )
 
 
 @kernel
@@ -186,13 +188,15 @@ def peeled_plan(kind, ends, absolute, theta_of):
         peeled.vertex[::-1].copy(), peeled.partner[::-1].copy(), peeled.edges[::-1].copy(),
         np.full(size, -1, np.int64), np.zeros(size, np.int64), zero, none, zero, none,
     )  # fmt: skip
-    plan = Plan(steps, np.full(n, -1, np.int64), np.zeros(0, np.uint8), none, zero, none)
+    plan = ConstructionPlan(
+        steps, np.full(n, -1, np.int64), np.zeros(0, np.uint8), none, zero, none
+    )
     return plan, not live.any()
 
 
 @kernel
 def make_plan(kind, ends, absolute, theta_of):
-    """The plan of a constraint graph; see `Plan`.
+    """The plan of a constraint graph; see `ConstructionPlan`.
 
     Dependent edges are left out; where there are some, what hung on them is peeled as well.
     """

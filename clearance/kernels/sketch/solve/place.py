@@ -111,7 +111,11 @@ def _line_condition(s, row, own, x):
 @inline
 def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
     """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the
-    sketch's."""
+    sketch's.
+
+    Many arguments: the numbers of a line, where they stand, and the vectors of the sketch, which stand together
+    nowhere else.
+    """
     theta = math.atan2(-nx, ny)
     theta += 2.0 * math.pi * round((sketch[own] - theta) / (2.0 * math.pi))
     assign(s, turn, theta - s.shift[own], x)

@@ -13,15 +13,15 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.profile.swept_cover import Raster
 from clearance.kernels.profile.swept_cut import add_cut_cover, cut_hulls, cut_segments
-from clearance.profiles.chords import Knots
+from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 from clearance.profiles.silhouette import CHUNK, Hulls
 
 
-class Section:
-    """One body cut by a plane, at its knots."""
+class CrossSection:
+    """The cross-section of one body, at its knots."""
 
-    def __init__(self, label: str, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
+    def __init__(self, label: str, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
         self.shape, self.knots = shape.outward(), knots
         self._axes = np.vstack([plane.axes, np.cross(*plane.axes)])
         self._origin = plane.origin
