@@ -46,7 +46,8 @@ class ComparedFinding:
     """A finding of one or both of two runs.
 
     Attributes:
-        before, now: None where that run has none. why: why the two are not comparable.
+        before, now: None where that run has none.
+        why: why the two are not comparable, or what let the rule be broken before and does not now.
     """
 
     change: Change
@@ -155,6 +156,9 @@ class _Comparing:
         else:
             why = why or _no_number(before, now)
             change = self._change(before, now)
+            excuse = "" if why else _lost_excuse(before, now)
+            if excuse:
+                return ComparedFinding(Change.WORSE, before, now, excuse)
         return ComparedFinding(Change.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> Change:
@@ -229,6 +233,13 @@ def _no_number(before: Finding, now: Finding) -> str:
     if before.status == now.status == Status.CLEAR or before.text == now.text:
         return ""
     return "how far it is broken is told in words, and they differ"
+
+
+def _lost_excuse(before: Finding, now: Finding) -> str:
+    """What let a rule be broken before and does not now, in a few words; empty for nothing."""
+    if before.fails or not now.fails or not before.broken:
+        return ""
+    return f"{'waived' if before.waived else 'accepted'} before, and is not now"
 
 
 def _by_key(found: FindingList) -> dict[_Key, Finding]:
