@@ -70,6 +70,10 @@ class BatchAnswer:
         found = Counter(basis for basis in self.cases["basis"].to_pylist() if basis)
         return {basis: found[basis] for basis in ("motion", "samples") if found[basis]}
 
+    def n_with(self, column: str) -> int:
+        """How many cases have lines in a column: `waived` or `warnings`."""
+        return sum(bool(lines) for lines in self.cases[column].to_pylist())
+
     @property
     def least(self) -> dict[str, Any] | None:
         """The row of the first case of least clearance; None where none is measured."""
