@@ -7,7 +7,6 @@ whomever its cases were measured. Not for: the files that are written of it (`ou
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
@@ -19,6 +18,7 @@ from clearance.batch.run import Outcome
 from clearance.batch.shared_waivers import stale_waivers, stale_waivers_of_cells
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
+from clearance.late_dataclass import dataclass
 
 FAULT = 70
 """The exit code where this program is at fault, as of `clearance check`."""
@@ -69,6 +69,10 @@ class BatchAnswer:
         """What verdicts rest on: how many on the motion, how many on the samples only."""
         found = Counter(basis for basis in self.cases["basis"].to_pylist() if basis)
         return {basis: found[basis] for basis in ("motion", "samples") if found[basis]}
+
+    def n_with(self, column: str) -> int:
+        """How many cases have lines in a column: `waived` or `warnings`."""
+        return sum(bool(lines) for lines in self.cases[column].to_pylist())
 
     @property
     def least(self) -> dict[str, Any] | None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import glob
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path, PurePath
 
@@ -17,6 +17,7 @@ from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import Options
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
 from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_manifest
 from clearance.load.tolerance_file import tolerance_digest

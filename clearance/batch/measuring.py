@@ -9,7 +9,7 @@ import json
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import ClearanceError, Incomplete
+from clearance.late_dataclass import dataclass
 from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.manifest_schema import Reading
 from clearance.load.mesh_paths import variables_of

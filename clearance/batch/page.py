@@ -72,9 +72,11 @@ def _counted(answer: BatchAnswer) -> str:
 
 def _basis(answer: BatchAnswer) -> str:
     told = {"motion": "proven for the motion", "samples": "looked at the samples only"}
-    return (
-        ", ".join(f"{n:,} {told[basis]}" for basis, n in answer.bases.items()) or "nothing measured"
-    )
+    parts = [f"{n:,} {told[basis]}" for basis, n in answer.bases.items()] or ["nothing measured"]
+    for column, what in (("waived", "with waivers"), ("warnings", "with warnings")):
+        if n := answer.n_with(column):
+            parts.append(f"{n:,} {what}")
+    return ", ".join(parts)
 
 
 def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:

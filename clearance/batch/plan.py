@@ -9,13 +9,14 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.store import Store
+from clearance.late_dataclass import dataclass
 from clearance.load.bag_files import files_of
 from clearance.load.input_files import InputFiles
 from clearance.load.lookups import leads_to

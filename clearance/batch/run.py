@@ -8,7 +8,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Protocol
 
 from clearance.batch.engine import Engine, Queue
@@ -17,6 +17,7 @@ from clearance.batch.item import Item
 from clearance.batch.measuring import Fault, ItemResult, TaskResult
 from clearance.batch.plan import planned
 from clearance.batch.store import Store
+from clearance.late_dataclass import dataclass
 from clearance.world.waiver import Waiver
 
 

@@ -12,7 +12,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 import pyarrow as pa
@@ -22,6 +22,7 @@ from clearance.batch.file_hashes import FileStamp
 from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
+from clearance.late_dataclass import dataclass
 from clearance.report.folder import write_file
 
 MARK = "store.json"

@@ -7,7 +7,7 @@ errors do to a distance (`kernels.budget`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from clearance.errors import BadInput
 from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
+from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import IN_WORLD, Layout
 from clearance.world.body import Obstacle
 from clearance.world.budget import (

@@ -6,7 +6,6 @@ Not for: what the sections come to together (`answer`), and what is only expecte
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +25,7 @@ from clearance.kernels.budget.sweep import (
 )
 from clearance.kernels.budget.sweep_state import BudgetScene, new_state
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.measure import Measurement

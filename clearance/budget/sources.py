@@ -7,7 +7,7 @@ error, times their factor, so that what it does to both bodies is added up with 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from clearance.budget.errors_of import (
     surface_of,
 )
 from clearance.kernels.motion.kinematics import NO_PARENT, TURNING
+from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
     Budget,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 
 from clearance.batch.answer import answer_of
 from clearance.batch.engine import Engine, LocalEngine
@@ -20,6 +19,7 @@ from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
+from clearance.late_dataclass import dataclass
 from clearance.progress import COMPILING
 from clearance.simulate.parts import usable_cores
 from clearance.world.waiver import Waiver

@@ -54,6 +54,8 @@ def print_status(status: BatchStatus) -> None:
 
 def _headline(answer: BatchAnswer) -> str:
     worst = answer.status.upper() if answer.counts else "NOTHING"
+    if answer.exit_code == 0 and answer.n_with("waived"):
+        worst += " with waivers"
     return f"{worst}  {count(answer.cases.num_rows, 'case')}: {_counted(answer)}"
 
 
@@ -64,6 +66,12 @@ def _counted(answer: BatchAnswer) -> str:
 def _print_facts(answer: BatchAnswer) -> None:
     for text in answer.stale:
         click.echo(shown(f"  waivers     {text}"))
+    if n_waived := answer.n_with("waived"):
+        click.echo(
+            f"  waived      {count(n_waived, 'case')} with what breaks a rule and a waiver lets pass"
+        )
+    if n_warned := answer.n_with("warnings"):
+        click.echo(f"  warnings    {count(n_warned, 'case')}, see the page")
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
     least = answer.least

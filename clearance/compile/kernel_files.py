@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.compile.machine import numba_version, processor
-from clearance.import_closure import digest_of, import_closure
 from clearance.kept_files import cache_root, read_kept, warn_not_kept, write_kept
+from clearance.source_digests import closure_digest
 
 if TYPE_CHECKING:
     from clearance.compile.machine_code import Entry
@@ -80,7 +80,7 @@ def files_of(function: Callable) -> KernelFiles:
 
 @functools.cache
 def _source_key(path: Path) -> str:
-    return digest_of(import_closure([path, *_ROOM]))[:16]
+    return closure_digest([path, *_ROOM])[:16]
 
 
 _ROOM = sorted(Path(__file__).parent.glob("*.py"))

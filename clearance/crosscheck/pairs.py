@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
+from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
@@ -21,6 +20,7 @@ from clearance.findings.compared_doubts import (
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measured_as import MeasuredAs
+from clearance.late_dataclass import dataclass
 from clearance.simulate.status import Status
 
 TOLERANCE = 1e-4
@@ -46,7 +46,8 @@ class ComparedFinding:
     """A finding of one or both of two runs.
 
     Attributes:
-        before, now: None where that run has none. why: why the two are not comparable.
+        before, now: None where that run has none.
+        why: why the two are not comparable, or what let the rule be broken before and does not now.
     """
 
     change: FindingChange
@@ -155,6 +156,9 @@ class _Comparer:
         else:
             why = why or _no_number(before, now)
             change = self._change(before, now)
+            excuse = "" if why else _lost_excuse(before, now)
+            if excuse:
+                return ComparedFinding(FindingChange.WORSE, before, now, excuse)
         return ComparedFinding(FindingChange.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> FindingChange:
@@ -229,6 +233,13 @@ def _no_number(before: Finding, now: Finding) -> str:
     if before.status == now.status == Status.CLEAR or before.text == now.text:
         return ""
     return "how far it is broken is told in words, and they differ"
+
+
+def _lost_excuse(before: Finding, now: Finding) -> str:
+    """What let a rule be broken before and does not now, in a few words; empty for nothing."""
+    if before.fails or not now.fails or not before.broken:
+        return ""
+    return f"{'waived' if before.waived else 'accepted'} before, and is not now"
 
 
 def _by_key(found: FindingList) -> dict[_Key, Finding]:

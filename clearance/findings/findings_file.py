@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 from clearance.errors import BadInput, BadSyntax
@@ -15,6 +15,7 @@ from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.measured_as import MeasuredAs, measured_as
 from clearance.findings.of_record import findings_of, why_incomplete
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
 from clearance.load.schema_errors import place
 from clearance.simulate.record import Record

@@ -6,7 +6,7 @@ Not for: how it is written down (`written`), told (`told`) or shown (`page`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Unpack
@@ -39,6 +39,7 @@ from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolKeep, ToolMove
 from clearance.gains.unreachable import least_base, least_offset, least_shift
+from clearance.late_dataclass import dataclass
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case, PlacedRobot
 

@@ -6,11 +6,12 @@ Not for: what is too far to reach (`unreachable`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
+from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record

@@ -10,7 +10,7 @@ Not for: changes of place (`search`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from clearance.errors import BadInput
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gains.unreachable import INWARD, motion_radii, way_needed
+from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record

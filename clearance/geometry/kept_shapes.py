@@ -20,8 +20,8 @@ from typing import TypeVar
 import numpy as np
 
 from clearance.compile.machine import numba_version, processor
-from clearance.import_closure import digest_of, import_closure
 from clearance.kept_files import cache_root, read_kept, write_kept
+from clearance.source_digests import closure_digest
 
 FOLDER = "shapes"
 
@@ -70,7 +70,7 @@ def kept(name: str, kind: str, source: str, make: Callable[[], T]) -> T:
 @functools.cache
 def _program(source: str) -> str:
     versions = (np.__version__, numba_version(), platform.python_version(), processor())
-    return f"{digest_of(import_closure([Path(source)]))} {versions}"
+    return f"{closure_digest([Path(source)])} {versions}"
 
 
 def _make_room() -> None:

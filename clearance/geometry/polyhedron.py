@@ -9,7 +9,6 @@ for: reading files (room `load`) and making shapes (`shapes`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from typing import Any, Self
@@ -34,6 +33,7 @@ from clearance.geometry.topology import (
     inside_out_components,
     topology_of,
 )
+from clearance.late_dataclass import dataclass
 
 
 def require_polyhedron(given: object, where: str) -> Polyhedron:

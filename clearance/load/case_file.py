@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 from clearance.errors import BadInput, at
+from clearance.late_dataclass import dataclass
 from clearance.load import schema
 from clearance.load.allow import body_names, require_allowances, require_patterns
 from clearance.load.case_schema import ScenePlace, read_schema

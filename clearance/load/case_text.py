@@ -6,10 +6,11 @@ Not for: what stands in it (`new_case`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from clearance.errors import shown
+from clearance.late_dataclass import dataclass
 from clearance.load.yaml_text import flow
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, at
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
 from clearance.load.pcd_file import read_pcd
 from clearance.load.ply_file import read_ply_points

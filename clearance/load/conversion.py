@@ -6,11 +6,11 @@ Not for: which of these a file is (`file_kind`), nor writing the files.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import NamedTuple
 
 from clearance.errors import BadInput, at
+from clearance.late_dataclass import dataclass
 from clearance.load import pose_writer, trajectory_writer
 from clearance.load.file_kind import FileKind
 from clearance.load.input_files import InputFiles

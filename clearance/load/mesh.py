@@ -7,7 +7,6 @@ each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
 from clearance.load.mesh_formats import READERS
 from clearance.load.placing import Z_FROM_Y_UP, UpAxis

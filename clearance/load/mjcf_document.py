@@ -12,11 +12,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, at
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import InputFiles
 from clearance.load.xml_document import plain_root
 

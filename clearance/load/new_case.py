@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 from clearance.errors import MissingKey, NothingToMeasure, at
+from clearance.late_dataclass import dataclass
 from clearance.load.case_file import read_case
 from clearance.load.case_text import CaseText, text_of
 from clearance.load.input_files import InputFiles, resolved

@@ -6,11 +6,11 @@ Not for: its motion and its scene (`new_case`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from clearance.errors import NothingToMeasure
+from clearance.late_dataclass import dataclass
 from clearance.load import schema
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore

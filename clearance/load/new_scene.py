@@ -6,10 +6,11 @@ Not for: reading it (`scene_formats`), nor the text of it (`scene_writer`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from clearance.late_dataclass import dataclass
 from clearance.load.held_parts import with_held_parts
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.late_dataclass import dataclass
 from clearance.load.csv_table import Opener
 from clearance.world.pose_table import PoseTable
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import NamedTuple
 
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import InputFiles
 from clearance.world.notice import Notice
 

@@ -7,7 +7,7 @@ Source: SDF specification 1.11, "Pose Frame Semantics" and "Composition". Not fo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.errors import BadInput, at
 from clearance.geometry.pose import inverse
+from clearance.late_dataclass import dataclass
 from clearance.load.sdf_document import base_of, name_of, pose_of, text_of
 from clearance.load.sdf_frames import ROOT, NamedFrames
 from clearance.load.sdf_geometry import geometry_of

@@ -7,10 +7,11 @@ Not for: the keys of the block (`tolerance_schema`), what rows are of (`toleranc
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from clearance.errors import at
+from clearance.late_dataclass import dataclass
 from clearance.load.input_files import InputFiles
 from clearance.load.tolerance_presets import Preset, preset
 from clearance.load.tolerance_schema import (

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from clearance.late_dataclass import dataclass
 from clearance.load.preset_files import FOLDER
 from clearance.load.schema_errors import validated
 from clearance.load.strict_model import StrictModel

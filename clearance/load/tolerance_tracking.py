@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from clearance.errors import BadInput, MissingKey, UnknownJoint, at, nearest_name
+from clearance.late_dataclass import dataclass
 from clearance.load.controllers_file import parse_controllers
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.limit_files import widest

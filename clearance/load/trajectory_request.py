@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import NamedTuple
 
 from clearance.errors import BadInput
+from clearance.late_dataclass import dataclass
 from clearance.load.csv_table import Opener
 from clearance.world.trajectory import Trajectory
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.geometry.closing import FEW, SOME, Closing, closing_of, loose_triangles
+from clearance.geometry.closing import Closing
+from clearance.geometry.open_faces import open_faces_of
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
@@ -77,10 +78,10 @@ class Component(NamedTuple):
     high: np.ndarray
 
 
-_shells: weakref.WeakKeyDictionary[Polyhedron, tuple[Shell, ...]] = weakref.WeakKeyDictionary()
-_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
+_Holders = tuple[tuple[Shell, ...], tuple[LooseFaces, ...]]
 
-_loose: weakref.WeakKeyDictionary[Polyhedron, tuple[LooseFaces, ...]] = weakref.WeakKeyDictionary()
+_holders: weakref.WeakKeyDictionary[Polyhedron, _Holders] = weakref.WeakKeyDictionary()
+_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
 _pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
 
 
@@ -129,7 +130,7 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> PossibleContainment | None:
 def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:
     if isinstance(outer, PointCloud):
         return ()
-    shells, loose = _kept(_shells, outer, _shells_of), _kept(_loose, outer, _loose_of)
+    shells, loose = _kept(_holders, outer, _holders_of)
     if isinstance(inner, PointCloud):
         points = CloudPoints.of(inner) if shells or loose else None
         return tuple((shell, points) for shell in (*shells, *loose) if points is not None)
@@ -209,18 +210,16 @@ def _within_bounds(
     return ((points >= shell.bounds[0]) & (points <= shell.bounds[1])).all(axis=(1, 2))
 
 
-def _shells_of(shape: Polyhedron) -> tuple[Shell, ...]:
-    found = []
-    for few, closing in ((True, closing_of(shape)), (False, closing_of(shape, FEW, SOME))):
-        if closing is not None and len(closing.caps):
-            found.append(_shell(shape, closing, few))
-    return tuple(found)
-
-
-def _loose_of(shape: Polyhedron) -> tuple[LooseFaces, ...]:
-    triangles = loose_triangles(shape)
+def _holders_of(shape: Polyhedron) -> _Holders:
+    found = open_faces_of(shape)
+    shells = tuple(
+        _shell(shape, closing, few)
+        for few, closing in ((True, found.few), (False, found.some))
+        if closing is not None and len(closing.caps)
+    )
     stride = STRIDE * float(np.linalg.norm(shape.bounds[1] - shape.bounds[0]))
-    return (LooseFaces(triangles, shape.bounds, stride),) if len(triangles) > 3 else ()
+    loose = (LooseFaces(found.loose, shape.bounds, stride),) if len(found.loose) > 3 else ()
+    return shells, loose
 
 
 def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance.late_dataclass import dataclass
 from clearance.receipt.case_data import CaseData, case_data, with_tolerances
 from clearance.receipt.claims import judged, missing
 from clearance.receipt.proof.depths import depths_reached

@@ -105,8 +105,8 @@ def _row(row: ComparedFinding) -> Markup:
     change, before, now, *rest = comparison_cells(row)
     cells = [element("td", element("strong", change) if row.alarms else change)]
     cells += [
-        element("td", element("span", status, class_=f"tag {status}") if status else "")
-        for status in (before, now)
+        element("td", element("span", told, class_=f"tag {told.partition(',')[0]}") if told else "")
+        for told in (before, now)
     ]
     classes = ["number", "number", None, None, None]
     cells += [element("td", text, class_=kind) for text, kind in zip(rest, classes, strict=True)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from clearance.findings.compared_doubts import ComparedDoubt
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
+from clearance.findings.finding import Finding
 from clearance.report.finding_text import bodies_text
 from clearance.report.rules import name_shown
 from clearance.report.wording import mm
@@ -75,10 +76,16 @@ def comparison_cells(row: ComparedFinding) -> tuple[str, ...]:
     """A row of a table with `HEADS`."""
     finding = row.finding
     both = (row.before, row.now)
-    statuses = ["" if one is None else one.status for one in both]
+    statuses = ["" if one is None else _standing(one) for one in both]
     least = ["" if one is None or one.clearance is None else mm(one.clearance) for one in both]
     who = bodies_text(finding) or finding.text or finding.kind
     return (str(row.change), *statuses, *least, name_shown(finding.rule), who, row.why)
+
+
+def _standing(finding: Finding) -> str:
+    """The status of a finding, and what lets it be so."""
+    excuse = ", waived" if finding.waived else ", accepted" if finding.accepted else ""
+    return f"{finding.status}{excuse}"
 
 
 def gone_text(row: ComparedFinding) -> str:

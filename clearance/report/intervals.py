@@ -3,11 +3,11 @@ step."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.record import Record
 from clearance.simulate.replay_frames import codes_of

@@ -5,10 +5,9 @@ Not for: the table of every pair at every step (`tables`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Record
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 

@@ -6,13 +6,13 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
+from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import finding_line, waived_lines
 from clearance.report.wording import (
     clock_text,

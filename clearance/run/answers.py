@@ -7,12 +7,13 @@ asked (`question`), nor what it comes to (`result`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import accumulate
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.run.commanded_case import commanded_case
 from clearance.run.question import Question
 from clearance.simulate import inside

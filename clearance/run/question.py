@@ -5,12 +5,13 @@ Not for: answering (`answers`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, date, datetime
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput
+from clearance.late_dataclass import dataclass
 from clearance.simulate.measure import NEEDS
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits

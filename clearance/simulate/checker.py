@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite
 from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
+from clearance.late_dataclass import dataclass
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import SWEEP_COUNTERS

@@ -5,7 +5,9 @@ Counted in triangles looked at, not in seconds: the same input gives the same by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from clearance.late_dataclass import dataclass
 
 WORK = 30_000_000
 """Of one pair: about 2 s of the machine on which the figures of `query/CONTACT.md` were measured."""

@@ -14,7 +14,8 @@ import numpy as np
 
 from clearance.compile.machine import numba_version, processor
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.import_closure import PACKAGE, digest_of, import_closure
+from clearance.import_closure import PACKAGE, import_closure
+from clearance.source_digests import closure_digest
 from clearance.world.case import Case
 from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
@@ -106,6 +107,6 @@ def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
 
 def _program() -> str:
     """Sources, versions and machine: on another processor the last bits may differ."""
-    digest = digest_of(sources())
+    digest = closure_digest([_ENTRY], leave_out=_BEFORE_AND_AFTER)
     versions = (np.__version__, numba_version(), platform.python_version(), platform.machine())
     return f"{digest} {versions} {processor()}"

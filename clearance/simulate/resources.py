@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from clearance.errors import BadInput
+from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.simulate.parts import usable_cores
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows

@@ -15,13 +15,14 @@ import time
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.errors import unwritable
+from clearance.late_dataclass import dataclass
 from clearance.simulate.rows_folder import clear, own_folder, take_away
 
 if TYPE_CHECKING:

@@ -7,10 +7,11 @@ how the rule stands as a whole (`rule_answer`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.simulate.measure import pairs_within
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.names import pair_names

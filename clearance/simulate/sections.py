@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.world.case import Case, Limits, Omission

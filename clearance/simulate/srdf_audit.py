@@ -5,8 +5,7 @@ Not for: one pair (`pair_audit`), nor how it is reported (`report.srdf`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.simulate.pair_audit import PairFinding, PairStatus, audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix

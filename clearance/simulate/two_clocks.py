@@ -6,11 +6,12 @@ Not for: how near they come (`unsynchronised`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from clearance.kernels.motion.unsynchronised_steps import (
     least_of_unsynchronised_steps,
 )
 from clearance.kernels.motion.world import World
+from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.simulate.certify import (
     joint_path,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from clearance.errors import BadInput, BadShape, at
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
+from clearance.late_dataclass import dataclass
 from clearance.world.mount import Mount
 from clearance.world.padding import checked_padding
 from clearance.world.pose_table import PoseTable

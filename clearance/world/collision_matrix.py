@@ -5,8 +5,9 @@ Not for: reading it from a file (`load.srdf`), and whether an excuse is right (`
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
+
+from clearance.late_dataclass import dataclass
 
 ADJACENT, NEVER = "Adjacent", "Never"
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from clearance.errors import at
 from clearance.geometry.pose import validated_pose
+from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

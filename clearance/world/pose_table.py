@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from clearance.errors import BadPose, BadShape, BadTime, NotFinite
+from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.slerp import aligned, slerp
 from clearance.world.timing import AS_GIVEN, Timing, require_increasing

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
 
+from clearance.late_dataclass import dataclass
 from clearance.world.body import Body
 from clearance.world.notice import Notice
 

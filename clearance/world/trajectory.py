@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, DuplicateName, NotFinite
+from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST
 from clearance.world.timing import require_increasing
 

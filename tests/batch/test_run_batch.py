@@ -4,6 +4,7 @@ import hashlib
 import os
 from datetime import date
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import trimesh
@@ -360,3 +361,20 @@ def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
     assert any("with the tolerances" in reason for reason in row["reasons"])
     page = (tmp_path / "store" / "batch.html").read_text()
     assert '"not proven"' in page and ".tag.not" in page
+
+
+@pytest.mark.slow
+def test_one_of_a_thousand_that_cannot_be_read_costs_no_other(tmp_path):
+    nearest = np.random.default_rng(28).uniform(0.06, 0.75, 1000)
+    nearest[::7] = 0.01
+    manifest = write_cell(tmp_path / "in", nearest)
+    (tmp_path / "in" / "t500.csv").write_text("time,rail\n0,0\n1,oops\n")
+    asked = Changes(need="limit", certify=False)
+    _, answer = run_here(manifest, tmp_path / "out", changes=asked)
+    expected = {
+        f"t{i:03d}": "violated" if one < 0.05 else "near" if one < 0.3 else "clear"
+        for i, one in enumerate(nearest)
+    } | {"t500": "error"}
+    assert statuses(answer) == expected and answer.exit_code == 1
+    told, strict = run_here(manifest, tmp_path / "out", changes=asked, strict=True)
+    assert told.measured == ["t500"] and strict.exit_code == 2

@@ -40,7 +40,7 @@ def batch(*arguments, day=DAY):
 
 TABLE = {
     # what: waivers, exit code, headline, a line
-    "one case needs it": (waiver(), 0, "CLEAR  3 cases: 3 clear", ""),
+    "one case needs it": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
     "expired": (
         waiver(until="2026-10-31"), 1, "VIOLATED  3 cases: 1 violated, 2 clear",
         "waivers     waiver slider - wall (waivers.yaml: waivers[0]) has expired on 2026-10-31",
@@ -50,7 +50,7 @@ TABLE = {
         "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
     ),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
-    "of a case": (waiver(case="t002"), 0, "CLEAR  3 cases: 3 clear", ""),
+    "of a case": (waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers"),
     "of another case": (
         waiver() + waiver(case="t000"), 1, "STALE WAIVER", "waivers[1]) is not needed: what it is of keeps",
     ),
@@ -142,7 +142,7 @@ def test_mistakes_are_one_line(folder, capsys):
 
 CELL_TABLE = {
     # what: waivers of the cell, exit code, headline, a line
-    "one motion needs it": (waiver(), 0, "CLEAR  3 cases: 3 clear", ""),
+    "one motion needs it": (waiver(), 0, "CLEAR with waivers  3 cases: 3 clear", "waived      1 case with what"),
     "expired": (waiver(until="2026-10-31"), 1, "VIOLATED", "has expired on 2026-10-31"),
     "no motion needs it": (
         waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",

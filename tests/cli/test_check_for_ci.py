@@ -130,6 +130,20 @@ def test_two_runs_side_by_side(place, capsys):
     assert "no table of steps" in capsys.readouterr().err
 
 
+def test_side_by_side_it_is_told_what_a_waiver_lets_pass(place, capsys):
+    """A row "new, violated" of a comparison that passes would be taken for a fault of it."""
+    asked = ("--waivers", "waivers.yaml", "--today", "2026-11-01", "--quiet")
+    check("broken/case.yaml", "--out", "waived", *asked)
+    for name in ("broken", "clear"):
+        check(f"{name}/case.yaml", "--out", f"of_{name}", "--quiet")
+    assert run(["compare", "of_clear", "waived", "--out", "page"]) == 0
+    assert "violated, waived" in capsys.readouterr().out
+    page = (place / "page" / "comparison.html").read_text()
+    assert '<span class="tag violated">violated, waived</span>' in page
+    assert run(["compare", "waived", "of_broken"]) == 1
+    assert "waived before, and is not now" in capsys.readouterr().out
+
+
 def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     (place / "all.clearance.yaml").write_text("cases: ['*/case.yaml']\n")
     assert run(["pre-commit", "clear/case.yaml"]) == 0

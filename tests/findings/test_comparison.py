@@ -60,6 +60,26 @@ def test_what_became_of_each_finding(what, before, tmp_path):
     assert sum(comparison.counts.values()) == len(comparison.rows)
 
 
+def waived_found(folder, gates) -> FindingList:
+    """With a waiver of the first gate."""
+    folder.mkdir()
+    row = f"- {{between: [box, {A}], at_least: 0.002, reason: it gives way, by: N. N., until: 9999-12-31}}"
+    (folder / "waivers.yaml").write_text(row)
+    return found(folder, gates, "waivers: [waivers.yaml]")
+
+
+@pytest.mark.parametrize("least", [0.003, 0.004])
+def test_what_lost_its_waiver_is_worse_however_near_it_is(least, before, tmp_path):
+    waived = waived_found(tmp_path / "waived", BEFORE)
+    now = BEFORE | {A: (-0.5, least)}
+    comparison = compared(waived, found(tmp_path / "now", now))
+    (row,) = comparison.rows
+    assert (row.change, row.why) == (Change.WORSE, "waived before, and is not now")
+    assert row.alarms and not comparison.passed
+    assert compared(waived, waived_found(tmp_path / "still", now)).passed
+    assert compared(before, waived).passed
+
+
 def test_what_was_asked_for_of_each_step_does_not_matter(before, tmp_path):
     for need in ("limit", "pairs"):
         assert changes(before, found(tmp_path / need, BEFORE, need=need)) == [("unchanged", A)]

@@ -10,7 +10,7 @@ import pytest
 
 from clearance.errors import BadSyntax
 from clearance.geometry import kept_shapes as room
-from clearance.geometry import tree
+from clearance.geometry import open_faces, tree
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder
 from clearance.kept_files import cache_root
@@ -126,6 +126,25 @@ def test_a_kept_surface_has_the_bits_of_one_that_is_built(folder):
         assert (
             a.flags.writeable == b.flags.writeable and a.flags.c_contiguous == b.flags.c_contiguous
         )
+
+
+@pytest.mark.parametrize("n_lacking", [1, 200])
+def test_what_is_open_is_found_once_and_has_the_same_bits(folder, monkeypatch, n_lacking):
+    whole = cylinder(0.1, 0.3, tolerance=1e-6)
+    lacking = Polyhedron.from_triangles(whole.vertices, whole.triangles()[:-n_lacking])
+    assert lacking.n_faces >= open_faces.LARGE
+    made = open_faces.open_faces_of(lacking)
+    monkeypatch.setattr(open_faces, "closing_of", None)
+    taken = open_faces.open_faces_of(lacking)
+    assert (made.few or made.some) is not None
+    assert pickle.dumps(made) == pickle.dumps(taken)
+    assert taken.loose.flags.writeable == made.loose.flags.writeable
+
+
+def test_of_a_whole_surface_nothing_open_is_kept(folder):
+    found = open_faces.open_faces_of(cylinder(0.1, 0.3, tolerance=1e-6))
+    assert found[:2] == (None, None) and not len(found.loose)
+    assert not folder.exists()
 
 
 def test_small_shapes_leave_no_file(folder):

@@ -6,10 +6,11 @@ Not for: the shapes themselves, nor how a file format writes them (room `load`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.late_dataclass import dataclass
 
 
 class Measure(Enum):
