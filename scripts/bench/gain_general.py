@@ -38,6 +38,19 @@ class OutOfTime(Exception):
     """The seconds that it was given are over."""
 
 
+@dataclass(frozen=True)
+class GeneralChange:
+    """What the general optimiser came to.
+
+    Attributes:
+        size: the least that keeps all; None if none does. seconds: of CPU. starts: searches that came to an end.
+    """
+
+    size: float | None
+    seconds: float
+    starts: int
+
+
 @dataclass(frozen=True, eq=False)
 class Linear:
     """Rows a (x, t) <= b beside the clearances, and bounds of |x|; t is the size of a path, else absent."""
@@ -46,8 +59,8 @@ class Linear:
     b: np.ndarray
 
 
-def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float | None, float]:
-    """The least size that it finds within so many seconds of CPU, None if none, and the seconds it took.
+def general_change(one: Filed, n_intervals: int, seconds: float) -> GeneralChange:
+    """The least size that it finds within so many seconds of CPU.
 
     Args:
         n_intervals: of the splines of a path, as ours were.
@@ -55,6 +68,7 @@ def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float 
     change = change_of(cl.load_case(one.file), one.kind, one.who, n_intervals)
     began, rng = time.process_time(), np.random.default_rng(0)
     problem = _Problem(change, one.known, began + seconds)
+    n_ended = 0
     for i in range(STARTS):
         start = np.zeros(problem.n_variables)
         if i:
@@ -64,7 +78,8 @@ def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float 
             problem.solve(start)
         except OutOfTime:
             break
-    return problem.best, time.process_time() - began
+        n_ended += 1
+    return GeneralChange(problem.best, time.process_time() - began, n_ended)
 
 
 class _Problem:
