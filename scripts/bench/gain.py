@@ -35,7 +35,7 @@ COLUMNS = {
         "case", "source", "how", "kind", "who", "steps", "joints", "kept", "size", "known", "lower_bound",
         "seconds", "measured", "intervals", "checked", "by", "blocked",
     ),
-    "general": ("case", "intervals", "size", "seconds", "given", "starts"),
+    "general": ("case", "intervals", "size", "seconds", "given", "starts", "between"),
     "drake": ("case", "intervals", "size", "seconds", "given", "sampled", "proven", "convex"),
 }  # fmt: skip
 

@@ -17,7 +17,7 @@ from gain_files import Filed
 
 import clearance as cl
 from clearance.gains.offsets import JointOffsets
-from clearance.gains.shortfalls import State, Wanted, measured
+from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 
 STARTS = 20
 
@@ -29,6 +29,9 @@ BEYOND = 0.02
 
 ENOUGH = 2e-7
 """[m] Below the limit by no more is kept, as for ours."""
+
+PROVEN_WITHIN = 1e-6
+"""[m] Below the limit, what is proven of the motion between the samples."""
 
 WIDEST = 2.0
 """[-] Of the size of the known change, how large any variable may be."""
@@ -43,12 +46,14 @@ class GeneralChange:
     """What the general optimiser came to.
 
     Attributes:
-        size: the least that keeps all; None if none does. seconds: of CPU. starts: searches that came to an end.
+        size: the least that keeps all at the samples; None if none does. seconds: of CPU.
+        starts: searches that came to an end. between: our certificate proves the motion between them as well.
     """
 
     size: float | None
     seconds: float
     starts: int
+    between: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +84,11 @@ def general_change(one: Filed, n_intervals: int, seconds: float) -> GeneralChang
         except OutOfTime:
             break
         n_ended += 1
-    return GeneralChange(problem.best, time.process_time() - began, n_ended)
+    used, best = time.process_time() - began, problem.best
+    if best is None:
+        return GeneralChange(None, used, n_ended, False)
+    between = keeps(proven(change.case_of(best), -PROVEN_WITHIN))
+    return GeneralChange(change.size(best), used, n_ended, between)
 
 
 class _Problem:
@@ -88,7 +97,7 @@ class _Problem:
     def __init__(self, change: Change, known: float, ends: float) -> None:
         self.change, self.ends = change, ends
         self.n_variables = len(change.first_reach)
-        self.best: float | None = None
+        self.best: np.ndarray | None = None
         self.widest = WIDEST * known * change.first_reach / change.first_reach.max()
         if isinstance(change, JointOffsets):
             self.widest = WIDEST * known / np.repeat(change.weights, change.n_splines)
@@ -124,10 +133,12 @@ class _Problem:
             raise OutOfTime
         x = np.frombuffer(key)
         found = measured(self.change.case_of(x), x, Wanted(0.0, 0.0, np.zeros(0)), BEYOND + ENOUGH)
-        size = self.change.size(x)
-        if found.worst <= ENOUGH and (self.best is None or size < self.best) and self._keeps(x):
-            self.best = size
+        if found.worst <= ENOUGH and self._is_less(x) and self._keeps(x):
+            self.best = x.copy()
         return _stretches(found, self.change)
+
+    def _is_less(self, x: np.ndarray) -> bool:
+        return self.best is None or self.change.size(x) < self.change.size(self.best)
 
     def _keeps(self, x: np.ndarray) -> bool:
         if not isinstance(self.change, JointOffsets):
