@@ -25,7 +25,6 @@ from clearance.gains.shortfalls import (
 )
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
-from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case
 from clearance.world.timeline import Timeline
 
@@ -45,7 +44,7 @@ FINE = 2e-7
 """[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
 
 PATH_GAP = 1e-5
-"""[m] How far the proof of a bent path may be below what occurs where it does not hold: as much more is wanted."""
+"""[m] How far below what occurs a second proof of a bent path may be, which says how much more is wanted."""
 
 SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
@@ -150,7 +149,7 @@ class Search:
             state = self._improved(state)
             if state.worst > FINE or self.change.size(state.x) >= below:
                 break
-            record = proven(state.case, self.margin, PATH_GAP if self.change.bends else CERTIFY_GAP)
+            record = proven(state.case, self.margin)
             if keeps(record):
                 break
             state, record = self._wanting_more(state, record), None
@@ -159,6 +158,10 @@ class Search:
     def _wanting_more(self, state: State, unproven: Record) -> State:
         """The same variables, measured by what is wanted so that the motion between the steps is proven too."""
         if self.change.bends:
+            finer = proven(
+                state.case, self.margin, PATH_GAP
+            )  # it may hold where that of a check does not
+            unproven = unproven if keeps(finer) else finer
             self.wanted = looked_closer(self.wanted, unproven, state)
             return self._state(state.x, self.change.first_reach)
         self.wanted = raised(self.wanted, unproven)

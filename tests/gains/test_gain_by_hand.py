@@ -10,7 +10,9 @@ import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.shortfalls import proven
 from clearance.gains.told import lines_of
+from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Mimic
 from clearance.world.timing import Timing
@@ -316,6 +318,15 @@ def test_a_disc_past_two_posts_bends_by_what_the_nearer_wants(short):
         2.0 * max(short), abs=2.0 * FINE
     )  # rad: half a metre of a slide
     assert moved.max() == pytest.approx(max(short), abs=FINE) and (moved >= short).all()
+
+
+def test_what_only_a_finer_proof_holds_is_not_kept(monkeypatch):
+    def too_easy(case, margin, gap=CERTIFY_GAP):
+        return proven(case, margin if gap == CERTIFY_GAP else margin - 0.001, gap)
+
+    monkeypatch.setattr("clearance.gains.search.proven", too_easy)
+    found = gain(disc_past_two_posts("line", 0.01, 0.005), "waypoints")
+    assert found.kept and found.after.passed
 
 
 @pytest.mark.parametrize("kind, away", [("obstacle", 1.0), ("base", -1.0)])
