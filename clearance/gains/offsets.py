@@ -62,6 +62,7 @@ class JointOffsets:
     tool_keeps: tuple[ToolKeep, ...] = ()
     tool: str | None = None
     price: float = 100.0
+    bends: bool = True
     weights: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from clearance.gains.closer import looked_closer
 from clearance.gains.programme import Box, Inequalities, least_missing
 from clearance.gains.shortfalls import (
     Rows,
@@ -43,6 +44,9 @@ MOST_PROOFS = 8
 FINE = 2e-7
 """[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
 
+PATH_GAP = 1e-5
+"""[m] How far below what occurs a second proof of a bent path may be, which says how much more is wanted."""
+
 SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
 
@@ -71,6 +75,10 @@ class Change(Protocol):
     @property
     def first_reach(self) -> np.ndarray:
         """(m,) how far a first step may go."""
+
+    @property
+    def bends(self) -> bool:
+        """Whether a motion between two steps may be changed otherwise than they are."""
 
     def case_of(self, x: np.ndarray) -> Case:
         """The changed case."""
@@ -145,13 +153,24 @@ class Search:
             record = proven(state.case, self.margin)
             if keeps(record):
                 break
-            self.wanted = raised(self.wanted, record)
-            unproven, record = record, None
-            state = self._state(state.x, self.change.first_reach)
-            if state.worst <= FINE:
-                self.wanted = looked_into(self.wanted, unproven)
-                state = self._state(state.x, self.change.first_reach)
+            state, record = self._wanting_more(state, record), None
         return Found(state, record, self.n_measured)
+
+    def _wanting_more(self, state: State, unproven: Record) -> State:
+        """The same variables, measured by what is wanted so that the motion between the steps is proven too."""
+        if self.change.bends:
+            finer = proven(
+                state.case, self.margin, PATH_GAP
+            )  # it may hold where that of a check does not
+            unproven = unproven if keeps(finer) else finer
+            self.wanted = looked_closer(self.wanted, unproven, state)
+            return self._state(state.x, self.change.first_reach)
+        self.wanted = raised(self.wanted, unproven)
+        state = self._state(state.x, self.change.first_reach)
+        if state.worst <= FINE:
+            self.wanted = looked_into(self.wanted, unproven)
+            state = self._state(state.x, self.change.first_reach)
+        return state
 
     def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
         self.n_measured += 1

@@ -58,6 +58,7 @@ class Shift:
     pivot: Pivot | None = None
     price: float = 30.0
     kept: None = None
+    bends: bool = False
 
     @property
     def size_of_x(self) -> int:

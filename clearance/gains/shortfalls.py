@@ -160,10 +160,14 @@ def measured(case: Case, x: np.ndarray, wanted: Wanted, beyond: float) -> State:
     return State(x, case, record, beyond, wanted)
 
 
-def proven(case: Case, margin: float) -> Record:
-    """The certified record of a case whose fail limits are raised by a margin [m]."""
+def proven(case: Case, margin: float, gap: float = CERTIFY_GAP) -> Record:
+    """The certified record of a case whose fail limits are raised by a margin [m].
+
+    Args:
+        gap: [m] how far a bound may be below a distance that occurs, where the limit is not kept.
+    """
     raised = replace(case, limits=_raised(case.limits, margin))
-    return answer(Question(raised, certify=True, contact="none")).record
+    return answer(Question(raised, certify=True, contact="none", certify_gap=gap)).record
 
 
 def keeps(record: Record) -> bool:
@@ -171,36 +175,45 @@ def keeps(record: Record) -> bool:
     return all(code_of(rule) < VIOLATED for rule in record.rules)
 
 
-def raised(wanted: Wanted, record: Record) -> Wanted:
+def raised(wanted: Wanted, record: Record, spared: Sequence[int] | np.ndarray = ()) -> Wanted:
     """What is wanted, with more at both ends of each motion that is not proven, and at the moments in it.
 
     Where bodies touch between two steps the certificate does not say how deep: three times as much is wanted.
+
+    Args:
+        spared: steps after which no more is wanted.
     """
     times = record.motions[0].times
     before = wanted.extra_at(times)
-    short = _short(record)
+    short = short_of(record)
     again = np.maximum(2.0 * np.maximum(before, np.append(before[1:], 0.0)), TOUCHING)
     short = np.where(_touching(record), np.maximum(short, again), short)
+    short[np.asarray(spared, dtype=np.int64)] = 0.0
     extra = before + np.maximum(short, np.append(0.0, short[:-1]))
-    more = wanted.more + short[_intervals(times, wanted.moments)]
+    more = wanted.more + short[intervals(times, wanted.moments)]
     return replace(wanted, extra=extra, times=times, more=more)
 
 
 def looked_into(wanted: Wanted, record: Record) -> Wanted:
     """What is wanted, at moments too in the motions that are farthest from being proven."""
-    times, short = record.motions[0].times, _short(record)
-    short[_intervals(times, wanted.moments)] = 0.0
+    times, short = record.motions[0].times, short_of(record)
+    short[intervals(times, wanted.moments)] = 0.0
     chosen = np.argsort(-short, kind="stable")[:MOST_INTERVALS]
     chosen = np.sort(chosen[(short[chosen] > 0.0) & (chosen < len(times) - 1)])
     shares = np.arange(1, MOMENTS + 1) / (MOMENTS + 1)
     new = (times[chosen, None] + np.diff(times)[chosen, None] * shares).ravel()
+    return with_new_moments(wanted, new)
+
+
+def with_new_moments(wanted: Wanted, new: np.ndarray) -> Wanted:
+    """What is wanted, at more moments (k,) [s] too."""
     order = np.argsort(np.concatenate([wanted.moments, new]), kind="stable")
     moments = np.concatenate([wanted.moments, new])[order]
     more = np.concatenate([wanted.more, np.zeros(len(new))])[order]
     return replace(wanted, moments=moments, more=more)
 
 
-def _intervals(times: np.ndarray, moments: np.ndarray) -> np.ndarray:
+def intervals(times: np.ndarray, moments: np.ndarray) -> np.ndarray:
     """(k,) the step after which each moment is."""
     return np.asarray(np.searchsorted(times, moments, side="right") - 1)
 
@@ -215,7 +228,7 @@ def _unproven(record: Record) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
         yield steps, rule.certificate.lower_bound[steps], rule.limits.fail
 
 
-def _short(record: Record) -> np.ndarray:
+def short_of(record: Record) -> np.ndarray:
     """(n,) [m] how far the motion after each step is from being proven; 0 where it is."""
     short = np.zeros(len(record.motions[0].times))
     for steps, bound, fail in _unproven(record):

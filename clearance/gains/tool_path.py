@@ -67,6 +67,7 @@ class ToolPathKept:
     tool: Tool
     price: float = 30.0
     kept: None = None
+    bends: bool = False
     _known: dict[bytes, Solved] = field(default_factory=dict)
 
     @property

@@ -17,7 +17,7 @@ from gain_files import Filed
 
 import clearance as cl
 from clearance.gains.offsets import JointOffsets
-from clearance.gains.shortfalls import State, Wanted, measured
+from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 
 STARTS = 20
 
@@ -30,12 +30,30 @@ BEYOND = 0.02
 ENOUGH = 2e-7
 """[m] Below the limit by no more is kept, as for ours."""
 
+PROVEN_WITHIN = 1e-6
+"""[m] Below the limit, what is proven of the motion between the samples."""
+
 WIDEST = 2.0
 """[-] Of the size of the known change, how large any variable may be."""
 
 
 class OutOfTime(Exception):
     """The seconds that it was given are over."""
+
+
+@dataclass(frozen=True)
+class GeneralChange:
+    """What the general optimiser came to.
+
+    Attributes:
+        size: the least that keeps all at the samples; None if none does. seconds: of CPU.
+        starts: searches that came to an end. between: our certificate proves the motion between them as well.
+    """
+
+    size: float | None
+    seconds: float
+    starts: int
+    between: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +64,8 @@ class Linear:
     b: np.ndarray
 
 
-def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float | None, float]:
-    """The least size that it finds within so many seconds of CPU, None if none, and the seconds it took.
+def general_change(one: Filed, n_intervals: int, seconds: float) -> GeneralChange:
+    """The least size that it finds within so many seconds of CPU.
 
     Args:
         n_intervals: of the splines of a path, as ours were.
@@ -55,6 +73,7 @@ def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float 
     change = change_of(cl.load_case(one.file), one.kind, one.who, n_intervals)
     began, rng = time.process_time(), np.random.default_rng(0)
     problem = _Problem(change, one.known, began + seconds)
+    n_ended = 0
     for i in range(STARTS):
         start = np.zeros(problem.n_variables)
         if i:
@@ -64,7 +83,12 @@ def general_change(one: Filed, n_intervals: int, seconds: float) -> tuple[float 
             problem.solve(start)
         except OutOfTime:
             break
-    return problem.best, time.process_time() - began
+        n_ended += 1
+    used, best = time.process_time() - began, problem.best
+    if best is None:
+        return GeneralChange(None, used, n_ended, False)
+    between = keeps(proven(change.case_of(best), -PROVEN_WITHIN))
+    return GeneralChange(change.size(best), used, n_ended, between)
 
 
 class _Problem:
@@ -73,7 +97,7 @@ class _Problem:
     def __init__(self, change: Change, known: float, ends: float) -> None:
         self.change, self.ends = change, ends
         self.n_variables = len(change.first_reach)
-        self.best: float | None = None
+        self.best: np.ndarray | None = None
         self.widest = WIDEST * known * change.first_reach / change.first_reach.max()
         if isinstance(change, JointOffsets):
             self.widest = WIDEST * known / np.repeat(change.weights, change.n_splines)
@@ -109,10 +133,12 @@ class _Problem:
             raise OutOfTime
         x = np.frombuffer(key)
         found = measured(self.change.case_of(x), x, Wanted(0.0, 0.0, np.zeros(0)), BEYOND + ENOUGH)
-        size = self.change.size(x)
-        if found.worst <= ENOUGH and (self.best is None or size < self.best) and self._keeps(x):
-            self.best = size
+        if found.worst <= ENOUGH and self._is_less(x) and self._keeps(x):
+            self.best = x.copy()
         return _stretches(found, self.change)
+
+    def _is_less(self, x: np.ndarray) -> bool:
+        return self.best is None or self.change.size(x) < self.change.size(self.best)
 
     def _keeps(self, x: np.ndarray) -> bool:
         if not isinstance(self.change, JointOffsets):

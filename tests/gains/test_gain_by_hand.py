@@ -10,6 +10,7 @@ import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.shortfalls import proven
 from clearance.gains.told import lines_of
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
@@ -255,7 +256,7 @@ def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one(monkeypa
     placed = along_x(gantry(), np.linspace(0.0, 2.0, 5))
     case = cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03))
     assert gain(case, "waypoints").kept
-    monkeypatch.setattr("clearance.gains.search.looked_into", lambda wanted, record: wanted)
+    monkeypatch.setattr("clearance.gains.search.looked_closer", lambda wanted, *_: wanted)
     found = gain(case, "waypoints")
     assert not found.kept and "between two steps" in str(found.blocked)
 
@@ -308,12 +309,32 @@ def disc_past_two_posts(way, *short):
     return cl.Case("discs", (placed,), tuple(named), cl.Limits(fail=0.22))
 
 
-def test_a_disc_past_two_posts_bends_by_what_the_nearer_wants():
+@pytest.mark.parametrize("short", [(0.01, 0.005), (0.02, 0.01), (0.005, 0.0099)])
+def test_a_disc_past_two_posts_bends_by_what_the_nearer_wants(short):
+    found = gain(disc_past_two_posts("line", *short), "waypoints")
+    assert found.kept and found.after.passed
+    moved = found.change[[20, 60], 1] * [-1.0, 1.0]
+    assert found.size == pytest.approx(
+        2.0 * max(short), abs=2.0 * FINE
+    )  # rad: half a metre of a slide
+    assert moved.max() == pytest.approx(max(short), abs=FINE) and (moved >= short).all()
+
+
+def test_what_only_a_finer_proof_holds_is_not_kept(monkeypatch):
+    def too_easy(case, margin, gap=CERTIFY_GAP):
+        return proven(case, margin if gap == CERTIFY_GAP else margin - 0.001, gap)
+
+    monkeypatch.setattr("clearance.gains.search.proven", too_easy)
     found = gain(disc_past_two_posts("line", 0.01, 0.005), "waypoints")
-    between = 2.0 * CERTIFY_GAP  # what chords between samples may be asked for on top, by the proof
-    assert found.kept and 0.02 - FINE <= found.size <= 0.02 + between
-    assert found.change[20, 1] == pytest.approx(-found.size / 2.0, abs=FINE)
-    assert found.change[60, 1] >= 0.005 - FINE
+    assert found.kept and found.after.passed
+
+
+@pytest.mark.parametrize("kind, away", [("obstacle", 1.0), ("base", -1.0)])
+def test_a_disc_and_the_nearer_of_two_posts_are_parted_by_what_is_missing(kind, away):
+    who = {"obstacle": "one"} if kind == "obstacle" else {}
+    found = gain(disc_past_two_posts("line", 0.01, -0.1), kind, **who)
+    assert found.kept and found.change == pytest.approx([0.0, away * 0.01, 0.0], abs=FINE)
+    assert 0.01 - FINE < found.lower_bound <= found.size
 
 
 def test_a_disc_round_a_corner_is_moved_away_from_both_posts():
