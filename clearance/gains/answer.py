@@ -17,6 +17,7 @@ from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.asked import Asked, Options, asked_as
 from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
+    HOWEVER_SLOW,
     NOT_FOUND,
     TOO_FAR,
     TOO_LATE,
@@ -27,7 +28,7 @@ from clearance.gains.blocked import (
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import least_delay, least_slowing
+from clearance.gains.delay import Delayed, least_delay, least_slowing
 from clearance.gains.held_back import held_back
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
@@ -320,14 +321,25 @@ def _by_delay(case: Case, asked: Asked) -> Gain:
     else:
         found = least_delay(case, i_robot, asked.margin, asked.most_delay)
     before, after = answer(Question(case)), answer(Question(found.state.case))
-    blocked = None
+    blocked, at_least = None, found.at_least
     if not found.kept:
-        why = TOO_SLOW if asked.slow_down else TOO_LATE
-        blocked = worst_pair(found.state, why) or unproven(after.record, asked.margin)
+        blocked = _blocked_in_time(found, asked, after)
+    if np.isinf(at_least):
+        at_least = found.delay
     return Gain(
-        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, found.at_least,
+        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, at_least,
         case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
     )  # fmt: skip
+
+
+def _blocked_in_time(found: Delayed, asked: Asked, after: Run) -> Blocked:
+    """What stays too near with every delay, else what does with the last that was looked at."""
+    if found.stays is not None and np.isinf(found.at_least):
+        return found.stays
+    why = TOO_SLOW if asked.slow_down else TOO_LATE
+    if np.isinf(found.at_least):
+        why = HOWEVER_SLOW
+    return worst_pair(found.state, why) or unproven(after.record, asked.margin)
 
 
 def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
