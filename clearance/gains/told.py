@@ -244,7 +244,8 @@ def _up(value: float) -> str:
 
 
 def _down(value: float) -> str:
-    """The same rounded down."""
+    """Four digits, at most four places, two digits of what is small; rounded down."""
     exact = Decimal(repr(value))
-    places = max(0, min(4, 3 - exact.adjusted()))
-    return str(exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+    places = 4 if value >= 1e-3 else 1 - exact.adjusted()
+    places = max(0, min(places, 3 - exact.adjusted()))
+    return f"{exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR):f}"

@@ -13,7 +13,7 @@ from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.told import lines_of
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
-from clearance.world.robot import Mimic
+from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
@@ -343,3 +343,15 @@ def test_a_world_that_is_turned_turns_the_change():
         gain(one, "base") for one in (case, replace(case, robots=robots, obstacles=posts))
     )
     assert there.change == pytest.approx(turn[:3, :3] @ here.change, abs=FINE)
+
+
+def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
+    """A block below a roof, on a slide along it that falls by 2 mm a metre."""
+    slide = Joint("x", JointKind.PRISMATIC, "base", "tool", np.eye(4), [-1.0, -0.002, 0.0])
+    block = cl.Body("tool", cl.box((0.1, 0.1, 0.1)))
+    robot = cl.Robot("slider", ("base", "tool"), (slide,), (block,))
+    path = cl.Trajectory(np.linspace(0.0, 1.0, 41), ("x",), np.zeros((41, 1)))
+    roof = standing("roof", cl.box((3.0, 0.1, 1.0)), (0.0, 0.15, 0.0))
+    case = cl.Case("roof", (cl.PlacedRobot(robot, path),), (roof,), cl.Limits(fail=0.05002))
+    found = gain(case, "waypoints", keep_ends=False)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)
