@@ -94,22 +94,23 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
 
     waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
-    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, and
-    the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and gain.json. Exit
-    code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
+    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, of
+    each robot, and the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and
+    gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
-    from clearance.gains.every_kind import SUB_FOLDERS
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
     from clearance.gains.written import OWN
     from clearance.load.case_file import load_case
 
     options = _with_turn(options)
     require_folder_place(out)
-    if out is not None:
-        for folder in [out / name for name in SUB_FOLDERS] if kind == "all" else [out]:
-            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
+    if out is not None and kind != "all":
+        refuse_taken(out, (*OWN, FIGURES, PAGE), force=force)
     read = load_case(case)
+    if out is not None and kind == "all":
+        for folder in _folders(read, out, options["robot"]):
+            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
     say_notices(read)
     if kind == "all":
         return _every_kind(read, case, out, options, force=force)
@@ -118,6 +119,13 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     _say(found)
     _save(found, out, force=force)
     return _code(found)
+
+
+def _folders(read: Case, out: Path, robot: str | None) -> list[Path]:
+    """Where each kind goes, of each robot where there are several."""
+    from clearance.gains.every_kind import name_of, tries_of
+
+    return [out / name_of(kind, who, read) for kind, who in tries_of(read, robot)]
 
 
 def _with_turn(options: dict[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import Thing, owners_of
 from clearance.world.case import Case
+from clearance.world.pairs import names_of
 from clearance.world.rules import PairPattern
 from clearance.world.timing import Timing
 
@@ -59,9 +60,12 @@ def _staying(state: State, approach: Approach, i_robot: int) -> Iterator[tuple[i
     hold = all(_timing(case, one).after == "hold" for one in movers)
     reasons = (
         (NOT_MOVED, told & (own not in movers)),
-        (ON_ITS_WAY, np.full(len(at), movers == {own} and _is_timeless(case))),
+        (ON_ITS_WAY, np.full(len(at), movers == {own} and _is_timeless(case, approach))),
         (AT_REST, told & (own in movers) & (at <= _begins(case, own) + SAME)),
-        (AT_REST, (at >= state.record.timeline.times[-1] - SAME) & hold & _is_timeless(case)),
+        (
+            AT_REST,
+            (at >= state.record.timeline.times[-1] - SAME) & hold & _is_timeless(case, approach),
+        ),
     )
     for why, stays in reasons:
         rows = np.flatnonzero(stays & (missing > 0.0))
@@ -103,7 +107,13 @@ def _begins(case: Case, thing: Thing) -> float:
     return float(_timing(case, thing).run_times(moves.times)[0])
 
 
-def _is_timeless(case: Case) -> bool:
-    """True if no rule, and no leave to touch, is of a stretch of time, and nothing is carried."""
+def _is_timeless(case: Case, approach: Approach) -> bool:
+    """True if no rule of a pair, and no leave to touch, is of a stretch of time, and neither body is carried."""
+    plain = approach.case
+    names = [names_of(plain, body) for body in approach.pair]
     patterns: list[PairPattern] = [*case.allow, *case.limits.rules]
-    return not case.carries and not any(one.when for one in patterns)
+    if any(one.when and one.matches(*names) for one in patterns):
+        return False
+    parts = {one.part for one in case.carries}
+    under = {thing for body in approach.pair for thing in owners_of(plain, body)}
+    return not any(is_obstacle and case.obstacles[i].name in parts for is_obstacle, i in under)

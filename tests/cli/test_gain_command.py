@@ -1,5 +1,7 @@
 """`clearance gain` as someone at a terminal meets it: lines, exit codes, files."""
 
+import json
+
 import pytest
 
 import clearance as cl
@@ -144,6 +146,23 @@ def test_a_path_beyond_its_limits_is_refused(slot, capsys):
     assert code == 2 and "joint 'x' is 0.5 m beyond its upper limit" in err
 
 
-def test_where_no_kind_applies_it_is_bad_input(tmp_path, capsys):
-    code, text, _ = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "all")
-    assert code == 2 and text.count("which robot may be changed is not said") == 3
+@pytest.mark.slow
+def test_all_kinds_are_tried_with_each_of_several_robots(tmp_path, capsys):
+    path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
+    code, text, _ = said(capsys, path, "--kind", "all", "--out", out)
+    assert code == 0 and "which robot" not in text
+    for kind in ("waypoints", "base", "timing"):
+        for robot in ("one", "other"):
+            assert f"\n{kind}/{robot} " in text
+            figures = json.loads((out / kind / robot / "gain.json").read_text())
+            assert cl.check(out / kind / robot / "case.yaml").passed == figures["kept"]
+            assert figures["who"] == robot and (figures["kept"] or kind == "waypoints")
+    code, _, err = said(capsys, path, "--kind", "all", "--out", out)
+    assert code == 2 and "--force overwrites it" in err and len(err.splitlines()) == 1
+
+
+def test_where_no_kind_applies_it_is_bad_input(slot, capsys):
+    slot.write_text(slot.read_text().replace("trajectory: {file: path.csv, start: 0.5}",
+                    "trajectory: {file: path.csv, after: loop}"))  # fmt: skip
+    code, text, _ = said(capsys, slot, "--kind", "all", "--within-mm", "0,0,0")
+    assert code == 2 and text.count("does not apply") == 4

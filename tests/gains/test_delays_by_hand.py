@@ -58,6 +58,13 @@ def test_an_obstacle_in_the_way_of_the_path_stays_there(slow_down):
     )
 
 
+def test_what_others_are_allowed_for_a_while_makes_no_difference():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
+    case = two((-1.0, 1.0), (5.0, 6.0), post)
+    case = replace(case, allow=(cl.Allowance(("one", "other"), cl.Window(0.0, 0.4)),))
+    refused_at_once(gain(case, "timing", robot="one"), "its path leads there whatever")
+
+
 def test_where_a_window_ends_a_later_path_may_pass():
     post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
     case = two((-1.0, 1.0), (5.0, 6.0), post)
