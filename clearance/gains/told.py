@@ -34,7 +34,7 @@ def lines_of(gain: Gain) -> Iterator[Line]:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
         return
     yield from _kept(gain) if gain.kept else _not_kept(gain)
-    if not _is_hopeless(gain):
+    if not is_hopeless(gain):
         yield "bound", bound_text(gain)
     fast = _too_fast(gain)
     if fast:
@@ -75,7 +75,7 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
     yield from (("binding", line) for line in gain.binding)
 
 
-def _is_hopeless(gain: Gain) -> bool:
+def is_hopeless(gain: Gain) -> bool:
     """True if no change of the kind, however large, can make every rule hold."""
     return gain.blocked is not None and gain.blocked.why in HOPELESS
 
@@ -183,7 +183,7 @@ def _counted(gain: Gain) -> str:
 
 
 def _not_kept_text(gain: Gain) -> str:
-    if _is_hopeless(gain):
+    if is_hopeless(gain):
         return "no change of this kind can make every rule hold"
     if gain.asked.kind == "timing":
         return _not_in_time(gain)
