@@ -100,17 +100,19 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     """
     from clearance.cli.places import require_folder_place
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.gains.written import OWN
+    from clearance.gains.written import CASE, OWN
     from clearance.load.case_file import load_case
+    from clearance.overwriting import refuse_inputs
 
     options = _with_turn(options)
     require_folder_place(out)
-    if out is not None and kind != "all":
-        refuse_taken(out, (*OWN, FIGURES, PAGE), force=force)
     read = load_case(case)
-    if out is not None and kind == "all":
-        for folder in _folders(read, out, options["robot"]):
+    if out is not None:
+        sources = [one.read_from for one in read.sources if one.is_file]
+        folders = _folders(read, out, options["robot"]) if kind == "all" else [out]
+        for folder in folders:
             refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
+            refuse_inputs([folder / name for name in (CASE, FIGURES, PAGE)], sources)
     say_notices(read)
     if kind == "all":
         return _every_kind(read, case, out, options, force=force)

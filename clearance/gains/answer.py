@@ -219,6 +219,7 @@ def _by_path(case: Case, asked: Asked) -> Gain:
         )
         search = Search(offsets, asked.margin)
         first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
+        _require_in_run(asked.keep, first.record.timeline.times)
         at_least = least_offset(offsets, first, asked.margin)
         blocked = blocked_by(first, offsets.gradient, offsets.handed)
         if blocked is not None:
@@ -232,6 +233,20 @@ def _by_path(case: Case, asked: Asked) -> Gain:
     poses = offsets.tool_poses
     moves = () if poses is None else tuple(poses.moves(found.state.x))
     return replace(told, joint_names=offsets.placed.asked.joint_names, tool_moves=moves)
+
+
+def _require_in_run(keeps: Sequence[tuple[float, float]], times: np.ndarray) -> None:
+    """Nothing, if a part at least of each stretch that is kept is of the run.
+
+    Raises:
+        BadInput: which is not.
+    """
+    for start, end in keeps:
+        if end < times[0] or start > times[-1]:
+            raise BadInput(
+                f"from {start:g} s to {end:g} s is to be kept, which is not in the run",
+                valid=f"times from {times[0]:g} s to {times[-1]:g} s",
+            )
 
 
 def _require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
@@ -347,6 +362,8 @@ def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
     if asked.kind == "base":
         who = case.robots[_robot(case, asked.robot)].robot.name
         return base_shift(case, who, box, asked.turn), who
+    if not case.obstacles:
+        raise BadInput("the case has no obstacle", valid="kind waypoints, base or timing")
     if asked.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
         raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")

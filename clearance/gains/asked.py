@@ -73,6 +73,7 @@ class Asked:
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+        _require_sorts(self)
         for name, kinds in OWN.items():
             if getattr(self, name) and self.kind not in kinds:
                 raise BadInput(
@@ -98,6 +99,30 @@ class Asked:
                 raise BadInput(
                     f"from {start:g} s to {end:g} s is kept", valid="a start before its end"
                 )
+
+
+NAMES, FIGURES, SWITCHES = (
+    ("robot", "obstacle", "tool", "tool_path"), ("margin", "most_delay"), ("keep_ends", "slow_down"),
+)  # fmt: skip
+
+
+def _require_sorts(asked: Asked) -> None:
+    """Nothing, if names are text, lengths and times numbers, a turn a turn, and the rest true or false.
+
+    Raises:
+        BadInput: which is not.
+    """
+    sorts: list[tuple[tuple[str, ...], tuple[type, ...], str]] = [
+        (NAMES, (str, type(None)), "a name"),
+        (FIGURES, (int, float, np.integer, np.floating), "a number"),
+        (SWITCHES, (bool, np.bool_), "True or False"),
+        (("turn",), (Turn, type(None)), "'x', 'y', 'z' or a Turn"),
+    ]
+    for names, sort, valid in sorts:
+        for name in names:
+            given = getattr(asked, name)
+            if not isinstance(given, sort) or (valid == "a number" and isinstance(given, bool)):
+                raise BadInput(f"{name} is {given!r:.60}", valid=valid)
 
 
 class Options(TypedDict, total=False):
@@ -144,12 +169,26 @@ def asked_as(kind: str, options: Options) -> Asked:
             f"there is no option {unknown[0]!r}",
             valid=nearest_name(unknown[0], [*Options.__annotations__]),
         )
-    given["keep"] = tuple((start, end) for start, end in options.get("keep", ()))
+    given["keep"] = stretches_of(options.get("keep", ()))
     given["keep_tool"] = keeps_of(options.get("keep_tool", ()))
     within, turn = options.get("within"), options.get("turn")
     given["within"] = None if within is None else ranges_of(within)
     given["turn"] = Turn(turn) if isinstance(turn, str) else turn
     return Asked(kind, **given)
+
+
+def stretches_of(keep: Sequence[Range]) -> tuple[Range, ...]:
+    """Each stretch by its start and its end.
+
+    Raises:
+        BadInput: no pairs of numbers.
+    """
+    try:
+        return tuple((float(start), float(end)) for start, end in keep)
+    except (TypeError, ValueError):
+        raise BadInput(
+            f"{keep!r:.60} is to be kept", valid="(start, end) of each stretch [s of the run]"
+        ) from None
 
 
 def ranges_of(within: Sequence[float | Range]) -> tuple[Range, ...]:
@@ -173,6 +212,8 @@ def keeps_of(given: Iterable[ToolKeep | tuple[float, float, float]]) -> tuple[To
     Raises:
         BadInput: as `ToolKeep`; not three numbers.
     """
+    if not isinstance(given, Iterable):
+        raise BadInput(f"{given!r:.60} is given for keep_tool", valid="a tuple for each moment")
     return tuple(one if isinstance(one, ToolKeep) else _keep(one) for one in given)
 
 

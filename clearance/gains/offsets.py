@@ -195,7 +195,8 @@ class JointOffsets:
         return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))
 
     def swing(self, reach: np.ndarray) -> float:
-        return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())
+        farthest = reach.reshape(self.n_joints, -1).max(axis=1, initial=0.0)
+        return ARM * float((farthest * self.weights).max())
 
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         from scipy.optimize import linprog

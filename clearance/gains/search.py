@@ -159,6 +159,8 @@ class Search:
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""
+        if not len(state.x):
+            return state
         reach, missing, blind = self.change.first_reach, [state.worst], BLIND
         rows = state.rows(self.change.gradient)
         for _ in range(MOST_STEPS):

@@ -110,6 +110,27 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
 
 
+def test_a_path_that_is_kept_whole_is_said_at_once(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
+    assert code == 1 and "that moment is to be kept" in text
+    slot.write_text(slot.read_text().replace("fail: 0.04", "fail: 0.01"))
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
+    assert code == 0 and "nothing had to be changed" in text
+
+
+def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, capsys):
+    before = slot.read_bytes()
+    options = ("--kind", "base", "--out", slot.parent, "--force")
+    code, text, err = said(capsys, slot, *options)
+    assert code == 2 and text == "" and "would overwrite" in err and len(err.splitlines()) == 1
+    assert slot.read_bytes() == before and not (slot.parent / "gain.json").exists()
+
+
+def test_a_cell_without_obstacles_has_none_to_move(tmp_path, capsys):
+    code, _, err = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "obstacle")
+    assert code == 2 and "the case has no obstacle" in err
+
+
 @pytest.mark.parametrize(
     "options, told",
     [
@@ -118,6 +139,10 @@ def test_a_slow_down_is_told(tmp_path, capsys):
         (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
+        (
+            ["--kind", "waypoints", "--keep", "5:6"],
+            "which is not in the run; times from 0.5 s to 1.5",
+        ),
         (["--kind", "base", "--keep", "2:1"], "is no stretch of time"),
         (["--kind", "base", "--keep", "1:2"], "keep is given, of which a change of kind base"),
         (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),

@@ -164,6 +164,26 @@ def test_what_is_refused(fault, kind, how):
         gain(slot(), kind, **how)
 
 
+@pytest.mark.parametrize(
+    "kind, how, told",
+    [
+        ("waypoints", {"keep": [1]}, "is to be kept"),
+        ("waypoints", {"keep": [("a", "b")]}, "is to be kept"),
+        ("waypoints", {"keep_tool": 5}, "keep_tool"),
+        ("waypoints", {"keep_ends": "no"}, "True or False"),
+        ("base", {"margin": "a"}, "a number"),
+        ("base", {"margin": None}, "a number"),
+        ("base", {"robot": 3}, "a name"),
+        ("base", {"turn": 3}, "'x', 'y', 'z' or a Turn"),
+        ("base", {"tool": 3, "tool_path": "kept"}, "a name"),
+        ("obstacle", {"obstacle": 3}, "a name"),
+    ],
+)
+def test_options_of_another_sort_are_refused(kind, how, told):
+    with pytest.raises(BadInput, match=told):
+        gain(slot(), kind, **how)
+
+
 def test_clocks_that_are_not_tied_are_refused():
     case = replace(crossing(), clock=cl.Clock(0.1))
     with pytest.raises(BadInput, match="clocks"):
