@@ -33,7 +33,12 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
 @click.option(
     "--margin-mm", "margin", type=Millimetres(), default="0", help="Above the fail limits."
 )
-@click.option("--robot", metavar="NAME", help="Which; needed where there are several.")
+@click.option(
+    "--robot",
+    metavar="NAME",
+    multiple=True,
+    help="Which; needed where there are several. Of waypoints given again: paths that are changed together.",
+)
 @click.option("--obstacle", metavar="NAME", help="Which; needed where there are several.")
 @click.option(
     "--keep",
@@ -104,7 +109,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.load.case_file import load_case
     from clearance.overwriting import refuse_inputs
 
-    options = _with_turn(options)
+    options = _with_turn(options) | {"robot": _robot(options["robot"])}
     require_folder_place(out)
     read = load_case(case)
     if out is not None:
@@ -123,7 +128,12 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     return _code(found)
 
 
-def _folders(read: Case, out: Path, robot: str | None) -> list[Path]:
+def _robot(names: tuple[str, ...]) -> str | tuple[str, ...] | None:
+    """The one that is named, or several."""
+    return names if len(names) > 1 else next(iter(names), None)
+
+
+def _folders(read: Case, out: Path, robot: str | tuple[str, ...] | None) -> list[Path]:
     """Where each kind goes, of each robot where there are several."""
     from clearance.gains.every_kind import name_of, tries_of
 

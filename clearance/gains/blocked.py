@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
+from clearance.simulate.handed import AnyHanded, Handed
 from clearance.simulate.record import Record
 
 NOT_MOVED = "nothing of this change moves them"
@@ -56,7 +56,7 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | None:
+def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Blocked | None:
     """The worst pair that falls short and that no change moves; None without one.
 
     Args:
@@ -65,6 +65,12 @@ def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | No
     near = [one for one in state.near if not handed.has(one)]
     found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+
+
+def approach_of(blocked: Blocked, state: State) -> Approach:
+    """The approach that something is blocked by."""
+    names = {blocked.body_a, blocked.body_b}
+    return next(one for one in state.near if {body.name_in(one.case) for body in one.pair} == names)
 
 
 def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:

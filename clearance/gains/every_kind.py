@@ -40,9 +40,13 @@ class Tried:
         return self.gain is not None and self.gain.kept
 
 
-def tries_of(case: Case, robot: str | None) -> list[tuple[str, str | None]]:
+Robot = str | tuple[str, ...] | None
+"""Which robot, or which together; None for the only one."""
+
+
+def tries_of(case: Case, robot: Robot) -> list[tuple[str, Robot]]:
     """Kinds, in order, and the robot that each is to change: all that it may be of, where none is named."""
-    found: list[tuple[str, str | None]] = []
+    found: list[tuple[str, Robot]] = []
     for kind in SUB_FOLDERS:
         if kind == "obstacle" or robot is not None or len(case.robots) == 1:
             found.append((kind, robot))
@@ -51,9 +55,11 @@ def tries_of(case: Case, robot: str | None) -> list[tuple[str, str | None]]:
     return found
 
 
-def name_of(kind: str, robot: str | None, case: Case) -> str:
+def name_of(kind: str, robot: Robot, case: Case) -> str:
     """Of a kind, with its robot where there are several; a path below the folder of all."""
-    return kind if robot is None or len(case.robots) == 1 else f"{kind}/{robot}"
+    if kind == "obstacle" or not isinstance(robot, str) or len(case.robots) == 1:
+        return kind
+    return f"{kind}/{robot}"
 
 
 def every_kind(
@@ -73,7 +79,7 @@ def every_kind(
             own["robot"] = robot
         if not own.get("keep_tool") and own.get("tool_path") != "kept":
             own.pop("tool", None)
-        name = name_of(kind, None if kind == "obstacle" else robot, case)
+        name = name_of(kind, robot, case)
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:

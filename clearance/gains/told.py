@@ -50,7 +50,9 @@ def _too_fast(gain: Gain) -> str:
     if not gain.joint_names:
         return ""
     robots = gain.before.record.case.robots
-    return too_fast(robots[index_of_robot(robots, gain.who)])
+    names = gain.asked.robots or (gain.who,)
+    told = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
+    return ", ".join(line for line in told if line)
 
 
 def _kept(gain: Gain) -> Iterator[Line]:

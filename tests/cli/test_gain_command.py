@@ -131,11 +131,32 @@ def test_a_cell_without_obstacles_has_none_to_move(tmp_path, capsys):
     assert code == 2 and "the case has no obstacle" in err
 
 
+def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
+    path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
+    table = path.parent / "along_y.csv"  # 30 mm beside the other all along
+    table.write_text((path.parent / "along_x.csv").read_text().replace(",0.0\n", ",0.13\n"))
+    options = ("--kind", "waypoints", "--robot", "one", "--robot", "other", "--free-ends")
+    code, text, _ = said(capsys, path, *options, "--out", out)
+    assert code == 0 and "joint one/y by up to -10.00 mm" in text
+    assert "joint other/y by up to +10.00 mm" in text
+    written = {one.name for one in out.glob("trajectory_*")}
+    assert written == {
+        f"trajectory_{name}.{kind}" for name in ("one", "other") for kind in ("csv", "yaml")
+    }
+    assert (
+        run(["check", str(out / "case.yaml")]) == 0 and "other/y" in (out / "gain.html").read_text()
+    )
+
+
 @pytest.mark.parametrize(
     "options, told",
     [
         (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
+        (
+            ["--kind", "base", "--robot", "bar", "--robot", "bat"],
+            "2 robots are named, of which one",
+        ),
         (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
