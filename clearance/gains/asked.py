@@ -73,9 +73,9 @@ class Asked:
     @property
     def robots(self) -> tuple[str, ...]:
         """The robots that are named."""
-        if self.robot is None or isinstance(self.robot, str):
-            return () if self.robot is None else (self.robot,)
-        return self.robot
+        if self.robot is None:
+            return ()
+        return self.robot if isinstance(self.robot, tuple) else (self.robot,)
 
     @property
     def one_robot(self) -> str | None:
@@ -132,7 +132,7 @@ def _require_sorts(asked: Asked) -> None:
         (SWITCHES, (bool, np.bool_), "True or False"),
         (("turn",), (Turn, type(None)), "'x', 'y', 'z' or a Turn"),
     ]
-    if not all(isinstance(name, str) for name in asked.robots or ()):
+    if not all(isinstance(name, str) for name in asked.robots):
         raise BadInput(f"robot is {asked.robot!r:.60}", valid="a name, or several")
     for names, sort, valid in sorts:
         for name in names:
