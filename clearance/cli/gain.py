@@ -33,7 +33,12 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
 @click.option(
     "--margin-mm", "margin", type=Millimetres(), default="0", help="Above the fail limits."
 )
-@click.option("--robot", metavar="NAME", help="Which; needed where there are several.")
+@click.option(
+    "--robot",
+    metavar="NAME",
+    multiple=True,
+    help="Which; needed where there are several. Of waypoints given again: paths that are changed together.",
+)
 @click.option("--obstacle", metavar="NAME", help="Which; needed where there are several.")
 @click.option(
     "--keep",
@@ -94,22 +99,25 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
 
     waypoints: smooth offsets of a robot's joints. obstacle, base: a shift along x, y and z, with --turn a turn,
-    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, and
-    the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and gain.json. Exit
-    code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
+    all joints as they are. timing: a robot begins later, or is slowed down. all: each of them that applies, of
+    each robot, and the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and
+    gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
-    from clearance.gains.every_kind import SUB_FOLDERS
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.gains.written import OWN
+    from clearance.gains.written import CASE, OWN
     from clearance.load.case_file import load_case
+    from clearance.overwriting import refuse_inputs
 
-    options = _with_turn(options)
+    options = _with_turn(options) | {"robot": _robot(options["robot"])}
     require_folder_place(out)
-    if out is not None:
-        for folder in [out / name for name in SUB_FOLDERS] if kind == "all" else [out]:
-            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
     read = load_case(case)
+    if out is not None:
+        sources = [one.read_from for one in read.sources if one.is_file]
+        folders = _folders(read, out, options["robot"]) if kind == "all" else [out]
+        for folder in folders:
+            refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
+            refuse_inputs([folder / name for name in (CASE, FIGURES, PAGE)], sources)
     say_notices(read)
     if kind == "all":
         return _every_kind(read, case, out, options, force=force)
@@ -118,6 +126,18 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     _say(found)
     _save(found, out, force=force)
     return _code(found)
+
+
+def _robot(names: tuple[str, ...]) -> str | tuple[str, ...] | None:
+    """The one that is named, or several."""
+    return names if len(names) > 1 else next(iter(names), None)
+
+
+def _folders(read: Case, out: Path, robot: str | tuple[str, ...] | None) -> list[Path]:
+    """Where each kind goes, of each robot where there are several."""
+    from clearance.gains.every_kind import name_of, tries_of
+
+    return [out / name_of(kind, who, read) for kind, who in tries_of(read, robot)]
 
 
 def _with_turn(options: dict[str, Any]) -> dict[str, Any]:

@@ -17,31 +17,35 @@ from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.asked import Asked, Options, asked_as
 from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.blocked import (
+    HOWEVER_SLOW,
     NOT_FOUND,
     TOO_FAR,
     TOO_LATE,
     TOO_SLOW,
     Blocked,
+    approach_of,
     blocked_by,
     kept_still,
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import least_delay, least_slowing
+from clearance.gains.delay import Delayed, least_delay, least_slowing
 from clearance.gains.held_back import held_back
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
+from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
 from clearance.gains.search import Change, Found, Search
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
+from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
-from clearance.gains.tool_poses import ToolKeep, ToolMove
+from clearance.gains.tool_poses import ToolMove
 from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, Run, answer
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 
 INTERVALS = (12, 24, 48, 96)
 """Of the splines of a path, the coarsest that is enough is taken."""
@@ -64,7 +68,7 @@ class Gain:
         asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
         case: the changed case; the best that was reached where it is not kept.
         change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
-            samples of a path; (1,) [s] of a delay, or the share
+            samples of a path, one such array for each of several robots; (1,) [s] of a delay, or the share
             by which a path takes longer.
         size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
             kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
@@ -80,7 +84,7 @@ class Gain:
     asked: Asked
     kept: bool
     case: Case
-    change: np.ndarray
+    change: np.ndarray | tuple[np.ndarray, ...]
     size: float
     lower_bound: float
     who: str
@@ -158,7 +162,7 @@ def _by_shift(case: Case, asked: Asked) -> Gain:
 
 def _by_base_alone(case: Case, asked: Asked, shift: Shift) -> Gain:
     """A base that is moved while its tool goes the same way."""
-    i_robot = _robot(case, asked.robot)
+    i_robot = _robot(case, asked.one_robot)
     before = case.robots[i_robot]
     require_within_limits(before)
     way = tool_path_kept(shift, i_robot, asked.tool)
@@ -209,80 +213,61 @@ def _starts(size: float | None, shift: Shift | ToolPathKept) -> Iterator[np.ndar
 
 
 def _by_path(case: Case, asked: Asked) -> Gain:
-    i_robot = _robot(case, asked.robot)
-    who = case.robots[i_robot].robot.name
-    require_within_limits(case.robots[i_robot])
-    _require_in_path(case.robots[i_robot], asked.keep_tool)
+    changed = [_robot(case, name) for name in asked.robots or (None,)]
+    for i_robot in changed:
+        require_within_limits(case.robots[i_robot])
+        require_in_path(case.robots[i_robot], asked.keep_tool)
     for n_intervals in INTERVALS:
-        offsets = joint_offsets(
-            case, i_robot, n_intervals, _kept(case, i_robot, asked), asked.keep_tool, asked.tool
-        )
+        offsets = _offsets(case, changed, n_intervals, asked)
         search = Search(offsets, asked.margin)
-        first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
+        first = search.state_at(np.zeros(len(offsets.first_reach)))
+        require_in_run(asked.keep, first.record.timeline.times)
         at_least = least_offset(offsets, first, asked.margin)
         blocked = blocked_by(first, offsets.gradient, offsets.handed)
         if blocked is not None:
-            blocked = kept_still(blocked, _windows(case, i_robot, asked))
-        blocked = blocked or held_back(first, offsets)
+            blocked = _kept_still(blocked, first, offsets, asked)
+        elif isinstance(offsets, JointOffsets):
+            blocked = held_back(first, offsets)
         found = Found(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
+    who = ", ".join(case.robots[i].robot.name for i in changed)
     change = offsets.offsets(found.state.x)
     told = _gain(case, asked, found, change, offsets, at_least, who, blocked)
-    poses = offsets.tool_poses
-    moves = () if poses is None else tuple(poses.moves(found.state.x))
-    return replace(told, joint_names=offsets.placed.asked.joint_names, tool_moves=moves)
+    moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
+    names = tuple(name for part in offsets.parts for name in part.placed.asked.joint_names)
+    return replace(told, joint_names=names, tool_moves=moves)
 
 
-def _require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
-    """Nothing, if the moments at which a tool is kept are of its robot's path.
-
-    Raises:
-        BadInput: which is not.
-    """
-    if placed.trajectory is None:
-        return
-    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
-    for one in keeps:
-        if not start <= one.time <= end:
-            raise BadInput(
-                f"a tool is to be kept at {one.time:g} s, at which its path is not",
-                valid=f"a time from {start:g} to {end:g} s",
-            )
+def _offsets(
+    case: Case, changed: Sequence[int], n_intervals: int, asked: Asked
+) -> JointOffsets | PathsTogether:
+    """What may be changed of one robot's path, or of several at once."""
+    parts = [
+        joint_offsets(case, i, n_intervals, kept_of(case, i, asked), asked.keep_tool, asked.tool)
+        for i in changed
+    ]
+    return parts[0] if len(parts) == 1 else PathsTogether(tuple(parts))
 
 
-def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
-    """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
-    next to a window draw the path in it."""
-    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
-    kept = []
-    for window in asked.keep:
-        start, end = ((time - timing.start) * timing.rate for time in window)
-        before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
-        after = min(int(np.searchsorted(times, end)), len(times) - 1)
-        kept.append((times[before], times[after]))
-    if asked.keep_ends:
-        kept += [(times[0], times[0]), (times[-1], times[-1])]
-    return tuple((float(start), float(end)) for start, end in kept)
-
-
-def _windows(case: Case, i_robot: int, asked: Asked) -> list[tuple[float, float]]:
-    """The same in times of the run; before its path begins and after it ends the robot stands at an end that may
-    be kept."""
-    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
-    found = []
-    for start, end in _kept(case, i_robot, asked):
-        first = -np.inf if start <= times[0] else timing.start + start / timing.rate
-        last = np.inf if end >= times[-1] else timing.start + end / timing.rate
-        found.append((float(first), float(last)))
-    return found
+def _kept_still(
+    blocked: Blocked, first: State, offsets: JointOffsets | PathsTogether, asked: Asked
+) -> Blocked:
+    """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
+    approach = approach_of(blocked, first)
+    told = [
+        kept_still(blocked, windows_of(part.case, part.i_robot, asked))
+        for part in offsets.parts
+        if part.gradient(approach) is not None
+    ]
+    return next((one for one in told if one.why == blocked.why), told[0]) if told else blocked
 
 
 def _gain(
     case: Case,
     asked: Asked,
     found: Found,
-    change: np.ndarray,
+    change: np.ndarray | tuple[np.ndarray, ...],
     way: Change,
     at_least: float,
     who: str,
@@ -305,37 +290,50 @@ def _gain(
 def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
-    if isinstance(way, JointOffsets):
-        told = bound_by(found.state, blocked, robots[way.i_robot])
+    if isinstance(way, JointOffsets | PathsTogether):
+        told = bound_by(found.state, blocked, [robots[part.i_robot] for part in way.parts])
         return told if way.tool_poses is None else told + tools_held(way.tool_poses.moves(x))
-    told = bound_by(found.state, blocked, None)
+    told = bound_by(found.state, blocked)
     if isinstance(way, ToolPathKept):
         told += joints_held(robots[way.i_robot])
     return told + ends_reached(x, way.box)
 
 
 def _by_delay(case: Case, asked: Asked) -> Gain:
-    i_robot = _robot(case, asked.robot)
+    i_robot = _robot(case, asked.one_robot)
     if asked.slow_down:
         found = least_slowing(case, i_robot, asked.margin)
     else:
         found = least_delay(case, i_robot, asked.margin, asked.most_delay)
     before, after = answer(Question(case)), answer(Question(found.state.case))
-    blocked = None
+    blocked, at_least = None, found.at_least
     if not found.kept:
-        why = TOO_SLOW if asked.slow_down else TOO_LATE
-        blocked = worst_pair(found.state, why) or unproven(after.record, asked.margin)
+        blocked = _blocked_in_time(found, asked, after)
+    if np.isinf(at_least):
+        at_least = found.delay
     return Gain(
-        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, found.at_least,
+        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, at_least,
         case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
     )  # fmt: skip
+
+
+def _blocked_in_time(found: Delayed, asked: Asked, after: Run) -> Blocked:
+    """What stays too near with every delay, else what does with the last that was looked at."""
+    if found.stays is not None and np.isinf(found.at_least):
+        return found.stays
+    why = TOO_SLOW if asked.slow_down else TOO_LATE
+    if np.isinf(found.at_least):
+        why = HOWEVER_SLOW
+    return worst_pair(found.state, why) or unproven(after.record, asked.margin)
 
 
 def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
     box = ANYWHERE if asked.within is None else Box(*np.array(asked.within).T)
     if asked.kind == "base":
-        who = case.robots[_robot(case, asked.robot)].robot.name
+        who = case.robots[_robot(case, asked.one_robot)].robot.name
         return base_shift(case, who, box, asked.turn), who
+    if not case.obstacles:
+        raise BadInput("the case has no obstacle", valid="kind waypoints, base or timing")
     if asked.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
         raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")

@@ -46,7 +46,7 @@ class Asked:
 
     Attributes:
         kind: one of `KINDS`. margin: [m] above the fail limits.
-        robot, obstacle: names; where there is one, it need not be given.
+        robot, obstacle: names; where there is one, it need not be given. Of waypoints several robots.
         keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
         most_delay: [s].
         within: how far a shift may go along x, y and z, ends of both signs or 0 [m]; None for anywhere.
@@ -58,7 +58,7 @@ class Asked:
 
     kind: str
     margin: float = 0.0
-    robot: str | None = None
+    robot: str | tuple[str, ...] | None = None
     obstacle: str | None = None
     keep: tuple[tuple[float, float], ...] = ()
     keep_ends: bool = True
@@ -70,15 +70,30 @@ class Asked:
     tool_path: str | None = None
     slow_down: bool = False
 
+    @property
+    def robots(self) -> tuple[str, ...]:
+        """The robots that are named."""
+        if self.robot is None:
+            return ()
+        return self.robot if isinstance(self.robot, tuple) else (self.robot,)
+
+    @property
+    def one_robot(self) -> str | None:
+        """The robot that is named, of kinds that know of one only."""
+        assert not isinstance(self.robot, tuple)
+        return self.robot
+
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+        _require_sorts(self)
         for name, kinds in OWN.items():
             if getattr(self, name) and self.kind not in kinds:
                 raise BadInput(
                     f"{name} is given, of which a change of kind {self.kind} knows nothing",
                     valid=f"{name} with kind {' or '.join(kinds)}",
                 )
+        _require_one_robot(self)
         if not 0.0 <= self.margin < np.inf:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         if not 0.0 <= self.most_delay < np.inf:
@@ -100,12 +115,56 @@ class Asked:
                 )
 
 
+NAMES, FIGURES, SWITCHES = (
+    ("obstacle", "tool", "tool_path"), ("margin", "most_delay"), ("keep_ends", "slow_down"),
+)  # fmt: skip
+
+
+def _require_sorts(asked: Asked) -> None:
+    """Nothing, if names are text, lengths and times numbers, a turn a turn, and the rest true or false.
+
+    Raises:
+        BadInput: which is not.
+    """
+    sorts: list[tuple[tuple[str, ...], tuple[type, ...], str]] = [
+        (NAMES, (str, type(None)), "a name"),
+        (FIGURES, (int, float, np.integer, np.floating), "a number"),
+        (SWITCHES, (bool, np.bool_), "True or False"),
+        (("turn",), (Turn, type(None)), "'x', 'y', 'z' or a Turn"),
+    ]
+    if not all(isinstance(name, str) for name in asked.robots):
+        raise BadInput(f"robot is {asked.robot!r:.60}", valid="a name, or several")
+    for names, sort, valid in sorts:
+        for name in names:
+            given = getattr(asked, name)
+            if not isinstance(given, sort) or (valid == "a number" and isinstance(given, bool)):
+                raise BadInput(f"{name} is {given!r:.60}", valid=valid)
+
+
+def _require_one_robot(asked: Asked) -> None:
+    """Nothing, if several robots are named only where their paths may be changed together, each once.
+
+    Raises:
+        BadInput: they are not.
+    """
+    if not isinstance(asked.robot, tuple):
+        return
+    if asked.kind != "waypoints" or asked.keep_tool or asked.tool:
+        raise BadInput(
+            f"{len(asked.robot)} robots are named, of which one is changed",
+            valid="one; several with kind waypoints, without a tool",
+        )
+    if len({*asked.robot}) < len(asked.robot):
+        raise BadInput("a robot is named twice", valid="each once")
+
+
 class Options(TypedDict, total=False):
     """What a change may be given by name; each has the value of `Asked` where it is not given.
 
     Attributes:
         margin: [m] above the fail limits.
-        robot, obstacle: what is changed; where there is one, it need not be named.
+        robot, obstacle: what is changed; where there is one, it need not be named. Of waypoints several robots,
+            whose paths are changed together.
         keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
         most_delay: [s] that is looked at.
         within: [m] how far a shift may go along x, y and z: a number for either way, or both ends.
@@ -118,7 +177,7 @@ class Options(TypedDict, total=False):
     """
 
     margin: float
-    robot: str | None
+    robot: str | Sequence[str] | None
     obstacle: str | None
     keep: Sequence[Range]
     keep_ends: bool
@@ -144,12 +203,29 @@ def asked_as(kind: str, options: Options) -> Asked:
             f"there is no option {unknown[0]!r}",
             valid=nearest_name(unknown[0], [*Options.__annotations__]),
         )
-    given["keep"] = tuple((start, end) for start, end in options.get("keep", ()))
+    robot = options.get("robot")
+    if isinstance(robot, list | tuple):
+        given["robot"] = robot[0] if len(robot) == 1 else tuple(robot) or None
+    given["keep"] = stretches_of(options.get("keep", ()))
     given["keep_tool"] = keeps_of(options.get("keep_tool", ()))
     within, turn = options.get("within"), options.get("turn")
     given["within"] = None if within is None else ranges_of(within)
     given["turn"] = Turn(turn) if isinstance(turn, str) else turn
     return Asked(kind, **given)
+
+
+def stretches_of(keep: Sequence[Range]) -> tuple[Range, ...]:
+    """Each stretch by its start and its end.
+
+    Raises:
+        BadInput: no pairs of numbers.
+    """
+    try:
+        return tuple((float(start), float(end)) for start, end in keep)
+    except (TypeError, ValueError):
+        raise BadInput(
+            f"{keep!r:.60} is to be kept", valid="(start, end) of each stretch [s of the run]"
+        ) from None
 
 
 def ranges_of(within: Sequence[float | Range]) -> tuple[Range, ...]:
@@ -173,6 +249,8 @@ def keeps_of(given: Iterable[ToolKeep | tuple[float, float, float]]) -> tuple[To
     Raises:
         BadInput: as `ToolKeep`; not three numbers.
     """
+    if not isinstance(given, Iterable):
+        raise BadInput(f"{given!r:.60} is given for keep_tool", valid="a tuple for each moment")
     return tuple(one if isinstance(one, ToolKeep) else _keep(one) for one in given)
 
 

@@ -5,7 +5,7 @@ Not for: what is plain before any search (`blocked`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -23,16 +23,16 @@ MOST = 4
 """Lines of each sort."""
 
 
-def bound_by(state: State, blocked: Blocked, placed: PlacedRobot | None) -> tuple[str, ...]:
+def bound_by(
+    state: State, blocked: Blocked, changed: Sequence[PlacedRobot] = ()
+) -> tuple[str, ...]:
     """Pairs beside the blocked one that want all that they have, and joints at a limit at that moment.
 
     Args:
-        placed: the robot whose path is changed, as it was reached.
+        changed: the robots whose paths are changed, as they were reached.
     """
-    return (
-        *_pairs(state, blocked)[:MOST],
-        *(_joints(placed, blocked.time) if placed else [])[:MOST],
-    )
+    joints = [line for placed in changed for line in _joints(placed, blocked.time)]
+    return (*_pairs(state, blocked)[:MOST], *joints[:MOST])
 
 
 def joints_held(placed: PlacedRobot) -> tuple[str, ...]:

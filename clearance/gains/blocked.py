@@ -13,7 +13,7 @@ import numpy as np
 from clearance.gains.shortfalls import Gradient, State
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
+from clearance.simulate.handed import AnyHanded, Handed
 from clearance.simulate.record import Record
 
 NOT_MOVED = "nothing of this change moves them"
@@ -23,7 +23,14 @@ NOT_FOUND = "the search found no change that gives more"
 NOT_PROVEN = "the motion there, between two steps, is not proven to keep them"
 TOO_FAR = "no change within what is allowed is large enough"
 TOO_SLOW = "no slow-down that was looked at gives more"
+HOWEVER_SLOW = "however slow it goes, it is no farther from them by then"
+AT_REST = "they stand there whatever the delay"
+ON_ITS_WAY = "its path leads there whatever the delay"
 TOO_LATE = "no delay that was looked at gives more"
+
+
+HOPELESS = (NOT_MOVED, KEPT_STILL, TOO_FAR, HOWEVER_SLOW, AT_REST, ON_ITS_WAY)
+"""With these no change of the kind, however large, makes every rule hold."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +57,7 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | None:
+def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Blocked | None:
     """The worst pair that falls short and that no change moves; None without one.
 
     Args:
@@ -59,6 +66,12 @@ def blocked_by(state: State, gradient: Gradient, handed: Handed) -> Blocked | No
     near = [one for one in state.near if not handed.has(one)]
     found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
+
+
+def approach_of(blocked: Blocked, state: State) -> Approach:
+    """The approach that something is blocked by."""
+    names = {blocked.body_a, blocked.body_b}
+    return next(one for one in state.near if {body.name_in(one.case) for body in one.pair} == names)
 
 
 def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:

@@ -15,14 +15,16 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.gains.blocked import Blocked
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gains.unreachable import INWARD, motion_radii, way_needed
+from clearance.gains.whatever_delay import is_told_by, stays_whatever
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 
 FINEST = 1e-3
@@ -48,8 +50,9 @@ class Delayed:
     Attributes:
         delay: [s], or by what share a path takes longer: the least found that keeps the rules, else the last
             looked at.
-        at_least: no less does.
+        at_least: no less does; infinite where none does.
         n_measured: how many were measured.
+        stays: a pair that stays as near with any change that is greater; None without one.
     """
 
     state: State
@@ -57,6 +60,7 @@ class Delayed:
     delay: float
     at_least: float
     n_measured: int
+    stays: Blocked | None = None
 
     @property
     def kept(self) -> bool:
@@ -91,8 +95,10 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     speed = greatest_speed(case, i_robot)
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
-        found = _over(ways, speed)
-        return np.minimum(found, _since_it_came(state.case.robots[i_robot], approach))
+        now, times = state.case.robots[i_robot], _times(approach)
+        known = is_told_by(state.case, i_robot, times)
+        since = times - now.timing.run_times(now.asked.times)[0]
+        return np.where(known, _over(ways, speed), np.minimum(_over(ways, speed), since))
 
     return _least(
         lambda delay: case_later(case, i_robot, delay), longer, i_robot, margin, (FINEST, most)
@@ -116,10 +122,11 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> Delayed:
 
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
         now = state.case.robots[i_robot]
-        at = np.maximum((_times(approach) - now.timing.start) * now.timing.rate, 0.0)
+        times = _times(approach)
+        at = np.maximum((times - now.timing.start) * now.timing.rate, 0.0)
         then = np.maximum(at - _over(ways, speed), 0.0)
-        if now.timing.after == "absent":
-            then = np.maximum(then, now.asked.times[0])
+        known = is_told_by(state.case, i_robot, times)
+        then = np.where(known, then, np.maximum(then, now.asked.times[0]))
         slower = np.divide(at, then, out=np.full(len(at), np.inf), where=then > 0.0)
         taken = placed.timing.rate / now.timing.rate
         return np.maximum(slower - 1.0, 0.0) * taken
@@ -153,6 +160,7 @@ def _least(
     finest, most = steps
     wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
+    stays: Blocked | None = None
     n_measured = 0
     while n_measured < MOST_DELAYS:
         n_measured += 1
@@ -160,13 +168,18 @@ def _least(
         if state.worst <= 0.0:
             record = proven(state.case, margin)
             if keeps(record):
+                at_least = min(at_least, delay)
                 break
+        stays = stays_whatever(state, i_robot)
+        if stays is not None:
+            at_least = np.inf if at_least >= delay else at_least
+            break
         excluded = delay + _excluded(state, i_robot, margin, longer)
         at_least = max(at_least, excluded) if at_least >= delay else at_least
         if max(excluded, delay + finest) > most:
             break
         delay = max(excluded, delay + finest)
-    return Delayed(state, record, delay, min(at_least, delay), n_measured)
+    return Delayed(state, record, delay, at_least, n_measured, stays)
 
 
 def greatest_speed(case: Case, i_robot: int) -> float:
@@ -195,7 +208,8 @@ def greatest_speed(case: Case, i_robot: int) -> float:
 def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> float:
     """No change that is greater by less is enough.
 
-    Of a robot that is absent before its path begins a moment tells of no longer delay than brings it to that.
+    Where a moment is not in the run with every delay, or the robot not there, it tells of no longer delay than
+    brings the path's beginning to it.
     """
     columns, most = columns_of(state.case, i_robot), 0.0
     handed = Handed(state.case, (False, i_robot))
@@ -206,14 +220,6 @@ def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> floa
         ways = np.maximum(way_needed(approach, margin), 0.0)
         most = max(most, float(longer(state, approach, ways).max(initial=0.0)))
     return INWARD * most
-
-
-def _since_it_came(placed: PlacedRobot, approach: Approach) -> np.ndarray:
-    """(k,) [s] since when a robot is in the cell at the steps of an approach; infinite if always."""
-    times = _times(approach)
-    if placed.timing.after != "absent":
-        return np.full(len(times), np.inf)
-    return np.asarray(times - placed.timing.run_times(placed.asked.times)[0])
 
 
 def _times(approach: Approach) -> np.ndarray:

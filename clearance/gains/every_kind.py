@@ -15,7 +15,7 @@ from clearance.gains.asked import OWN
 from clearance.gains.told import bound_text, size_text
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 
 SUB_FOLDERS = ("waypoints", "base", "timing", "obstacle")
 """Where each kind goes; in this order they are tried."""
@@ -26,7 +26,8 @@ class Tried:
     """A kind of change that was tried.
 
     Attributes:
-        name: of the kind. gain: what it comes to; None where it does not apply. why: why not.
+        name: of the kind, with its robot where several are tried.
+        gain: what it comes to; None where it does not apply. why: why not.
     """
 
     name: str
@@ -39,10 +40,32 @@ class Tried:
         return self.gain is not None and self.gain.kept
 
 
+Robot = str | tuple[str, ...] | None
+"""Which robot, or which together; None for the only one."""
+
+
+def tries_of(case: Case, robot: Robot) -> list[tuple[str, Robot]]:
+    """Kinds, in order, and the robot that each is to change: all that it may be of, where none is named."""
+    found: list[tuple[str, Robot]] = []
+    for kind in SUB_FOLDERS:
+        if kind == "obstacle" or robot is not None or len(case.robots) == 1:
+            found.append((kind, robot))
+            continue
+        found += [(kind, placed.robot.name) for placed in case.robots if _is_of(kind, placed)]
+    return found
+
+
+def name_of(kind: str, robot: Robot, case: Case) -> str:
+    """Of a kind, with its robot where there are several; a path below the folder of all."""
+    if kind == "obstacle" or not isinstance(robot, str) or len(case.robots) == 1:
+        return kind
+    return f"{kind}/{robot}"
+
+
 def every_kind(
     case: Case, options: Mapping[str, Any], told: Callable[[str], AbstractContextManager[None]]
 ) -> Iterator[Tried]:
-    """What each kind comes to; of obstacles the one of the worst pair, unless one is named.
+    """What each kind comes to, of each robot and of the obstacle of the worst pair, where none is named.
 
     Args:
         options: as `gain` takes them. told: around each search, with its kind.
@@ -50,25 +73,33 @@ def every_kind(
     Raises:
         UnknownRobot, UnknownObstacle: with the nearest name.
     """
-    for kind in SUB_FOLDERS:
+    for kind, robot in tries_of(case, options.get("robot")):
         own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
+        if robot is not None and kind != "obstacle":
+            own["robot"] = robot
         if not own.get("keep_tool") and own.get("tool_path") != "kept":
             own.pop("tool", None)
+        name = name_of(kind, robot, case)
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:
-                yield Tried(kind, None, "the worst pair is of no obstacle that stands free")
+                yield Tried(name, None, "the worst pair is of no obstacle that stands free")
                 continue
             own["obstacle"] = nearest
         try:
-            with told(kind):
+            with told(name):
                 found = gain(case, kind, **own)
         except (UnknownObstacle, UnknownRobot):
             raise
         except BadInput as error:
-            yield Tried(kind, None, str(error))
+            yield Tried(name, None, str(error))
             continue
-        yield Tried(kind, found)
+        yield Tried(name, found)
+
+
+def _is_of(kind: str, placed: PlacedRobot) -> bool:
+    """True if a change of a kind can be of a robot."""
+    return placed.mount is None if kind == "base" else placed.trajectory is not None
 
 
 def table_lines(tried: Sequence[Tried]) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.gains.answer import Gain
 from clearance.run import Run
-from clearance.world.case import index_of_robot
+from clearance.world.case import PlacedRobot, index_of_robot
 
 STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""
@@ -36,7 +36,12 @@ class Moved(NamedTuple):
 def moved_parts(gain: Gain) -> list[Moved]:
     """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
     if gain.asked.kind == "waypoints":
-        return _joints(gain, gain.change)
+        changes = gain.change if isinstance(gain.change, tuple) else (gain.change,)
+        each = zip(changed_robots(gain), changes, strict=True)
+        return [
+            part for placed, change in each for part in _joints(placed, change, len(changes) > 1)
+        ]
+    assert not isinstance(gain.change, tuple)
     change = gain.change.tolist()
     if gain.asked.slow_down:
         return [Moved("duration", change[0], "share")]
@@ -53,15 +58,20 @@ def joint_parts(gain: Gain) -> list[Moved]:
     before, after = (
         one.record.case.robots[i_robot].asked.positions for one in (gain.before, gain.after)
     )
-    return _joints(gain, after - before)
+    return _joints(gain.case.robots[i_robot], after - before)
 
 
-def _joints(gain: Gain, change: np.ndarray) -> list[Moved]:
-    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
+def changed_robots(gain: Gain) -> list[PlacedRobot]:
+    """The robots of the changed case that are changed."""
+    robots = gain.case.robots
+    return [robots[index_of_robot(robots, name)] for name in gain.asked.robots or (gain.who,)]
+
+
+def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[Moved]:
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     times = placed.timing.run_times(placed.asked.times)
     found = []
-    for name, offsets in zip(gain.joint_names, change.T, strict=True):
+    for name, offsets in zip(placed.asked.joint_names, change.T, strict=True):
         rows = np.flatnonzero(np.abs(offsets) > STILL)
         if len(rows):
             most = int(np.argmax(np.abs(offsets)))
@@ -70,7 +80,8 @@ def _joints(gain: Gain, change: np.ndarray) -> list[Moved]:
                 float(times[max(rows[0] - 1, 0)]),
                 float(times[min(rows[-1] + 1, len(times) - 1)]),
             )
-            found.append(Moved(name, float(offsets[most]), unit, float(times[most]), *ends))
+            shown = f"{placed.robot.name}/{name}" if named else name
+            found.append(Moved(shown, float(offsets[most]), unit, float(times[most]), *ends))
     return found
 
 
@@ -86,17 +97,21 @@ def size_unit(gain: Gain) -> tuple[float, str]:
 
 
 def turning(gain: Gain) -> bool:
-    """True if a joint of the path that is changed turns."""
-    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
-    kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
-    return any(kinds[name] != "prismatic" for name in gain.joint_names)
+    """True if a joint of a path that is changed turns."""
+    return any(kind != "prismatic" for kind in _kinds(gain))
 
 
 def sliding(gain: Gain) -> bool:
-    """True if a joint of the path that is changed slides."""
-    placed = gain.case.robots[index_of_robot(gain.case.robots, gain.who)]
-    kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
-    return any(kinds[name] == "prismatic" for name in gain.joint_names)
+    """True if a joint of a path that is changed slides."""
+    return "prismatic" in _kinds(gain)
+
+
+def _kinds(gain: Gain) -> set[str]:
+    found = set[str]()
+    for placed in changed_robots(gain):
+        kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
+        found |= {str(kinds[name]) for name in placed.asked.joint_names}
+    return found
 
 
 def proven_bound(run: Run) -> float | None:

@@ -127,16 +127,25 @@ class JointOffsets:
         """(n, k) [rad or m] of the samples of the table."""
         return np.asarray(self._samples @ x.reshape(self.n_joints, -1).T)
 
+    @property
+    def parts(self) -> tuple[JointOffsets, ...]:
+        """Itself: those of one robot."""
+        return (self,)
+
     def case_of(self, x: np.ndarray) -> Case:
+        robots = list(self.case.robots)
+        robots[self.i_robot] = self.placed_of(x)
+        return replace(self.case, robots=tuple(robots))
+
+    def placed_of(self, x: np.ndarray) -> PlacedRobot:
+        """The robot with the path that is changed."""
         asked = self.placed.asked
         velocities = asked.velocities
         if velocities is not None:
             rates = self.basis.at(asked.times, 1)
             velocities = velocities + rates @ x.reshape(self.n_joints, -1).T
         changed = replace(asked, positions=asked.positions + self.offsets(x), velocities=velocities)
-        robots = list(self.case.robots)
-        robots[self.i_robot] = replace(self.placed, trajectory=changed)
-        return replace(self.case, robots=tuple(robots))
+        return replace(self.placed, trajectory=changed)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.handed.has(approach):
@@ -197,48 +206,61 @@ class JointOffsets:
         return ToolPoses(tool, self.tool_keeps, positions, self._between_samples(own))
 
     def swing(self, reach: np.ndarray) -> float:
-        return ARM * float((reach.reshape(self.n_joints, -1).max(axis=1) * self.weights).max())
+        farthest = reach.reshape(self.n_joints, -1).max(axis=1, initial=0.0)
+        return ARM * float((farthest * self.weights).max())
 
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
-        from scipy.optimize import linprog
+        return least_greatest(rows, x, box, self.sized, self.weight_of_each, self.kept)
 
-        a, b, cost = self._programme(reachable(rows, x, box), x)
-        size = len(x)
-        bounds = [*zip(box.low, box.high, strict=True)]
-        bounds += [(0.0, None)] * (size + 1)
-        found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
-        return None if found.x is None else np.asarray(found.x[:size])
+    @property
+    def sized(self) -> Any:
+        """(r, m) sparse: what no offset exceeds, by its weight, of some samples."""
+        from scipy.sparse import csr_array, kron
 
-    def _programme(self, rows: Rows, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
-        """A, b and cost of: x, its magnitudes, and the greatest offset."""
-        from scipy.sparse import block_array, csr_array, eye_array, kron
+        return kron(csr_array(np.diag(self.weights)), csr_array(self.few_samples))
 
-        size = len(x)
-        wanted = rows.missing + rows.gradients @ x
-        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self.few_samples))
-        ones = csr_array(np.ones((offsets.shape[0], 1)))
-        unit = eye_array(size)
-        kept, most = self.kept
-        a = block_array(
-            [
-                [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
-                [offsets, None, -ones],
-                [-offsets, None, -ones],
-                [unit, -unit, None],
-                [-unit, -unit, None],
-                [kept, None, None],
-            ],
-            format="csr",
-        )
-        flat = np.zeros(2 * offsets.shape[0] + 2 * size)
-        weight = EVENLY / size * np.repeat(self.weights, self.n_splines)
-        cost = np.concatenate([np.zeros(size), weight, [1.0]])
-        return a, np.concatenate([-wanted, flat, most]), cost
+    @property
+    def weight_of_each(self) -> np.ndarray:
+        """(m,) of each variable."""
+        return np.repeat(self.weights, self.n_splines)
 
     @cached_property
     def kept(self) -> Inequalities:
         """The limits of joints, of their speeds and of their accelerations, at the samples and between."""
         return joint_rows(self.placed, self.basis)
+
+
+def least_greatest(
+    rows: Rows, x: np.ndarray, box: Box, sized: Any, weights: np.ndarray, kept: Inequalities
+) -> np.ndarray | None:
+    """(m,) the variables of least greatest offset that keep all rows, linear about x; None if none do.
+
+    Args:
+        sized: (r, m) sparse: what offsets are at samples. weights: (m,) of each variable. kept: beside the rows.
+    """
+    from scipy.optimize import linprog
+    from scipy.sparse import block_array, csr_array, eye_array
+
+    size, rows = len(x), reachable(rows, x, box)
+    wanted = rows.missing + rows.gradients @ x
+    ones, unit = csr_array(np.ones((sized.shape[0], 1))), eye_array(size)
+    a = block_array(
+        [
+            [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
+            [sized, None, -ones],
+            [-sized, None, -ones],
+            [unit, -unit, None],
+            [-unit, -unit, None],
+            [kept.a, None, None],
+        ],
+        format="csr",
+    )
+    flat = np.zeros(2 * sized.shape[0] + 2 * size)
+    cost = np.concatenate([np.zeros(size), EVENLY / size * weights, [1.0]])
+    bounds = [*zip(box.low, box.high, strict=True), *([(0.0, None)] * (size + 1))]
+    b = np.concatenate([-wanted, flat, kept.b])
+    found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
+    return None if found.x is None else np.asarray(found.x[:size])
 
 
 def joint_offsets(

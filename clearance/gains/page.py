@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from clearance.gains.answer import Gain
 from clearance.gains.moved import Moved, joint_parts, moved_parts, proven_after, proven_bound
-from clearance.gains.told import lines_of, signed_text, size_text
+from clearance.gains.told import is_hopeless, lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
@@ -39,7 +39,7 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
 
 
 def _header(gain: Gain) -> Markup:
-    kicker = element("p", f"Clearance gained: {gain.asked.kind}", class_="kicker")
+    kicker = element("p", f"Least change of kind {gain.asked.kind}", class_="kicker")
     title = element("div", kicker, element("h1", gain.case.name))
     badge = element("p", _badge(gain), class_=f"verdict {'clear' if gain.kept else 'violated'}")
     lines = [
@@ -140,7 +140,7 @@ def _worst_moments(gain: Gain) -> Markup:
         "Verdict",
         ">Proven, mm",
     )
-    return section("Worst moments", table(heads, rows))
+    return section("Worst moments", table(heads, rows, "findings"))
 
 
 def _worst(name: str, run: Run, proven: float | None) -> Markup:
@@ -151,8 +151,8 @@ def _worst(name: str, run: Run, proven: float | None) -> Markup:
         element("td", name, style="white-space: nowrap"),
         _number(mm(worst.clearance)),
         _number(limit_mm(fail)),
-        element("td", f"{worst.link} and {worst.obstacle}"),
-        element("td", moment_text(worst)),
+        element("td", f"{worst.link} and {worst.obstacle}", class_="wide"),
+        element("td", moment_text(worst), class_="wide"),
         element("td", element("span", run.status, class_=f"tag {run.status}")),
         _number("" if proven is None else mm(proven)),
     )
@@ -173,9 +173,19 @@ def _no_reports() -> Markup:
     return section("Both motions", element("p", told))
 
 
+def _of_bound(gain: Gain) -> str:
+    if is_hopeless(gain):
+        return "That no change of this kind is enough is proven."
+    if gain.kept and gain.size == 0.0:
+        return "That every rule holds as it is is proven."
+    if gain.lower_bound <= 0.0:
+        return "The search is local: smaller changes are not excluded."
+    return "The bound is proven. The search is local: smaller changes, down to the bound, are not excluded."
+
+
 def _notes(gain: Gain, notes: Sequence[str]) -> Markup:
     told = [
-        "The bound is proven. The search is local: smaller changes, down to the bound, are not excluded.",
+        _of_bound(gain),
         "case.yaml is the changed case, with the limits of the one that it is from; gain.json has all figures.",
         *notes,
     ]  # fmt: skip

@@ -62,7 +62,7 @@ class Change(Protocol):
 
     @property
     def price(self) -> float:
-        """What a metre of clearance that is missing weighs against the size; more than any metre can cost."""
+        """What a metre of clearance that is missing weighs against the size at first; more than most cost."""
 
     @property
     def box(self) -> Box:
@@ -135,7 +135,7 @@ class Search:
     """
 
     def __init__(self, change: Change, margin: float) -> None:
-        self.change, self.margin = change, margin
+        self.change, self.margin, self.price = change, margin, change.price
         self.wanted = Wanted(margin, 2.0 * FINE, np.zeros(0))
         self.n_measured = 0
 
@@ -179,14 +179,19 @@ class Search:
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""
+        if not len(state.x):
+            return state
         reach, missing, blind = self.change.first_reach, [state.worst], BLIND
         rows = state.rows(self.change.gradient)
         for _ in range(MOST_STEPS):
             if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
                 return state
             x = self._aim(state, rows, reach)
-            foretold = self._merit(x, _foretold(rows, x - state.x))
-            gain = self._merit(state.x, state.worst) - foretold
+            left = _foretold(rows, x - state.x)
+            gain = self._merit(state.x, state.worst) - self._merit(x, left)
+            if gain <= 0.0 and state.worst - left > FINE:
+                self._raise_price(state, x, left)
+                gain = self._merit(state.x, state.worst) - self._merit(x, left)
             if gain <= SMALLER * self.change.size(state.x):
                 return state
             tried = self._state(x, reach)
@@ -216,7 +221,12 @@ class Search:
 
     def _merit(self, x: np.ndarray, missing: float) -> float:
         """What a step is to lower: the size of the change, and what is missing at its price."""
-        return self.change.size(x) + self.change.price * max(0.0, missing - FINE)
+        return self.change.size(x) + self.price * max(0.0, missing - FINE)
+
+    def _raise_price(self, state: State, x: np.ndarray, left: float) -> None:
+        """Makes what a step is to mend worth twice what it costs: some clearances hardly grow with any change."""
+        costs = self.change.size(x) - self.change.size(state.x)
+        self.price = max(self.price, 2.0 * costs / (state.worst - max(left, FINE)))
 
 
 def _foretold(rows: Rows, step: np.ndarray) -> float:

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
-from clearance.gains.blocked import KEPT_STILL, NOT_MOVED, TOO_FAR
-from clearance.gains.delay import MOST_SLOWER
+from clearance.gains.blocked import HOPELESS
+from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
 from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
@@ -34,7 +34,7 @@ def lines_of(gain: Gain) -> Iterator[Line]:
         yield "kept", f"nothing had to be changed: every rule is proven to hold{_by_margin(gain)}"
         return
     yield from _kept(gain) if gain.kept else _not_kept(gain)
-    if not _is_hopeless(gain):
+    if not is_hopeless(gain):
         yield "bound", bound_text(gain)
     fast = _too_fast(gain)
     if fast:
@@ -50,7 +50,9 @@ def _too_fast(gain: Gain) -> str:
     if not gain.joint_names:
         return ""
     robots = gain.before.record.case.robots
-    return too_fast(robots[index_of_robot(robots, gain.who)])
+    names = gain.asked.robots or (gain.who,)
+    told = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
+    return ", ".join(line for line in told if line)
 
 
 def _kept(gain: Gain) -> Iterator[Line]:
@@ -75,9 +77,9 @@ def _not_kept(gain: Gain) -> Iterator[Line]:
     yield from (("binding", line) for line in gain.binding)
 
 
-def _is_hopeless(gain: Gain) -> bool:
+def is_hopeless(gain: Gain) -> bool:
     """True if no change of the kind, however large, can make every rule hold."""
-    return gain.blocked is not None and gain.blocked.why in (NOT_MOVED, KEPT_STILL, TOO_FAR)
+    return gain.blocked is not None and gain.blocked.why in HOPELESS
 
 
 def changed_lines(gain: Gain) -> list[str]:
@@ -183,13 +185,27 @@ def _counted(gain: Gain) -> str:
 
 
 def _not_kept_text(gain: Gain) -> str:
-    if _is_hopeless(gain):
+    if is_hopeless(gain):
         return "no change of this kind can make every rule hold"
-    if gain.asked.slow_down:
-        return f"no slow-down to {1.0 + MOST_SLOWER:g} times its duration was found with which every rule holds"
     if gain.asked.kind == "timing":
-        return f"no delay up to {gain.asked.most_delay:g} s was found with which every rule holds"
+        return _not_in_time(gain)
     return "no change of this kind was found with which every rule is proven to hold"
+
+
+def _not_in_time(gain: Gain) -> str:
+    """Up to what was looked."""
+    looked = max(gain.size, gain.lower_bound)
+    slow = gain.asked.slow_down
+    finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.asked.most_delay)
+    more = "; longer ones were not looked at"
+    if looked + finest >= most:
+        looked, more = most, ""
+    how = (
+        f"slow-down to {1.0 + looked:.4g} times its duration"
+        if slow
+        else f"delay up to {looked:.4g} s"
+    )
+    return f"no {how} was found with which every rule holds{more}"
 
 
 def _by_margin(gain: Gain) -> str:
@@ -230,7 +246,8 @@ def _up(value: float) -> str:
 
 
 def _down(value: float) -> str:
-    """The same rounded down."""
+    """Four digits, at most four places, two digits of what is small; rounded down."""
     exact = Decimal(repr(value))
-    places = max(0, min(4, 3 - exact.adjusted()))
-    return str(exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+    places = 4 if value >= 1e-3 else 1 - exact.adjusted()
+    places = max(0, min(places, 3 - exact.adjusted()))
+    return f"{exact.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR):f}"

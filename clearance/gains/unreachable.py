@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.gains.offsets import JointOffsets
+from clearance.gains.paths_together import PathsTogether
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import State
 from clearance.gains.tool_path import ToolPathKept
@@ -48,11 +49,11 @@ def least_base(way: ToolPathKept, state: State, margin: float) -> float:
     return _least_of(way.shift, own, margin)
 
 
-def least_offset(offsets: JointOffsets, state: State, margin: float) -> float:
+def least_offset(offsets: JointOffsets | PathsTogether, state: State, margin: float) -> float:
     """[rad] In no smaller change the rules hold by a margin, however the joints move together."""
     least = 0.0
     for approach in state.near:
-        way = _way_of_unit(offsets, approach)
+        way = sum(_way_of_unit(part, approach) for part in offsets.parts)
         if way > 0.0 and not offsets.handed.has(approach):
             least = max(least, float(way_needed(approach, margin).max(initial=0.0)) / way)
     return INWARD * least

@@ -62,7 +62,7 @@ def written_case(gain: Gain, folder: Path) -> WrittenCase:
         )
     made = _Files(gain, folder)
     ways = {
-        "waypoints": made.path,
+        "waypoints": made.paths,
         "timing": made.delay,
         "base": made.base,
         "obstacle": made.obstacle,
@@ -96,21 +96,30 @@ class _Files:
 
         return rewritten_case(self.read.read(self.file), self.file, self.folder, change)
 
-    def path(self) -> None:
+    def paths(self) -> None:
+        """The tables of all paths that are changed, each of several with its robot's name."""
+        robots = self.gain.case.robots
+        names = self.gain.asked.robots or (self.gain.who,)
+        for name in names:
+            self.path(index_of_robot(robots, name), f"_{name}" if len(names) > 1 else "")
+
+    def path(self, i_robot: int, suffix: str = "") -> None:
         """A table of joints, which the case names, and the same as a message."""
-        placed = self.gain.case.robots[self._i_robot]
-        for name in (TRAJECTORY, MESSAGE):
+        placed = self.gain.case.robots[i_robot]
+        for plain in (TRAJECTORY, MESSAGE):
+            stem, kind = plain.split(".")
+            name = f"{stem}{suffix}.{kind}"
             text, notes = written(placed.asked, name)
             self.contents[name] = text
             self.notes += [f"{name}: {note}" for note in notes]
-        self._table({"file": TRAJECTORY})
+        self._table({"file": TRAJECTORY.replace(".", f"{suffix}.")}, i_robot)
 
     def delay(self) -> None:
         """A start, or a rate, in place of another."""
         if self.gain.asked.slow_down:
-            self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate})
+            self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate}, self._i_robot)
             return
-        self._table({"start": self.gain.case.robots[self._i_robot].timing.start})
+        self._table({"start": self.gain.case.robots[self._i_robot].timing.start}, self._i_robot)
 
     def base(self) -> None:
         """A place of a robot's base."""
@@ -124,7 +133,7 @@ class _Files:
 
         self._changes.append(change)
         if self.gain.tool_path is not None and self.gain.size > 0.0:
-            self.path()
+            self.path(i_robot)
 
     def obstacle(self) -> None:
         """A place of an obstacle, in the case file or in a scene's file of ours."""
@@ -150,9 +159,8 @@ class _Files:
     def _i_robot(self) -> int:
         return index_of_robot(self.gain.case.robots, self.gain.who)
 
-    def _table(self, told: Node) -> None:
-        """What is said of the robot's table."""
-        i_robot = self._i_robot
+    def _table(self, told: Node, i_robot: int) -> None:
+        """What is said of a robot's table."""
 
         def change(node: Node) -> None:
             _, holder = robot_node(node, i_robot)

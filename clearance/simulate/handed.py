@@ -54,3 +54,14 @@ class Handed:
         under = things_under(self.case, owner_of(self.case, Mount(name)))
         names = {self.case.obstacles[i].name for is_obstacle, i in under if is_obstacle}
         return self.thing in under or not parts.isdisjoint({name, *names})
+
+
+@dataclass(frozen=True, eq=False)
+class AnyHanded:
+    """What several changes at once hand over elsewhere."""
+
+    each: tuple[Handed, ...]
+
+    def has(self, approach: Approach) -> bool:
+        """True if a body of a pair is a part that any of them does, or stands on one."""
+        return any(one.has(approach) for one in self.each)

@@ -1,5 +1,7 @@
 """`clearance gain` as someone at a terminal meets it: lines, exit codes, files."""
 
+import json
+
 import pytest
 
 import clearance as cl
@@ -108,14 +110,60 @@ def test_a_slow_down_is_told(tmp_path, capsys):
     assert run(["check", str(tmp_path / "out" / "case.yaml")]) == 0
 
 
+def test_a_path_that_is_kept_whole_is_said_at_once(slot, capsys):
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
+    assert code == 1 and "that moment is to be kept" in text
+    slot.write_text(slot.read_text().replace("fail: 0.04", "fail: 0.01"))
+    code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep=-5:60")
+    assert code == 0 and "nothing had to be changed" in text
+
+
+def test_a_folder_that_holds_an_input_is_refused_before_any_search(slot, capsys):
+    before = slot.read_bytes()
+    options = ("--kind", "base", "--out", slot.parent, "--force")
+    code, text, err = said(capsys, slot, *options)
+    assert code == 2 and text == "" and "would overwrite" in err and len(err.splitlines()) == 1
+    assert slot.read_bytes() == before and not (slot.parent / "gain.json").exists()
+
+
+def test_a_cell_without_obstacles_has_none_to_move(tmp_path, capsys):
+    code, _, err = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "obstacle")
+    assert code == 2 and "the case has no obstacle" in err
+
+
+def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
+    path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
+    table = path.parent / "along_y.csv"  # 30 mm beside the other all along
+    table.write_text((path.parent / "along_x.csv").read_text().replace(",0.0\n", ",0.13\n"))
+    options = ("--kind", "waypoints", "--robot", "one", "--robot", "other", "--free-ends")
+    code, text, _ = said(capsys, path, *options, "--out", out)
+    assert code == 0 and "joint one/y by up to -10.00 mm" in text
+    assert "joint other/y by up to +10.00 mm" in text
+    written = {one.name for one in out.glob("trajectory_*")}
+    assert written == {
+        f"trajectory_{name}.{kind}" for name in ("one", "other") for kind in ("csv", "yaml")
+    }
+    assert (
+        run(["check", str(out / "case.yaml")]) == 0 and "other/y" in (out / "gain.html").read_text()
+    )
+
+
 @pytest.mark.parametrize(
     "options, told",
     [
         (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
+        (
+            ["--kind", "base", "--robot", "bar", "--robot", "bat"],
+            "2 robots are named, of which one",
+        ),
         (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
+        (
+            ["--kind", "waypoints", "--keep", "5:6"],
+            "which is not in the run; times from 0.5 s to 1.5",
+        ),
         (["--kind", "base", "--keep", "2:1"], "is no stretch of time"),
         (["--kind", "base", "--keep", "1:2"], "keep is given, of which a change of kind base"),
         (["--kind", "waypoints", "--obstacle", "left"], "obstacle with kind obstacle"),
@@ -144,6 +192,23 @@ def test_a_path_beyond_its_limits_is_refused(slot, capsys):
     assert code == 2 and "joint 'x' is 0.5 m beyond its upper limit" in err
 
 
-def test_where_no_kind_applies_it_is_bad_input(tmp_path, capsys):
-    code, text, _ = said(capsys, write_cell(tmp_path, CROSSING), "--kind", "all")
-    assert code == 2 and text.count("which robot may be changed is not said") == 3
+@pytest.mark.slow
+def test_all_kinds_are_tried_with_each_of_several_robots(tmp_path, capsys):
+    path, out = write_cell(tmp_path, CROSSING), tmp_path / "out"
+    code, text, _ = said(capsys, path, "--kind", "all", "--out", out)
+    assert code == 0 and "which robot" not in text
+    for kind in ("waypoints", "base", "timing"):
+        for robot in ("one", "other"):
+            assert f"\n{kind}/{robot} " in text
+            figures = json.loads((out / kind / robot / "gain.json").read_text())
+            assert cl.check(out / kind / robot / "case.yaml").passed == figures["kept"]
+            assert figures["who"] == robot and (figures["kept"] or kind == "waypoints")
+    code, _, err = said(capsys, path, "--kind", "all", "--out", out)
+    assert code == 2 and "--force overwrites it" in err and len(err.splitlines()) == 1
+
+
+def test_where_no_kind_applies_it_is_bad_input(slot, capsys):
+    slot.write_text(slot.read_text().replace("trajectory: {file: path.csv, start: 0.5}",
+                    "trajectory: {file: path.csv, after: loop}"))  # fmt: skip
+    code, text, _ = said(capsys, slot, "--kind", "all", "--within-mm", "0,0,0")
+    assert code == 2 and text.count("does not apply") == 4

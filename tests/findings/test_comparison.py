@@ -74,7 +74,7 @@ def test_what_lost_its_waiver_is_worse_however_near_it_is(least, before, tmp_pat
     now = BEFORE | {A: (-0.5, least)}
     comparison = compared(waived, found(tmp_path / "now", now))
     (row,) = comparison.rows
-    assert (row.change, row.why) == (Change.WORSE, "waived before, and is not now")
+    assert (row.change, row.why) == (FindingChange.WORSE, "waived before, and is not now")
     assert row.alarms and not comparison.passed
     assert compared(waived, waived_found(tmp_path / "still", now)).passed
     assert compared(before, waived).passed

@@ -14,7 +14,7 @@ from clearance.gains.shortfalls import proven
 from clearance.gains.told import lines_of
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
-from clearance.world.robot import Mimic
+from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 
@@ -162,6 +162,26 @@ def test_limits_of_joints_are_kept():
 )
 def test_what_is_refused(fault, kind, how):
     with pytest.raises(fault):
+        gain(slot(), kind, **how)
+
+
+@pytest.mark.parametrize(
+    "kind, how, told",
+    [
+        ("waypoints", {"keep": [1]}, "is to be kept"),
+        ("waypoints", {"keep": [("a", "b")]}, "is to be kept"),
+        ("waypoints", {"keep_tool": 5}, "keep_tool"),
+        ("waypoints", {"keep_ends": "no"}, "True or False"),
+        ("base", {"margin": "a"}, "a number"),
+        ("base", {"margin": None}, "a number"),
+        ("base", {"robot": 3}, "a name"),
+        ("base", {"turn": 3}, "'x', 'y', 'z' or a Turn"),
+        ("base", {"tool": 3, "tool_path": "kept"}, "a name"),
+        ("obstacle", {"obstacle": 3}, "a name"),
+    ],
+)
+def test_options_of_another_sort_are_refused(kind, how, told):
+    with pytest.raises(BadInput, match=told):
         gain(slot(), kind, **how)
 
 
@@ -364,3 +384,15 @@ def test_a_world_that_is_turned_turns_the_change():
         gain(one, "base") for one in (case, replace(case, robots=robots, obstacles=posts))
     )
     assert there.change == pytest.approx(turn[:3, :3] @ here.change, abs=FINE)
+
+
+def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
+    """A block below a roof, on a slide along it that falls by 2 mm a metre."""
+    slide = Joint("x", JointKind.PRISMATIC, "base", "tool", np.eye(4), [-1.0, -0.002, 0.0])
+    block = cl.Body("tool", cl.box((0.1, 0.1, 0.1)))
+    robot = cl.Robot("slider", ("base", "tool"), (slide,), (block,))
+    path = cl.Trajectory(np.linspace(0.0, 1.0, 41), ("x",), np.zeros((41, 1)))
+    roof = standing("roof", cl.box((3.0, 0.1, 1.0)), (0.0, 0.15, 0.0))
+    case = cl.Case("roof", (cl.PlacedRobot(robot, path),), (roof,), cl.Limits(fail=0.05002))
+    found = gain(case, "waypoints", keep_ends=False)
+    assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)

@@ -1,0 +1,73 @@
+"""Stretches of time in which a path stays as it is, in its table's time and in the run's.
+
+Not for: which splines that leaves (`basis`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.gains.asked import Asked
+from clearance.gains.tool_poses import ToolKeep
+from clearance.world.case import Case, PlacedRobot
+
+
+def require_in_run(keeps: Sequence[tuple[float, float]], times: np.ndarray) -> None:
+    """Nothing, if a part at least of each stretch that is kept is of the run.
+
+    Raises:
+        BadInput: which is not.
+    """
+    for start, end in keeps:
+        if end < times[0] or start > times[-1]:
+            raise BadInput(
+                f"from {start:g} s to {end:g} s is to be kept, which is not in the run",
+                valid=f"times from {times[0]:g} s to {times[-1]:g} s",
+            )
+
+
+def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
+    """Nothing, if the moments at which a tool is kept are of its robot's path.
+
+    Raises:
+        BadInput: which is not.
+    """
+    if placed.trajectory is None:
+        return
+    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
+    for one in keeps:
+        if not start <= one.time <= end:
+            raise BadInput(
+                f"a tool is to be kept at {one.time:g} s, at which its path is not",
+                valid=f"a time from {start:g} to {end:g} s",
+            )
+
+
+def kept_of(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
+    """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
+    next to a window draw the path in it."""
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
+    kept = []
+    for window in asked.keep:
+        start, end = ((time - timing.start) * timing.rate for time in window)
+        before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
+        after = min(int(np.searchsorted(times, end)), len(times) - 1)
+        kept.append((times[before], times[after]))
+    if asked.keep_ends:
+        kept += [(times[0], times[0]), (times[-1], times[-1])]
+    return tuple((float(start), float(end)) for start, end in kept)
+
+
+def windows_of(case: Case, i_robot: int, asked: Asked) -> list[tuple[float, float]]:
+    """The same in times of the run; before its path begins and after it ends the robot stands at an end that may
+    be kept."""
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
+    found = []
+    for start, end in kept_of(case, i_robot, asked):
+        first = -np.inf if start <= times[0] else timing.start + start / timing.rate
+        last = np.inf if end >= times[-1] else timing.start + end / timing.rate
+        found.append((float(first), float(last)))
+    return found

@@ -1,0 +1,94 @@
+"""Delays and slow-downs: what no delay mends, a run that begins later with its path, and up to what was looked."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.gains.answer import gain
+from clearance.gains.told import lines_of
+from clearance.world.timing import Timing
+from tests.gains.gantries import along_x, crossing, gantry, standing
+
+SLOWER = [False, True]
+
+
+def two(one, other, *obstacles, fail=0.05):
+    """Two blocks along x and along y, each from a place to a place in one second."""
+    first = along_x(gantry("one"), start=one[0], end=one[1])
+    times = first.trajectory.times
+    at = np.stack([0.0 * times, np.linspace(*other, len(times))], axis=1)
+    second = cl.PlacedRobot(gantry("other"), cl.Trajectory(times, ("x", "y"), at))
+    return cl.Case("two", (first, second), obstacles, cl.Limits(fail=fail))
+
+
+def refused_at_once(found, told):
+    assert not found.kept and found.n_measured == 1 and found.size == 0.0
+    lines = dict(lines_of(found))
+    assert told in lines["blocked"] and "no change of this kind can" in lines["not kept"]
+    assert "bound" not in lines
+
+
+@pytest.mark.parametrize("slow_down", SLOWER)
+def test_where_both_come_to_rest_no_delay_helps(slow_down):
+    found = gain(two((-1.0, 0.0), (-1.0, -0.12)), "timing", robot="one", slow_down=slow_down)
+    refused_at_once(found, "they stand there whatever the delay")
+
+
+@pytest.mark.parametrize("slow_down", SLOWER)
+def test_where_both_begin_no_delay_helps(slow_down):
+    found = gain(two((0.0, 1.0), (-0.12, -1.0)), "timing", robot="one", slow_down=slow_down)
+    refused_at_once(found, "they stand there whatever the delay")
+
+
+@pytest.mark.parametrize("slow_down", SLOWER)
+def test_a_pair_that_the_robot_does_not_move_is_said_at_once(slow_down):
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.12, 0.3, 0.0))
+    found = gain(two((5.0, 6.0), (-1.0, 1.0), post), "timing", robot="one", slow_down=slow_down)
+    refused_at_once(found, "nothing of this change moves them")
+
+
+@pytest.mark.parametrize("slow_down", SLOWER)
+def test_an_obstacle_in_the_way_of_the_path_stays_there(slow_down):
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
+    case = two((-1.0, 1.0), (5.0, 6.0), post)
+    refused_at_once(
+        gain(case, "timing", robot="one", slow_down=slow_down), "its path leads there whatever"
+    )
+
+
+def test_what_others_are_allowed_for_a_while_makes_no_difference():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
+    case = two((-1.0, 1.0), (5.0, 6.0), post)
+    case = replace(case, allow=(cl.Allowance(("one", "other"), cl.Window(0.0, 0.4)),))
+    refused_at_once(gain(case, "timing", robot="one"), "its path leads there whatever")
+
+
+def test_where_a_window_ends_a_later_path_may_pass():
+    post = standing("post", cl.box((0.1, 0.1, 1.0)), (-0.5, 0.12, 0.0))
+    case = two((-1.0, 1.0), (5.0, 6.0), post)
+    rule = cl.Rule(("post", "*"), cl.Window(0.0, 0.4), fail=0.05)
+    found = gain(replace(case, limits=cl.Limits(rules=(rule,))), "timing", robot="one")
+    assert found.kept and 0.1 < found.size < 0.4
+
+
+def test_how_far_was_looked_is_said(monkeypatch):
+    monkeypatch.setattr("clearance.gains.delay.MOST_DELAYS", 2)
+    found = gain(crossing(), "timing", robot="one")
+    told = dict(lines_of(found))["not kept"]
+    assert not found.kept and f"up to {found.lower_bound:.4g}"[:9] in told
+    assert "longer ones were not looked at" in told
+
+
+def test_a_run_that_begins_with_the_path_begins_later():
+    """A part on a line that has no end is near the path's start when the run begins, and soon away."""
+    table = cl.PoseTable(
+        np.array([0.0, 0.2, 1.0]), np.array([[-1.0, 0.12, 0.0], [-1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]),
+        np.tile([0.0, 0.0, 0.0, 1.0], (3, 1)), Timing(after="loop"),
+    )  # fmt: skip
+    part = cl.Obstacle(cl.Body("part", cl.box((0.1, 0.1, 0.1))), moves=table)
+    case = cl.Case("line", (along_x(gantry()),), (part,), cl.Limits(fail=0.1))
+    found = gain(case, "timing")
+    least = 0.08 / 4.4  # the part goes 0.88 m in 0.2 s, and 0.08 m are missing
+    assert found.kept and found.lower_bound <= least <= found.size <= least + 2e-3
