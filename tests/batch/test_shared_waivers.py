@@ -50,7 +50,9 @@ TABLE = {
         "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
     ),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
-    "of a case": (waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers"),
+    "of a case": (
+        waiver(case="t002"), 0, "CLEAR with waivers  3 cases: 3 clear", "proven for the motion, 1 with waivers",
+    ),
     "of another case": (
         waiver() + waiver(case="t000"), 1, "STALE WAIVER", "waivers[1]) is not needed: what it is of keeps",
     ),
