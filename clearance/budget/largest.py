@@ -17,6 +17,7 @@ import numpy as np
 from clearance.budget.proven import Moments, PairsWithErrors
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
+from clearance.kernels.motion.certify_pair import FINEST
 from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget
@@ -38,6 +39,9 @@ COARSE = 0.02
 
 MORE_ROWS = 8
 """Each time that rows keep a limit this many times as many are asked at once."""
+
+SPARE = 1e-11
+"""[m] By which a proof of all steps may be lower than one of a few; with a certificate, its gap at a limit."""
 
 MOST_ROUNDS = 6
 """Times that rows are added at which a number turned out too large; then it is halved until it is proven."""
@@ -165,7 +169,9 @@ class _Trial:
         return section.pairs.of(with_sizes(self._budget, self.key, tuple(sizes)))
 
     def _limit(self, section: SectionBudget) -> float:
-        return self.asked.fail + section.section.padding
+        certificate = section.answer.certificate
+        spare = SPARE if certificate is None else 2.0 * FINEST * certificate.gap
+        return self.asked.fail + section.section.padding + spare
 
     def _open(self, i: int, number: float, *, between: bool) -> np.ndarray:
         """Rows not known to keep the limit from what is proven with the number as given, hardest first."""

@@ -5,7 +5,8 @@ Not for: what the sections come to together (`answer`), and what is only expecte
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 
 import numpy as np
@@ -37,8 +38,11 @@ ROUNDED_DOWN = 2.0**-48
 """Relative rounding of the sums that make a proven number, beyond the slacks of the bounds."""
 
 
-MOST_ROUNDS = 8
-"""Times that steps of which least is left are proven once more."""
+ONCE_MORE = (1, 15, 112)
+"""So many steps of which least is left are proven once more, each time if less may be left than is proven."""
+
+AS_LOW = 4e-12
+"""[m] By which a bound that is carried may be lower: a step no farther below the least is not looked into."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +89,24 @@ class PairsWithErrors:
         other.__dict__["path"] = self.path  # errors are no part of it
         return other
 
+    @cached_property
+    def _idle(self) -> list[BudgetScene]:
+        """Scenes that no thread is at work with."""
+        return []
+
+    @contextmanager
+    def _scene(self) -> Iterator[BudgetScene]:
+        """A scene for one thread."""
+        try:
+            scene = self._idle.pop()
+        except IndexError:
+            layout = self.what.layout
+            world = with_turning_balls(layout.world)  # no two threads share it
+            state = new_state(world, self.errors)
+            scene = BudgetScene(layout.whole_faces, world, self.path, self.errors, state)
+        yield scene
+        self._idle.append(scene)
+
     @property
     def n_steps(self) -> int:
         """Number of steps."""
@@ -103,6 +125,7 @@ class PairsWithErrors:
         known: np.ndarray,
         enough: float = np.inf,
         points: np.ndarray | None = None,
+        is_exact: bool = False,
     ) -> BudgetRows:
         """What is proven at some moments.
 
@@ -110,8 +133,9 @@ class PairsWithErrors:
             order: (n,) the pair to look at first, or -1. known: (n,) [m] nominal, or NaN.
             enough: [m] what is proven beyond it is not looked into.
             points: (n, 2, 3) [m] the nearest points of that pair, as it is measured, if they are known.
+            is_exact: True to look as exactly as at few moments.
         """
-        n_looks = EXACT_LOOKS if len(moments) <= FEW else ROUGH_LOOKS
+        n_looks = EXACT_LOOKS if is_exact or len(moments) <= FEW else ROUGH_LOOKS
         near = np.full((len(moments), 2, 3), np.nan) if points is None else points
 
         def ask(span: slice) -> BudgetMoments:
@@ -163,14 +187,13 @@ class PairsWithErrors:
         rows = BudgetRows(np.empty(n_rows), np.full(n_rows, -1), np.full(n_rows, -1.0))
         if n_rows == 0:
             return rows
-        layout, errors, path = self.what.layout, self.errors, self.path
+        _ = self.errors, self.path  # made once, by this thread
 
         def run(span: slice) -> None:
             own = BudgetRows(*(column[span] for column in rows))
-            world = with_turning_balls(layout.world)  # no two threads share it
             tally = np.zeros(5, dtype=np.int64)
-            scene = BudgetScene(layout.whole_faces, world, path, errors, new_state(world, errors))
-            call(kernel, scene, ask(span), own, tally)
+            with self._scene() as scene:
+                call(kernel, scene, ask(span), own, tally)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):
             pass
@@ -191,18 +214,33 @@ def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
 
 
 def _sharpen_least(pairs: PairsWithErrors, found: Measurement, rows: BudgetRows) -> None:
-    """Proves the steps of which least is left once more, few at a time, until one of these is the least."""
-    at, left = pairs.steps(), rows.proven.copy()  # infinite where proven again
-    for _ in range(MOST_ROUNDS):
-        few = np.sort(np.argpartition(left, FEW - 1)[:FEW])
-        if np.min(left) > np.min(rows.proven[np.isinf(left)], initial=np.inf):
-            break
-        moments = Moments(at.intervals[few], at.shares[few])
-        sharp = pairs.at(moments, rows.pair[few], found.clearance[few])
-        better = sharp.proven > rows.proven[few]
-        rows.proven[few[better]] = sharp.proven[better]
-        rows.pair[few[better]] = sharp.pair[better]
-        left[few] = np.inf
+    """Proves the steps of which least is left once more, until one of these is the least."""
+    enough, is_sharp = np.inf, np.zeros(pairs.n_steps, dtype=bool)
+    for most in ONCE_MORE:
+        lower = np.flatnonzero(~is_sharp & (rows.proven < enough))
+        if len(lower) == 0:
+            return
+        if len(lower) > most:
+            lower = np.sort(lower[np.argpartition(rows.proven[lower], most)[:most]])
+        _sharpen(pairs, found, rows, lower, enough)
+        is_sharp[lower] = True
+        enough = float(rows.proven[is_sharp].min()) - AS_LOW
+
+
+def _sharpen(
+    pairs: PairsWithErrors,
+    found: Measurement,
+    rows: BudgetRows,
+    steps: np.ndarray,
+    enough: float,
+) -> None:
+    """Proves some steps once more, as far as what is left of them is below `enough` [m]."""
+    at = pairs.steps()
+    moments = Moments(at.intervals[steps], at.shares[steps])
+    sharp = pairs.at(moments, rows.pair[steps], found.clearance[steps], enough, is_exact=True)
+    better = sharp.proven > rows.proven[steps]
+    rows.proven[steps[better]] = sharp.proven[better]
+    rows.pair[steps[better]] = sharp.pair[better]
 
 
 def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> BudgetRows:

@@ -8,6 +8,7 @@ deciding (`receipt.proof`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,17 +22,31 @@ from clearance.receipt.proof.items import (
     CUT_B,
     CUT_TIME,
     DEEPEST,
+    LONG_DIRECTION,
     Items,
     cut,
     first_items,
 )
-from clearance.receipt.proof.motion_data import Shape, Stretch
+from clearance.receipt.proof.motion_data import UNIT, Shape, Stretch
 from clearance.receipt.proof.proving import SIZES, holds_all, one_inside
-from clearance.receipt.proof.separation import directions
+from clearance.receipt.proof.separation import LONG, directions
 from clearance.receipt.proof.stage import Stage, by_balls, by_directions
 
 MOST_ITEMS = 8_000_000
 """Of a receipt: about 10 MB."""
+
+MANY = 3
+"""Intervals of an item beyond which some of them are looked at before all are."""
+
+DEEP = 8
+"""Halvings of an interval after which a claim that may be lowered is, rather than cut on."""
+
+
+class Lowest(NamedTuple):
+    """Claims (rules, intervals), which are lowered where they cannot be proven, and how far they may be."""
+
+    claims: np.ndarray
+    lowest: np.ndarray
 
 
 class Found:
@@ -75,10 +90,12 @@ def evidence_for(
     claims: np.ndarray,
     most_items: int = MOST_ITEMS,
     progress: Progress | None = None,
+    lowest: np.ndarray | None = None,
 ) -> Found:
     """What proves all that is claimed.
 
     Args:
+        lowest: as `claims`, which are then lowered, no further than this, where evidence would be without end.
         progress: told in thousandths of the time of all pairs.
 
     Raises:
@@ -89,7 +106,7 @@ def evidence_for(
         stage = Stage(stretch, shapes, halves, claims)
         items = first_items(len(stretch.pairs), stretch.n_intervals)
         while len(items.pair):
-            deeds, codes = _deeds(stage, items)
+            deeds, codes = _deeds(stage, items, None if lowest is None else Lowest(claims, lowest))
             found.add(deeds, codes)
             if found.n_items > most_items:
                 raise BadInput(
@@ -124,7 +141,9 @@ def _pair_text(stage: Stage, pair: int) -> str:
     return " and ".join(stage.shapes[body].name for body in stage.stretch.pairs[pair].tolist())
 
 
-def _deeds(stage: Stage, items: Items) -> tuple[np.ndarray, dict[int, np.ndarray]]:
+def _deeds(
+    stage: Stage, items: Items, lowest: Lowest | None
+) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """What to do with items, and the codes of the directions among it."""
     deeds = np.full(len(items.pair), CUT_TIME)
     done = holds_all(items, by_balls(stage, items))
@@ -133,6 +152,9 @@ def _deeds(stage: Stage, items: Items) -> tuple[np.ndarray, dict[int, np.ndarray
     codes = np.zeros((len(items.pair), 2), dtype=np.int64)
     own = items.of(rest)
     u, slack = nearest_directions(stage, own)
+    tried = _may_hold(stage, own, u)
+    cut_u, cut_slack, cut_rows = u[:, ~tried], slack[~tried], rest[~tried]
+    rest, u, slack, own = rest[tried], u[:, tried], slack[tried], own.of(tried)
     for deed, most in SIZES:
         if not len(rest):
             break
@@ -141,10 +163,52 @@ def _deeds(stage: Stage, items: Items) -> tuple[np.ndarray, dict[int, np.ndarray
         deeds[rest[held]], codes[rest[held]] = deed, coded[held]
         left = ~held
         rest, u, slack, own = rest[left], u[:, left], slack[left], own.of(np.flatnonzero(left))
+    rest, u = np.concatenate([cut_rows, rest]), np.concatenate([cut_u, u], axis=1)
     if len(rest):
-        deeds[rest] = _cuts(stage, own, slack)
+        own = items.of(rest)
+        deeds[rest] = _cuts(stage, own, np.concatenate([cut_slack, slack]))
+        if lowest is not None:
+            held, coded = _lowered(stage, own, u, deeds[rest], lowest)
+            deeds[rest[held]], codes[rest[held]] = LONG_DIRECTION, coded
     stage.note_apart(items.of(np.flatnonzero(deeds < CUT_TIME)))
     return deeds, {most: codes[deeds == deed] for deed, most in SIZES}
+
+
+def _may_hold(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
+    """(k,) False for items that are not proven along u (3, k) at both ends or in the middle of their time."""
+    held = np.ones(len(items.pair), dtype=bool)
+    for place in (items.span // 2, np.zeros_like(items.span), items.span - 1):
+        many = np.flatnonzero(held & (items.span > MANY))
+        some = items.of(many)
+        one = some._replace(start=some.start + place[many], span=np.ones_like(some.span))
+        held[many] = by_directions(stage, one, u[:, many]) >= 0.0
+    return held
+
+
+def _lowered(
+    stage: Stage, items: Items, u: np.ndarray, deeds: np.ndarray, lowest: Lowest
+) -> tuple[np.ndarray, np.ndarray]:
+    """Lowers the claims of items that would be cut in time once more after many times.
+
+    Returns:
+        which of the items are proven then, along directions u (3, k), and the codes of these.
+    """
+    deep = np.flatnonzero((deeds == CUT_TIME) & (items.depth >= DEEP))
+    coded = codes_of(u[:, deep], LONG)
+    own, along = items.of(deep), directions(coded, LONG)
+    short = np.minimum(by_directions(stage, own, along), 0.0)
+    rules, interval = stage.stretch.rules[own.pair], own.start
+    at = rules, stage.stretch.first + interval
+    wanted = lowest.claims[at] - np.ceil(-short / UNIT).astype(np.int64) - 1
+    may = np.flatnonzero(np.isfinite(short) & (wanted >= lowest.lowest[at]))
+    np.minimum.at(lowest.claims, (at[0][may], at[1][may]), wanted[may])
+    for rule, step in {*zip(rules[may].tolist(), interval[may].tolist(), strict=True)}:
+        pairs = stage.stretch.rules == rule
+        claim = lowest.claims[rule, stage.stretch.first + step]
+        stage.wanted[pairs, step] = claim * UNIT + stage.stretch.padding[pairs]
+    held = np.zeros(len(deep), dtype=bool)
+    held[may] = by_directions(stage, own.of(may), along[:, may]) >= 0.0
+    return deep[held], coded[held]
 
 
 def _cuts(stage: Stage, items: Items, slack: np.ndarray) -> np.ndarray:

@@ -29,8 +29,14 @@ from clearance.report.folder import write_file
 GIVEN_UP = (0.03, 0.12)
 """[-] Of what tolerances take, by which claims are below what they leave; the first that can be shown."""
 
-MOST_WITH_ERRORS = 1_000_000
+MOST_GIVEN_UP = 0.2
+"""[-] The same of single intervals at most, where evidence would be without end."""
+
+MOST_WITH_ERRORS = 1_500_000
 """Proofs of what tolerances leave; where more are needed, more is given up."""
+
+MANY = 500_000
+"""Proofs without tolerances from which on the most is given up at once."""
 
 MICROMETRES = round(2e-6 / UNIT)
 
@@ -107,12 +113,14 @@ def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:
         return _Claims(data, claims, found)
     n_rules, n_stretches = len(data.rules), len(data.stretches)
     exact = claims_of(record, with_errors)
-    for share in GIVEN_UP:
+    lowest = _lowered(exact, n_rules, MOST_GIVEN_UP)
+    for share in GIVEN_UP if found.n_items < MANY else GIVEN_UP[-1:]:
         lowered = _kept(_lowered(exact, n_rules, share), with_errors, kind)
         both = np.concatenate([claims, lowered[n_rules:]])
         try:
             more = evidence_for(
-                with_errors.stretches[n_stretches:], data.shapes, halves, both, MOST_WITH_ERRORS, progress
+                with_errors.stretches[n_stretches:], data.shapes, halves, both, MOST_WITH_ERRORS, progress,
+                lowest,
             )  # fmt: skip
         except BadInput:
             continue

@@ -3,7 +3,8 @@
 Of each case, its sections by turns, at the step at which a random budget leaves least: errors at random, and
 errors that are made as bad as found, on distances measured anew. Rows go to a journal, and what is in it is not
 done again, so that a campaign may be stopped and taken up. It ends at the first sample below what is proven.
-`--summary` prints what the journal holds.
+`--between` samples the motion from step to step instead: the interval of which least is proven, and one at
+random, at several times in each. `--summary` prints what the journal holds.
 """
 
 from __future__ import annotations
@@ -34,11 +35,14 @@ from budget_samples import (
 from inputs import SCENES, SHARED
 
 import clearance as cl
-from clearance.budget.proven import PairsWithErrors, proven_of_steps
+from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
+from clearance.kernels.budget.sweep import BudgetRows
 from clearance.run.answers import _plan
 from clearance.run.question import Question
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.sections import Section
+from clearance.tolerance import CERTIFY_GAP
+from clearance.world.budget import Budget
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 
@@ -53,6 +57,9 @@ ROUNDS = 5
 
 MOST, DECADES = 6.0, 1.5
 """The greatest tolerances are up to so many times those of a typical cell, down by so many decades."""
+
+TIMES = 8
+"""Times in an interval at which errors are drawn, one of them where the least was seen."""
 
 ROUNDING = 1e-12
 """[m] By which a measured distance may be off."""
@@ -81,11 +88,11 @@ def sections_in(paths: list[Path]) -> Iterator[Loaded]:
 
 
 class Moment:
-    """The pairs of a section at the step at which a budget leaves least."""
+    """The pairs of a section at one time."""
 
-    def __init__(self, of: Loaded, case: Case, step: int, pair: int) -> None:
+    def __init__(self, of: Loaded, case: Case, step: int, pair: int, share: float = 0.0) -> None:
         self.case, self.apart = case, of.apart
-        self.machine = Machine(case, of.section.phase.motions, step)
+        self.machine = Machine(case, of.section.phase.motions, step, share)
         self.sizes = sizes_of(case)
         self.pairs = self._nearest(of.section.pairs, pair)
 
@@ -185,6 +192,57 @@ def sampled(of: Loaded, i_budget: int, n_random: int, n_starts: int) -> tuple | 
     return row
 
 
+def sampled_between(of: Loaded, i_budget: int, n_random: int, n_starts: int) -> tuple | None:
+    """The row of a budget over the intervals; None where bodies touch without errors."""
+    rng = np.random.default_rng(i_budget)
+    budget = scaled(of.case, rng, MOST * 10.0 ** (-DECADES * rng.random()))
+    pairs = PairsWithErrors(of.section.in_motion, budget)
+    steps = proven_of_steps(pairs, of.found)
+    rows = proven_between(pairs, steps, CERTIFY_GAP)
+    touches = ~(of.found.clearance > 0.0)
+    apart = np.flatnonzero(~(touches[:-1] | touches[1:]) & (steps.pair[:-1] >= 0))
+    if len(apart) == 0:
+        return None
+    worst = int(apart[np.argmin(rows.proven[apart])])
+    told = None
+    for step in (int(rng.choice(apart)), worst):
+        row = _over_interval(of, budget, step, (steps, rows), n_random, n_starts, rng)
+        found = of.name, of.section.number, i_budget, step, *row
+        if min(row[3:5]) < row[2] - 1e3 * ROUNDING:
+            raise SystemExit(f"below what is proven: {', '.join(map(str, found))}")
+        told = found if told is None else (*found[:-1], told[-1] + found[-1])
+    return told
+
+
+def _over_interval(
+    of: Loaded,
+    budget: Budget,
+    step: int,
+    proven: tuple[BudgetRows, BudgetRows],
+    n_random: int,
+    n_starts: int,
+    rng: np.random.Generator,
+) -> tuple:
+    """Names of the pair, [mm] nominal, proven, least at random and made worse, samples: of one interval."""
+    steps, rows = proven
+    case = replace(of.section.phase.case, tolerance=budget)
+    pair = int(rows.pair[step] if rows.pair[step] >= 0 else steps.pair[step])
+    shares = [share for share in (float(rows.share[step]),) if 0.0 < share < 1.0]
+    shares += rng.random(TIMES - len(shares)).tolist()
+    least, n = np.full(3, np.inf), 0
+    for share in shares:
+        moment = Moment(of, case, step, pair, share)
+        nominal = moment.left(moment.pairs[0], {}, 1)[0][0]
+        nominal += surfaces_of(budget, case, moment.pairs[0])
+        m, starts = max(1, n_random // TIMES), max(1, n_starts // TIMES)
+        found = nominal, moment.at_random(m, rng), moment.as_bad_as_found(starts, rng)
+        least = np.minimum(least, np.array(found))
+        n += m + (len(moment.pairs) - 1) * max(1, m // 10) + starts
+    names = " - ".join(body_name(case, body) for body in moment.pairs[0])
+    told = (least[0], float(rows.proven[step]), *least[1:])
+    return names, *(float(f"{1e3 * v:.9f}") for v in told), n
+
+
 def run(asked: argparse.Namespace, paths: list[Path]) -> None:
     """Goes on with a campaign until all budgets are done, or its time is up."""
     end = time.monotonic() + asked.seconds
@@ -199,7 +257,8 @@ def run(asked: argparse.Namespace, paths: list[Path]) -> None:
             for one in (own[i % len(own)] for own in loaded.values()):
                 if (one.name, one.section.number, i) in done:
                     continue
-                row = sampled(one, i, asked.random, asked.starts)
+                of_moment = sampled_between if asked.between else sampled
+                row = of_moment(one, i, asked.random, asked.starts)
                 table.writerow(row or (one.name, one.section.number, i))
                 file.flush()
                 if time.monotonic() > end:
@@ -240,6 +299,7 @@ def main() -> None:
         "--random", type=int, default=10_000, help="samples at random a worst moment"
     )
     parser.add_argument("--starts", type=int, default=1000, help="samples that are made worse")
+    parser.add_argument("--between", action="store_true", help="the motion from step to step")
     parser.add_argument("--seconds", type=float, default=np.inf, help="then it stops")
     parser.add_argument("--journal", type=Path, default=Path("budget_campaign.csv"))
     parser.add_argument("--summary", action="store_true", help="of the journal")

@@ -19,7 +19,7 @@ from clearance.query.one_pair import OnePair, answer_rows
 from clearance.world.body import Obstacle
 from clearance.world.budget import Budget, PlacementTolerance
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.forest import joined_positions
+from clearance.world.forest import joined_positions, positions_between
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.robot import Joint, JointKind
@@ -108,11 +108,20 @@ def surfaces_of(budget: Budget, case: Case, pair: Pair) -> float:
 
 
 class Machine:
-    """The robots and obstacles of a case at a step of its motion, with errors."""
+    """The robots and obstacles of a case at a moment of its motion, with errors.
 
-    def __init__(self, case: Case, motions: Iterable[Motion], step: int) -> None:
+    Args:
+        share: how much of the interval after the step has passed, 0 to 1.
+    """
+
+    def __init__(
+        self, case: Case, motions: Iterable[Motion], step: int, share: float = 0.0
+    ) -> None:
         self.case = case
-        self.row = joined_positions(case, tuple(motions), np.array([step]))[0]
+        if share > 0.0:
+            self.row = positions_between(case, tuple(motions), step, share)
+        else:
+            self.row = joined_positions(case, tuple(motions), np.array([step]))[0]
         self.columns = _columns(case)
 
     def frames(self, errors: Errors, n: int) -> dict[str, Frame]:

@@ -64,9 +64,10 @@ class BodyRows(NamedTuple):
 
     Attributes:
         rows: (bodies, most rows, N_NUMBERS). n_rows: (bodies,).
-        sums: (bodies, 6) [m] offsets of all frames together; the second-order rest; what of it errors make
+        sums: (bodies, N_SUMS) [m] offsets of all frames together; the second-order rest; what of it errors make
             without motion; how far the errors and the motion can move any point of the body; [rad] how far they
-            can turn it; [m] how far the surface may stand out.
+            can turn it; [m] how far the surface may stand out; how far any point can get from where the velocity
+            of one motion together puts it, or -1 where there is none, or more than one.
     """
 
     rows: np.ndarray
@@ -74,9 +75,9 @@ class BodyRows(NamedTuple):
     sums: np.ndarray
 
 
-OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE = range(6)
+OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE, BESIDE = range(7)
 
-N_SUMS = 6
+N_SUMS = 7
 
 
 class JointMotion(NamedTuple):

@@ -15,7 +15,7 @@ from clearance.kernels.budget.pieces import TrianglePairs, bound_of_pieces
 from clearance.kernels.budget.reach import along_at_rest, reach_of_point
 from clearance.kernels.budget.tilted import tilted
 from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
-from clearance.kernels.features.bounds import direction_between, margin_of
+from clearance.kernels.features.bounds import direction_beside, direction_between, margin_of
 from clearance.kernels.features.face_pair import nearest_of_faces, nothing_yet
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.certify_pair import STILL, allowed_gap
@@ -145,6 +145,21 @@ def look_at_both(lent, direction, bodies):
     work = borrow(lent).state.work
     look_along(work.found, bodies.a, 0, direction.u, work.own)
     look_along(work.found, bodies.b, 1, direction.v, work.own)
+
+
+@inline
+def look_beside(lent, faces, back, slack):
+    """What is seen of two faces whole along a direction in which they are probably apart.
+
+    Args:
+        back: `b_from_a`.
+    """
+    scene = borrow(lent)
+    surface = scene.surface
+    direction = direction_beside(surface, faces.a, surface, faces.b, faces.m, back)
+    look_at_both(lent, direction, faces.bodies)
+    own = scene.state.work.own
+    return _along(surface, faces.a, surface, faces.b, direction, own, slack)
 
 
 @inline

@@ -22,17 +22,19 @@ from clearance.kernels.arithmetic.lanes import (
     marks_within,
 )
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
-from clearance.kernels.budget.errors import REACH, SURFACE, TURNED
+from clearance.kernels.budget.errors import BESIDE, REACH, SURFACE, TURNED
 from clearance.kernels.budget.face_left import (
     SearchState,
     look_at_both,
     look_at_faces,
+    look_beside,
     taken_at,
     target_of,
     turn_to,
     with_value,
 )
 from clearance.kernels.budget.pieces import TwoBodies, TwoFaces
+from clearance.kernels.budget.reach import BodyReach, reach_of_body, reach_of_box
 from clearance.kernels.budget.tilted import kept_of_box, kept_of_point
 from clearance.kernels.features.bounds import (
     direction_between,
@@ -54,6 +56,12 @@ from clearance.kernels.search.scratch import STACK_DEPTH, swap, wait
 
 KEPT = 1e-12
 """[m] Covers the rounding of a bound that is kept and taken up again."""
+
+AS_NEAR = 0.9
+"""Faces that are seen to be farther apart than this share of the nearest so far are not the nearest ones."""
+
+FIRST_FACES = 3
+"""Face pairs that a search looks at along their nearest points, whatever is seen beside: what occurs is below."""
 
 LOOK_AT_FACES = 8
 """As many looks at groups of nodes as one at two faces takes."""
@@ -89,24 +97,28 @@ class PairLeft(NamedTuple):
 
 
 @inline(force=True)
-def _node_bounds(p, q, side, view, kept, reach, slack, target):
+def _node_bounds(p, q, side, view, kept, reaches, target):
     """[m] lower bounds on what is left of the distances of boxes in lanes, p of body `side`."""
+    slack = reaches.slack
     left = lower_bound_boxes_along_direction(p, q, view.direction) - slack
     left = left - kept_of_box(p, side, kept) - kept_of_box(q, 1 - side, kept)
     if marks_within(left, target) == 0:
         return left
-    apart = lower_bound_boxes(p, q, view.m, slack) - slack - reach
-    return larger(left, apart)
+    apart = lower_bound_boxes(p, q, view.m, slack) - slack
+    if not reaches.moves:
+        return larger(left, apart - reaches.reach)
+    own, across = (reaches.b, reaches.a) if side == 1 else (reaches.a, reaches.b)
+    return larger(left, apart - reach_of_box(p, own) - reach_of_box(q, across))
 
 
 @inline(force=True)
-def _group_bounds(a, b, nodes, views, kept, reach, slack, target):
+def _group_bounds(a, b, nodes, views, kept, reaches, target):
     """[m] the same of the nodes of a group and a node of the other body."""
     if nodes.is_of_b:
         p, q = group_of(b, nodes.group), box_of(a, nodes.other)
-        return _node_bounds(p, q, 1, views.b, kept, reach, slack, target)
+        return _node_bounds(p, q, 1, views.b, kept, reaches, target)
     p, q = group_of(a, nodes.group), box_of(b, nodes.other)
-    return _node_bounds(p, q, 0, views.a, kept, reach, slack, target)
+    return _node_bounds(p, q, 0, views.a, kept, reaches, target)
 
 
 @inline(force=True)
@@ -123,10 +135,17 @@ def _face_bound(a, face_a, b, face_b, direction, kept, slack):
 
 
 class _Reaches(NamedTuple):
-    """[m] the rounding of distances, and how far errors move and turn [rad] both bodies at most."""
+    """[m] the rounding of distances, and how far errors move and turn [rad] both bodies at most.
+
+    Attributes:
+        moves: True where joints move: then nodes have a reach of their own, by that of each body.
+    """
 
     slack: float
     reach: float
+    moves: bool
+    a: BodyReach
+    b: BodyReach
     turn: float
     cos_turn: float
     sin_turn: float
@@ -152,7 +171,7 @@ def _let_wait(scene, nodes, marks, views, reaches, target, n_waiting, tally):
     a = b = scene.surface
     work = scene.state.work
     slack, reach = reaches.slack, reaches.reach
-    bounds = _group_bounds(a, b, nodes, views, work.kept, reach, slack, target)
+    bounds = _group_bounds(a, b, nodes, views, work.kept, reaches, target)
     tally[2] += how_many(marks)
     within = marks & marks_within(bounds, target)
     passed = least_of(bounds, marks ^ within)
@@ -252,12 +271,14 @@ def _begin(lent, start, m, bodies, aim, thin):
 @inline(force=True)
 def _reaches_of(scene, bodies, solid_a, solid_b, slack):
     """([m] surfaces and balls of two bodies, how far errors move and turn both)."""
-    surface, sums = scene.surface, scene.state.work.found.sums
-    one, other = sums[bodies.a], sums[bodies.b]
+    surface, found = scene.surface, scene.state.work.found
+    one, other = found.sums[bodies.a], found.sums[bodies.b]
     thin = radii_of(surface, solid_a, surface, solid_b).both + one[SURFACE] + other[SURFACE]
     turn = max(one[TURNED], other[TURNED])
     reach = one[REACH] + other[REACH]
-    return thin, _Reaches(slack, reach, turn, math.cos(turn), math.sin(turn))
+    moves = one[BESIDE] >= 0.0 or other[BESIDE] >= 0.0
+    own, across = reach_of_body(found, bodies.a), reach_of_body(found, bodies.b)
+    return thin, _Reaches(slack, reach, moves, own, across, turn, math.cos(turn), math.sin(turn))
 
 
 @inline(one_caller=True)
@@ -289,7 +310,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
     slack = CHAIN_SLACK * rounding_slack(a, bodies.root_a, b, bodies.root_b, frames)
     thin, reaches = _reaches_of(scene, bodies, solid_a, solid_b, slack)
     search = _begin(lent, start, m, bodies, aim, thin)
-    n_looks, n_left = 0, 0
+    n_looks, n_left, n_faces = 0, 0, 0
     first = _first(scene, pair, moved, bodies, search, reaches, aim, tally)
     n_waiting, lower_bound = first.n_waiting, first.lower_bound
     while n_waiting > 0:
@@ -323,13 +344,18 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
         kept, direction = scene.state.work.kept, search.views.a.direction
         bound = max(bound, _face_bound(a, face_a, b, face_b, direction, kept, slack))
-        if bound >= target:
+        faces = TwoFaces(face_a, face_b, m, bodies)
+        is_nearest = False
+        if bound < target and n_faces >= FIRST_FACES:
+            beside = look_beside(lent, faces, search.views.b.m, slack)
+            bound = max(bound, beside.bound)
+            is_nearest = beside.apart < AS_NEAR * search.nearest
+        if bound >= target and not is_nearest:
             lower_bound = min(lower_bound, bound)
             continue
         n_looks += LOOK_AT_FACES
-        looked = look_at_faces(
-            lent, TwoFaces(face_a, face_b, m, bodies), bound, slack, search, aim, thin, tally
-        )
+        n_faces += 1
+        looked = look_at_faces(lent, faces, bound, slack, search, aim, thin, tally)
         search = looked.search
         if looked.gives_up:
             forget(scene.state.fronts, pair)

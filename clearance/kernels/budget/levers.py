@@ -24,18 +24,25 @@ class Levers(NamedTuple):
     Attributes:
         reach: (bodies,) [m] how far errors can move any point of each.
         of_links: (bodies, links) [m/rad] or [m/m] how far any point moves at most by the joint above a link.
-        ways: (links,) [m] how far slides get from their frames.
+        beside: (bodies, links) [m/rad] or [m/m] how much farther than without errors any point moves by it.
+        ways: (links,) [m] how far slides get from their frames. sizes: (bodies,) [m] how far any point of each is
+            from its origin.
     """
 
     reach: np.ndarray
     of_links: np.ndarray
+    beside: np.ndarray
     ways: np.ndarray
+    sizes: np.ndarray
 
 
 @shared
 def new_levers(n_bodies, n_links):
     """Levers of nothing."""
-    return Levers(np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros(n_links))
+    return Levers(
+        np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros((n_bodies, n_links)),
+        np.zeros(n_links), np.zeros(n_bodies),
+    )  # fmt: skip
 
 
 @inline
@@ -45,6 +52,7 @@ def fill_levers(surface, world, path, errors, levers):
         if world.links.kinds[link] == SLIDING:
             levers.ways[link] = _way(path, link) + errors.joint[link]
     for body in range(len(world.frames)):
+        levers.sizes[body] = _size(surface, world, body)
         if world.frames[body] < 0:
             levers.reach[body] = _reach_of_standing(surface, world, body, errors)
         else:
@@ -99,18 +107,33 @@ def _reach_of_standing(surface, world, body, errors):
 
 
 @inline
+def _turns(links, i, errors):
+    """[rad] what all errors from a link to the base can turn at most."""
+    turns = 0.0
+    while i != NO_PARENT:
+        turns += errors.angle[i]
+        if links.parents[i] != NO_PARENT and links.kinds[i] == TURNING:
+            turns += errors.joint[i]
+        for k in range(errors.of_links.starts[i], errors.of_links.starts[i + 1]):
+            turns += errors.of_links.angle[k]
+        i = links.parents[i]
+    return turns
+
+
+@inline
 def _fill(surface, world, body, errors, levers):
     """Writes the levers of a body that a link carries; [m] how far errors can move any point of it."""
     links, i = world.links, world.frames[body]
-    far = _size(surface, world, body)
-    reach = 0.0
+    far = levers.sizes[body]
+    reach, turned = 0.0, chord(_turns(links, i, errors))
     while i != NO_PARENT:
         if links.parents[i] != NO_PARENT:
             if links.kinds[i] == TURNING:
                 levers.of_links[body, i] = far + reach
+                levers.beside[body, i] = turned * (far + reach) + reach
                 reach += chord(errors.joint[i]) * (far + reach)
             elif links.kinds[i] == SLIDING:
-                levers.of_links[body, i] = 1.0
+                levers.of_links[body, i], levers.beside[body, i] = 1.0, turned
                 reach += errors.joint[i]
                 far += levers.ways[i]
         reach += chord(errors.angle[i]) * (far + reach) + errors.xyz[i]
@@ -138,6 +161,34 @@ def moved_from_step(world, path, step, body, levers):
     for ball in range(len(path.balls.links)):
         lever = levers.of_links[body, path.balls.links[ball]]
         moved += path.balls.arcs[step, ball, ANGLE] * lever
+    return moved * (1.0 + 1e-9)
+
+
+@inline(force=True)
+def is_still(world, path, before, step, link):
+    """True if no joint above a link moves from one step to a later one."""
+    if len(path.balls.links) > 0:
+        return False
+    while link >= 0:
+        if path.positions[step, link] != path.positions[before, link]:
+            return False
+        link = world.links.parents[link]
+    return True
+
+
+@inline(force=True)
+def moved_beside(world, path, before, step, body, levers):
+    """[m] how much farther than without errors any point of a body gets from one step to a later one."""
+    links, i = world.links, world.frames[body]
+    moved = 0.0
+    while i >= 0 and links.parents[i] != NO_PARENT:
+        way = abs(path.positions[step, i] - path.positions[before, i])
+        moved += way * levers.beside[body, i]
+        i = links.parents[i]
+    for ball in range(len(path.balls.links)):
+        beside = levers.beside[body, path.balls.links[ball]]
+        for between in range(before, step):
+            moved += path.balls.arcs[between, ball, ANGLE] * beside
     return moved * (1.0 + 1e-9)
 
 

@@ -4,19 +4,25 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, sub
 from clearance.kernels.budget.errors import (
+    BESIDE,
     CHORD,
+    FIRST,
     FIRST_AT_REST,
     FRAME,
     KIND,
     OFFSET,
     OFFSETS,
+    REACH,
     REST_AT_REST,
     SLIDE,
+    TOGETHER,
     TURN,
     WAY,
 )
+from clearance.kernels.features.bounds import LEAN
 
 
 class Ball(NamedTuple):
@@ -56,6 +62,61 @@ def reach_of_ball(rows, n, ball):
 def reach_of_point(found, body, x):
     """[m] how far the errors can move a point of a body (body frame): the recursion from tip to base."""
     return reach_of_ball(found.rows[body], found.n_rows[body], Ball(x, 0.0))
+
+
+@inline
+def beside_velocity(rows, n, ball):
+    """[m] how far any point of a ball gets, to the first order, beside the one motion together of its rows.
+
+    -1 where that is not the last row and the only one, or moves nothing.
+    """
+    if n == 0 or rows[n - 1, KIND] != TOGETHER:
+        return -1.0
+    r = rows[n - 1]
+    if r[0] == 0.0 and r[1] == 0.0 and r[2] == 0.0 and r[3] == 0.0 and r[4] == 0.0 and r[5] == 0.0:
+        return -1.0
+    moved = 0.0
+    for k in range(n - 1):
+        r = rows[k]
+        kind, first = r[KIND], r[FIRST]
+        origin = Vec3(r[0], r[1], r[2])
+        if kind == TOGETHER:
+            return -1.0
+        if kind == TURN:
+            moved += first * from_axis(ball, origin, Vec3(r[3], r[4], r[5]))
+        elif kind == SLIDE:
+            moved += first
+        else:
+            d = sub(ball.t, origin)
+            moved += first * (math.sqrt(dot(d, d)) + ball.radius) + r[OFFSET]
+    return moved
+
+
+class BodyReach(NamedTuple):
+    """How far a body gets: a point x by velocity + spin x x [m], and by `beside` [m] from there."""
+
+    velocity: Vec3
+    spin: Vec3
+    beside: float
+
+
+@inline
+def reach_of_body(found, body):
+    """The `BodyReach` of a body, whether one motion together moves it or not."""
+    beside, nothing = found.sums[body, BESIDE], Vec3(0.0, 0.0, 0.0)
+    if beside < 0.0:
+        return BodyReach(nothing, nothing, found.sums[body, REACH])
+    r = found.rows[body, found.n_rows[body] - 1]
+    return BodyReach(Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5]), beside)
+
+
+@inline(force=True)
+def reach_of_box(box, reach):
+    """[m] how far any point of a box gets at most, or of four in lanes."""
+    v = add(reach.velocity, cross(reach.spin, box.centre))
+    radius = square_root(dot(box.half, box.half))
+    turned = math.sqrt(dot(reach.spin, reach.spin)) * radius
+    return (square_root(dot(v, v)) + turned) * (1.0 + LEAN) + reach.beside
 
 
 @inline

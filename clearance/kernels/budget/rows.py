@@ -20,6 +20,7 @@ from clearance.kernels.arithmetic.vec3 import (
     turn_back,
 )
 from clearance.kernels.budget.errors import (
+    BESIDE,
     CHORD,
     FIRST,
     FIRST_AT_REST,
@@ -37,7 +38,7 @@ from clearance.kernels.budget.errors import (
     TURNED,
     WAY,
 )
-from clearance.kernels.budget.reach import Ball, from_axis, reach_of_ball
+from clearance.kernels.budget.reach import Ball, beside_velocity, from_axis, reach_of_ball
 from clearance.kernels.features.bounds import LEAN
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_path import OUTWARD
@@ -260,5 +261,7 @@ def _sum_up(rows, n, ball, chain, turned, surface, body, found):
         chain.rest_still * OUTWARD,
     )
     sums[REACH] = reach_of_ball(rows, n, ball) * OUTWARD
+    beside = beside_velocity(rows, n, ball)
+    sums[BESIDE] = (beside + chain.rest) * OUTWARD if beside >= 0.0 else -1.0
     sums[TURNED], sums[SURFACE] = turned, surface
     found.n_rows[body] = n

@@ -12,16 +12,19 @@ from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import borrow, lend
 from clearance.kernels.budget.errors import REACH
 from clearance.kernels.budget.face_left import Aim
-from clearance.kernels.budget.levers import fill_levers, moved_from_step
+from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
     ask,
+    begin_anew,
     bound_by_boxes,
     carried_bound,
     fill_body,
     go_on,
+    go_on_to_step,
+    next_motion,
     note_bound,
     start_at,
     start_before,
@@ -113,14 +116,10 @@ def _with_boxes(lent, pair, half, look, target, carried):
 
 
 @inline
-def _ahead(lent, pair, before):
+def _ahead(lent, pair):
     """[m] how far beyond the best a pair is looked into, so that its bound lasts."""
-    scene, moved = borrow(lent), 0.0
-    for side in range(2):
-        body = scene.world.pairs[pair, side]
-        if scene.world.frames[body] >= 0:
-            moved += moved_from_step(scene.world, scene.path, before - 1, body, scene.state.levers)
-    return AHEAD * moved if AHEAD * moved < LITTLE else 0.0
+    ahead = AHEAD * next_motion(lent, pair)
+    return ahead if ahead < LITTLE else 0.0
 
 
 @kernel(reference_counts=False)
@@ -130,17 +129,18 @@ def budget_moments(scene, asked, rows, tally, table):
     A moment at which bodies touch is not looked into: what is left is what errors could take of that pair.
 
     Args:
-        scene: `BudgetScene`, with a path of at least two steps and a new state.
+        scene: `BudgetScene`, with a path of at least two steps; what its state holds is forgotten.
         asked: `BudgetMoments`. tally: (5,) pairs passed over, searches, nodes and
             faces looked at, and faces cut.
     """
     lent = lend(scene)
     surface, world, path, errors, state = scene
+    begin_anew(state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
     for i in range(len(tally)):
         tally[i] = 0
-    last, before, was_step = np.int64(-1), asked.intervals[0] + np.int64(asked.shares[0]), True
+    last, before, was_step = np.int64(-1), np.int64(-1), True
     for place in range(len(asked.intervals)):
         interval, share = asked.intervals[place], asked.shares[place]
         is_step = share == 0.0 or share == 1.0
@@ -151,7 +151,7 @@ def budget_moments(scene, asked, rows, tally, table):
             state.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:
-            go_on(lent, before, interval + np.int64(share))
+            go_on_to_step(lent, before, interval + np.int64(share))
             before = interval + np.int64(share)
         order = asked.order[place]
         best, enough, winner = math.inf, asked.enough, np.int64(-1)
@@ -174,8 +174,8 @@ def budget_moments(scene, asked, rows, tally, table):
                 tally[0] += 1
                 continue
             ahead = 0.0
-            if turn >= 0 and is_step and not state.late and before > 0:
-                ahead = _ahead(lent, pair, before)
+            if turn >= 0 and is_step:
+                ahead = _ahead(lent, pair)
             aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks)
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
@@ -248,6 +248,7 @@ def budget_intervals(scene, asked, rows, tally, table):
     """
     lent = lend(scene)
     surface, world, path, errors, state = scene
+    begin_anew(state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     for i in range(len(tally)):

@@ -12,11 +12,13 @@ from clearance.compile.jit import inline, shared
 from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn, turn_back
-from clearance.kernels.budget.errors import REACH, Errors, JointMotion, new_body_rows
+from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.face_left import LeftScratch
 from clearance.kernels.budget.left import KEPT, Start, least_left
 from clearance.kernels.budget.levers import (
     Levers,
+    is_still,
+    moved_beside,
     moved_from_step,
     moved_in_part,
     new_levers,
@@ -25,6 +27,7 @@ from clearance.kernels.budget.middle import Middle, new_middle_of
 from clearance.kernels.budget.pieces import new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
+from clearance.kernels.features.bounds import displacement
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.body_boxes import (
     BodyBoxes,
@@ -50,8 +53,9 @@ class SweepState(NamedTuple):
         directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
         levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
-        moved: (bodies,) [m] how far each can have moved in all. lower_bounds: (p,) [m] what was proven of each
-            pair, plus what its bodies had moved by then.
+        poses: (links, 4, 4) at the last step. last_moved: (bodies,) [m] how far each can have moved to get there.
+        moved: (bodies,) [m] how far each can have moved in all.
+        lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
         waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
     """
 
@@ -62,6 +66,8 @@ class SweepState(NamedTuple):
     late: bool
     filled: np.ndarray
     placed: np.ndarray
+    poses: np.ndarray
+    last_moved: np.ndarray
     moved: np.ndarray
     lower_bounds: np.ndarray
     waiting: np.ndarray
@@ -83,6 +89,9 @@ class BudgetScene(NamedTuple):
     state: SweepState
 
 
+ROUNDED = 2.0**-40
+"""Of how far bodies are from the origin: more than poses from a chain are rounded by."""
+
 AHEAD, LITTLE = 3.0, 0.02
 """So many motions beyond the best a pair is still looked into, so that its bound lasts, if that is little [m]."""
 
@@ -97,9 +106,23 @@ def new_state(world, errors):
     return SweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
-        np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros(n_bodies), np.full(n_pairs, -np.inf),
+        np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)), np.zeros(n_bodies),
+        np.zeros(n_bodies), np.full(n_pairs, -np.inf),
         np.empty((DEPTH, 2)), no_fronts(n_pairs, POOL), work,
     )  # fmt: skip
+
+
+@inline
+def begin_anew(state):
+    """Forgets what a sweep has carried, so that the next one is as the first."""
+    state.directions[:] = 0.0
+    state.filled[:] = -1
+    state.placed[:] = -1
+    state.last_moved[:] = 0.0
+    state.moved[:] = 0.0
+    state.lower_bounds[:] = -math.inf
+    state.fronts.spans[:] = 0
+    state.fronts.used[0] = 0
 
 
 @inline(force=True)
@@ -134,6 +157,8 @@ def fill_body(lent, body, half, look):
         rounding = orientation_rounding(box, world.links, frame, path.balls, middle)
         for k in range(1, 4):  # both rests and the reach
             found.sums[body, k] += rounding
+        if found.sums[body, BESIDE] >= 0.0:
+            found.sums[body, BESIDE] += rounding
 
 
 @inline(force=True)
@@ -246,6 +271,50 @@ def go_on(lent, before, step):
         else:
             for between in range(before, step):
                 state.moved[body] += moved_from_step(world, asked.path, between, body, state.levers)
+
+
+@inline(force=True)
+def _far(pose):
+    return abs(pose[0, 3]) + abs(pose[1, 3]) + abs(pose[2, 3])
+
+
+@inline
+def go_on_to_step(lent, before, step):
+    """Adds what bodies move from one step to a later one, where all is now; infinite where that is not known.
+
+    Args:
+        before: the step that was gone on to last, or -1.
+    """
+    asked = borrow(lent)
+    surface, world, state = asked.surface, asked.world, asked.state
+    poses = state.middle.state.poses
+    for body in range(len(world.frames)):
+        frame = world.frames[body]
+        if frame < 0 or before < 0:
+            continue
+        if not state.late and step >= before and is_still(world, asked.path, before, step, frame):
+            state.last_moved[body] = 0.0
+            continue
+        moved = math.inf
+        if not state.late and step >= before:
+            root = surface.roots[world.solids[body]]
+            moved = displacement(surface, root, state.poses[frame], poses[frame])
+            moved += moved_beside(world, asked.path, before, step, body, state.levers)
+            moved += ROUNDED * (state.levers.sizes[body] + _far(poses[frame]))
+        state.last_moved[body] = moved
+        state.moved[body] += moved
+    for link in range(len(poses)):
+        for i in range(3):
+            for k in range(4):
+                state.poses[link, i, k] = poses[link, i, k]
+
+
+@inline
+def next_motion(lent, pair):
+    """[m] how far both bodies of a pair moved to the last step, in all."""
+    asked = borrow(lent)
+    moved = asked.state.last_moved
+    return moved[asked.world.pairs[pair, 0]] + moved[asked.world.pairs[pair, 1]]
 
 
 @inline(force=True)
