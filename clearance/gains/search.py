@@ -159,9 +159,8 @@ class Search:
     def _wanting_more(self, state: State, unproven: Record) -> State:
         """The same variables, measured by what is wanted so that the motion between the steps is proven too."""
         if self.change.bends:
-            finer = proven(
-                state.case, self.margin, PATH_GAP
-            )  # it may hold where that of a check does not
+            finer = proven(state.case, self.margin, PATH_GAP)
+            # The finer one may hold where that of a plain check does not.
             unproven = unproven if keeps(finer) else finer
             self.wanted = looked_closer(self.wanted, unproven, state)
             return self._state(state.x, self.change.first_reach)
