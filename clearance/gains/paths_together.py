@@ -30,6 +30,7 @@ class PathsTogether:
     parts: tuple[JointOffsets, ...]
     price: float = 100.0
     tool_poses: None = None
+    bends: bool = True
 
     @cached_property
     def handed(self) -> AnyHanded:
