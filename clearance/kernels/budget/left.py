@@ -303,7 +303,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
     """
     scene = borrow(lent)
     a = b = scene.surface
-    scratch, m = scene.state.work.scratch, frames.m
+    scratch, kept, m = scene.state.work.scratch, scene.state.work.kept, frames.m
     body_a, body_b = scene.world.pairs[pair, 0], scene.world.pairs[pair, 1]
     solid_a, solid_b = scene.world.solids[body_a], scene.world.solids[body_b]
     bodies = TwoBodies(body_a, body_b, a.roots[solid_a], b.roots[solid_b])
@@ -316,14 +316,11 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
     while n_waiting > 0:
         n_waiting -= 1
         target = target_of(search, aim, n_looks)
-        node_a, node_b = (
-            np.int64(scratch.nodes[n_waiting, 0]),
-            np.int64(scratch.nodes[n_waiting, 1]),
-        )
+        node_a = np.int64(scratch.nodes[n_waiting, 0])
+        node_b = np.int64(scratch.nodes[n_waiting, 1])
         bound = scratch.bounds[n_waiting]
         is_kept = node_a < 0  # leaves, which the front has
-        if is_kept:
-            node_a = ~node_a
+        node_a = ~node_a if is_kept else node_a
         is_face = is_leaf(a, node_a) and is_leaf(b, node_b)
         if not is_kept and (is_face or bound >= target):
             one = NodeGroup(False, node_a // WIDTH, node_b)
@@ -342,8 +339,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
                 n_left = _leave(scratch, n_left, nodes, found.marks, found.low + moved)
             continue
         face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-        kept, direction = scene.state.work.kept, search.views.a.direction
-        bound = max(bound, _face_bound(a, face_a, b, face_b, direction, kept, slack))
+        bound = max(bound, _face_bound(a, face_a, b, face_b, search.views.a.direction, kept, slack))
         faces = TwoFaces(face_a, face_b, m, bodies)
         is_nearest = False
         if bound < target and n_faces >= FIRST_FACES:
@@ -362,6 +358,5 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
             return PairLeft(-math.inf, search.least - thin, -math.inf, False, search.u)
     if moved < math.inf:
         keep(scene.state.fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
-    lower_bound = min(lower_bound, search.lower_bound)
-    lower_bound, least, enough = lower_bound - thin, search.least - thin, search.enough - thin
-    return PairLeft(lower_bound, least, enough, True, search.u)
+    lower_bound = min(lower_bound, search.lower_bound) - thin
+    return PairLeft(lower_bound, search.least - thin, search.enough - thin, True, search.u)
