@@ -27,6 +27,16 @@ def test_a_domain_that_was_asked_counts_as_compiled(domain):
     assert kernel_shares.is_kept(domain)
 
 
+def kernel_of(room: str) -> SimpleNamespace:
+    """What stands for a kernel of a module."""
+    return SimpleNamespace(
+        py_func=SimpleNamespace(__module__=f"{room}.module", __qualname__="kernel")
+    )
+
+
+SHARED = kernel_of("clearance.kernels")
+
+
 def is_free(folder) -> bool:
     """True if another process would compile the kernel, and not wait."""
     (path,) = folder.iterdir()
@@ -38,15 +48,13 @@ def is_free(folder) -> bool:
 
 
 def test_others_wait_until_a_kernel_is_compiled_and_what_it_needs_has_no_turn(tmp_path):
-    kernel = SimpleNamespace(py_func=is_free)
-
     def compile_it(one, signature):
-        assert one is kernel and not is_free(tmp_path)
+        assert one is SHARED and not is_free(tmp_path)
         return compile_in_turn(one, signature - 1) + 1 if signature else 0
 
     compile_in_turn = kernel_shares.in_turns(compile_it, tmp_path)
     for _ in range(2):
-        assert compile_in_turn(kernel, 3) == 3
+        assert compile_in_turn(SHARED, 3) == 3
         assert is_free(tmp_path)
 
 
@@ -55,5 +63,11 @@ def test_a_failure_ends_the_turn(tmp_path):
         raise ValueError(signature)
 
     with pytest.raises(ValueError, match="what"):
-        kernel_shares.in_turns(compile_it, tmp_path)(SimpleNamespace(py_func=is_free), "what")
+        kernel_shares.in_turns(compile_it, tmp_path)(SHARED, "what")
     assert is_free(tmp_path)
+
+
+def test_kernels_that_a_test_makes_have_no_turns(tmp_path):
+    made = kernel_of("tests")
+    assert kernel_shares.in_turns(lambda *asked: asked, tmp_path)(made, 1) == (made, 1)
+    assert not list(tmp_path.iterdir())

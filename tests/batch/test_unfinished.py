@@ -48,7 +48,7 @@ def test_an_interrupted_batch_leaves_nothing_green(folder, monkeypatch):
     first = answer_bytes(folder / "store")
     assert set(first) == set(ANSWER)
     monkeypatch.setattr(engine, "MOST", 2)
-    monkeypatch.setattr("clearance.cli.batch_run.InThisProcess", Stopped)
+    monkeypatch.setattr("clearance.cli.batch_run.LocalEngine", Stopped)
     assert batch("--fresh") == 130
     assert is_withdrawn(folder / "store")
     assert run(["batch", "status", "store"]) == 0  # all rows are there; only the answer is not
