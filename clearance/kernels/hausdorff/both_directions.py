@@ -46,8 +46,7 @@ def _search_kept(pair, leaves, aim, drawn, sparing, kept, state, work, heap):
 
     `leaves` are those of the curve searched. Returns the queue's room, which may have grown.
 
-    Many arguments: settings, state and arrays of a search are tuples already; numba would pass one of all array by
-    array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     n_kept, n_met, hint, n_open = 0, 0, -1, 0
     for k in range(leaves.arcs.shape[0]):

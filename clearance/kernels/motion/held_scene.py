@@ -91,7 +91,7 @@ def nearest_at_positions(held, positions, rows, tally, table):
 def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally, table):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step.
 
-    Many arguments: scene, state, rows and addresses are tuples already; numba passes a tuple array by array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     look = at[LOOK]
     at[LOOK] = 0

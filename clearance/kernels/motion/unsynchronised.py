@@ -200,8 +200,7 @@ def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
 def _look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally, table):
     """What holds of a pair over a rectangle, as a `PairLook`.
 
-    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
-    array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     r, world = rectangle, clocks.world
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -270,8 +269,7 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, tally, ta
 
     Those that are left are listed.
 
-    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
-    array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)

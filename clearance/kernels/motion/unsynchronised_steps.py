@@ -144,8 +144,7 @@ def _note(row, step_b, pair, hit, found):
 def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
     """Measures a pair at a step of either clock, if it can be the least there; True if it is.
 
-    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
-    array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     row_a, row_b = _rows_of(clocks, pair, row, step_b)
     within = found.clearance[row] * NOT_LESS
@@ -263,8 +262,7 @@ def _look_at_pair(surface, asked, seen_enough, state, tally, table):
 def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
 
-    Many arguments: question, state, counts and addresses are tuples already; numba would pass one of all array by
-    array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns

@@ -140,7 +140,7 @@ def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
 def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
     """The nearest points of a pair, as `measure_pair` gives them.
 
-    Many arguments: bodies, poses, state and addresses are tuples already; numba passes a tuple array by array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
@@ -192,7 +192,7 @@ def nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts, table
 def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts, table):
     """Fills a row for each pose.
 
-    Many arguments: bodies, poses, state and addresses are tuples already; numba passes a tuple array by array.
+    Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
     lent_a, lent_b = lend(a), lend(b)
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
