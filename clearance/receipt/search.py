@@ -49,7 +49,7 @@ class Lowest(NamedTuple):
     lowest: np.ndarray
 
 
-class Found:
+class EvidenceList:
     """Evidence as it is found, in the order in which it will be asked for."""
 
     def __init__(self) -> None:
@@ -68,9 +68,9 @@ class Found:
         none = np.empty((0, 2), dtype=np.int64)
         return {most: np.concatenate([none, *rows]) for most, rows in self.codes.items()}
 
-    def and_then(self, other: Found) -> Found:
+    def and_then(self, other: EvidenceList) -> EvidenceList:
         """This evidence, then other."""
-        both = Found()
+        both = EvidenceList()
         both.deeds, both.n_items = [*self.deeds, *other.deeds], self.n_items + other.n_items
         both.codes = {most: [*rows, *other.codes[most]] for most, rows in self.codes.items()}
         return both
@@ -91,7 +91,7 @@ def evidence_for(
     most_items: int = MOST_ITEMS,
     progress: Progress | None = None,
     lowest: np.ndarray | None = None,
-) -> Found:
+) -> EvidenceList:
     """What proves all that is claimed.
 
     Args:
@@ -101,7 +101,7 @@ def evidence_for(
     Raises:
         BadInput: it cannot be proven so, or not in a receipt of any size.
     """
-    found, shares = Found(), _Shares(stretches, progress)
+    found, shares = EvidenceList(), _Shares(stretches, progress)
     for stretch in stretches:
         stage = Stage(stretch, shapes, halves, claims)
         items = first_items(len(stretch.pairs), stretch.n_intervals)

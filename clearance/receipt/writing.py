@@ -23,7 +23,7 @@ from clearance.receipt.receipt_file import (
     Receipt,
     receipt_bytes,
 )
-from clearance.receipt.search import Found, evidence_for
+from clearance.receipt.search import EvidenceList, evidence_for
 from clearance.report.folder import write_file
 
 GIVEN_UP = (0.03, 0.12)
@@ -85,7 +85,7 @@ def write_receipt(
         "rules": list(data.rules),
         "nominal": record.case.tolerance is not None and not data.has_errors,
     }
-    receipt = Receipt(head, proven.claims, proven.found.all_deeds, proven.found.all_codes)
+    receipt = Receipt(head, proven.claims, proven.evidence.all_deeds, proven.evidence.all_codes)
     write_file(place / FILE_NAME, receipt_bytes(receipt))
     return place / FILE_NAME
 
@@ -95,7 +95,7 @@ class _Claims(NamedTuple):
 
     data: CaseData
     claims: np.ndarray
-    found: Found
+    evidence: EvidenceList
 
 
 def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:

@@ -11,7 +11,7 @@ from clearance.receipt.case_data import case_data
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.proving import failure_in
-from clearance.receipt.search import Found, evidence_for
+from clearance.receipt.search import EvidenceList, evidence_for
 from clearance.receipt.writing import claims_of
 from tests.receipt.receipts import turning_arm
 
@@ -21,7 +21,7 @@ MILLIMETRE = round(1e-3 / UNIT)
 class Said:
     """Evidence in the order in which it was found."""
 
-    def __init__(self, found: Found) -> None:
+    def __init__(self, found: EvidenceList) -> None:
         self._deeds, self._codes = found.all_deeds, found.all_codes
 
     def deeds(self, n: int) -> np.ndarray:
