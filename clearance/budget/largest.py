@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.budget.proven import Moments, PairsWithErrors
+from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.kernels.motion.certify_pair import FINEST
@@ -257,6 +257,6 @@ def _proven_of_steps(
     section: SectionBudget, pairs: PairsWithErrors, rows: np.ndarray, enough: float
 ) -> np.ndarray:
     at = section.pairs.steps()
-    moments = Moments(at.intervals[rows], at.shares[rows])
+    moments = PathMoments(at.intervals[rows], at.shares[rows])
     nominal = section.answer.found.clearance[rows]
     return pairs.at(moments, section.steps.pair[rows], nominal, enough).proven

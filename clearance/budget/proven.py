@@ -46,7 +46,7 @@ AS_LOW = 4e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class PathMoments:
     """Moments of a path: (n,) the step before each, and how much of the interval from there has passed, 0 to 1."""
 
     intervals: np.ndarray
@@ -112,15 +112,15 @@ class PairsWithErrors:
         """Number of steps."""
         return self.what.motions[0].n_steps
 
-    def steps(self) -> Moments:
+    def steps(self) -> PathMoments:
         """All steps."""
         numbers = np.arange(self.n_steps)
         intervals = np.minimum(numbers, max(0, self.n_steps - 2))
-        return Moments(intervals, (numbers - intervals).astype(np.float64))
+        return PathMoments(intervals, (numbers - intervals).astype(np.float64))
 
     def at(
         self,
-        moments: Moments,
+        moments: PathMoments,
         order: np.ndarray,
         known: np.ndarray,
         enough: float = np.inf,
@@ -236,7 +236,7 @@ def _sharpen(
 ) -> None:
     """Proves some steps once more, as far as what is left of them is below `enough` [m]."""
     at = pairs.steps()
-    moments = Moments(at.intervals[steps], at.shares[steps])
+    moments = PathMoments(at.intervals[steps], at.shares[steps])
     sharp = pairs.at(moments, rows.pair[steps], found.clearance[steps], enough, is_exact=True)
     better = sharp.proven > rows.proven[steps]
     rows.proven[steps[better]] = sharp.proven[better]

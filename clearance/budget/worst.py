@@ -14,8 +14,7 @@ import numpy as np
 
 from clearance.budget.expected import clock_rates, deviations, variance_of
 from clearance.budget.largest import Largest
-from clearance.budget.proven import Moments as PathMoments
-from clearance.budget.proven import PairsWithErrors
+from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import (
     Slope,

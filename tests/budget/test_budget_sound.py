@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clearance.budget.proven import Moments, proven_of_steps
+from clearance.budget.proven import PathMoments, proven_of_steps
 from clearance.kernels.budget.face_left import REFINED
 from clearance.kernels.budget.sweep import FEW
 from tests.budget.budget_cases import pair_names, proven_sections, random_case
@@ -69,7 +69,7 @@ def test_many_steps_are_no_looser_than_the_stated_share_of_each_alone():
         at = pairs.steps()
         for i in np.flatnonzero(found.clearance > 0.0):
             one = slice(i, i + 1)
-            moment = Moments(at.intervals[one], at.shares[one])
+            moment = PathMoments(at.intervals[one], at.shares[one])
             alone = pairs.at(moment, found.pair[one], found.clearance[one]).proven[0]
             taken = found.clearance[i] - alone
             assert steps.proven[i] >= alone - 2.0 * REFINED * taken
@@ -81,7 +81,7 @@ def test_the_least_of_many_steps_is_as_exact_as_each_alone_and_the_same_each_tim
         at, alone = pairs.steps(), []
         for i in range(len(at)):
             one = slice(i, i + 1)
-            moment = Moments(at.intervals[one], at.shares[one])
+            moment = PathMoments(at.intervals[one], at.shares[one])
             alone.append(pairs.at(moment, found.pair[one], found.clearance[one]).proven[0])
         assert steps.proven.min() >= min(alone) - 1e-9
         again = proven_of_steps(pairs, found)  # in a scene that others have worked with
