@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.findings_file import FindingList
-from clearance.findings.measured_as import MeasuredAs
+from clearance.findings.measurement_conditions import MeasurementConditions
 from clearance.late_dataclass import dataclass
 
 MOST_NAMED = 3
@@ -49,7 +49,7 @@ def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
     return tuple([*_proven_less(old, new), *_measured_less(old, new), *_listed_less(before, now)])
 
 
-def _proven_less(old: MeasuredAs, new: MeasuredAs) -> Iterator[str]:
+def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
     if (old.basis, new.basis) == ("motion", "samples"):
         yield "the motion was proven, and only the samples are looked at"
     if (old.method, new.method) == ("exact", "paper"):
@@ -58,7 +58,7 @@ def _proven_less(old: MeasuredAs, new: MeasuredAs) -> Iterator[str]:
         yield f"clock slack was {slack_text(old)}, and is {slack_text(new)}: other clocks are not covered"
 
 
-def _measured_less(old: MeasuredAs, new: MeasuredAs) -> Iterator[str]:
+def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
     """Pairs that were measured and are left out, for some time at least."""
     known = {tuple(sorted(pair)) for block in old.unmeasured for pair in block}
     lost = [
@@ -83,12 +83,12 @@ def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
         yield f"{now.not_listed:,} findings are not listed"
 
 
-def _slack(measured: MeasuredAs) -> float:
+def _slack(conditions: MeasurementConditions) -> float:
     """[s]"""
-    return float("inf") if measured.clock_slack == "not tied" else float(measured.clock_slack)
+    return float("inf") if conditions.clock_slack == "not tied" else float(conditions.clock_slack)
 
 
-def slack_text(measured: MeasuredAs) -> str:
+def slack_text(conditions: MeasurementConditions) -> str:
     """How far clocks may be apart."""
-    slack = measured.clock_slack
+    slack = conditions.clock_slack
     return slack if isinstance(slack, str) else f"{slack:g} s"

@@ -19,7 +19,7 @@ from clearance.findings.compared_doubts import (
 )
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
-from clearance.findings.measured_as import MeasuredAs
+from clearance.findings.measurement_conditions import MeasurementConditions
 from clearance.late_dataclass import dataclass
 from clearance.simulate.status import Status
 
@@ -114,7 +114,7 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     return Comparison(before.case, now.case, tuple(rows), whole, doubts, less)
 
 
-def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
+def _measured_otherwise(before: MeasurementConditions, now: MeasurementConditions) -> str:
     """Why nothing of two runs is comparable; empty where something is."""
     for what in ("method", "motion", "basis", "certify_gap"):
         one, other = getattr(before, what), getattr(now, what)

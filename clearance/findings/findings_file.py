@@ -13,7 +13,7 @@ from pathlib import Path
 from clearance.errors import BadInput, BadSyntax
 from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
-from clearance.findings.measured_as import MeasuredAs, measured_as
+from clearance.findings.measurement_conditions import MeasurementConditions, conditions_of
 from clearance.findings.of_record import findings_of, why_incomplete
 from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
@@ -49,7 +49,7 @@ class FindingList:
     case: str
     incomplete: str
     not_listed: int
-    measured: MeasuredAs
+    measured: MeasurementConditions
     doubts: tuple[Doubt, ...]
     findings: tuple[Finding, ...]
     format: int = FORMAT
@@ -62,7 +62,7 @@ def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None)
         case=record.case.name,
         incomplete=why_incomplete(record),
         not_listed=max(0, len(found) - MOST_LISTED),
-        measured=measured_as(record),
+        measured=conditions_of(record),
         doubts=doubts_of(record),
         findings=found[:MOST_LISTED],
     )

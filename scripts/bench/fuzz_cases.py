@@ -62,14 +62,14 @@ def findings() -> bytes:
     from clearance.findings.doubts import Doubt
     from clearance.findings.finding import AppliedWaiver, Finding
     from clearance.findings.findings_file import FindingList, findings_text
-    from clearance.findings.measured_as import (
-        MeasuredAs,
+    from clearance.findings.measurement_conditions import (
         MeasuredPairs,
         MeasuredRobot,
         MeasuredRule,
+        MeasurementConditions,
     )
 
-    measured = MeasuredAs(
+    measured = MeasurementConditions(
         need="steps",
         method="exact",
         motion="kinematic",

@@ -1,4 +1,4 @@
-"""How a run was measured: what must be alike for its findings to be compared with another run's.
+"""Measurement conditions of a run: what must be alike for its findings to be compared with another run's.
 
 Where obstacles stand and how robots move is not among it: that is what changes from run to run, and what a
 comparison is about. Not for: comparing (`comparison`).
@@ -54,7 +54,7 @@ class MeasuredPairs:
 
 
 @dataclass(frozen=True)
-class MeasuredAs:
+class MeasurementConditions:
     """How a run was measured.
 
     Attributes:
@@ -91,11 +91,11 @@ class MeasuredAs:
         return any(name in block.a or name in block.b for block in self.pairs)
 
 
-def measured_as(record: Record) -> MeasuredAs:
-    """How a record was measured."""
+def conditions_of(record: Record) -> MeasurementConditions:
+    """The conditions that a record was measured under."""
     certificate, slack = record.certificate, record.case.clock.slack
     left_out = sorted({(one.link, one.obstacle) for one in record.unmeasured})
-    return MeasuredAs(
+    return MeasurementConditions(
         need=record.need,
         method=record.method,
         motion=record.motion_kind,
