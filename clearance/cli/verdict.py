@@ -168,7 +168,7 @@ def _carried(record: Record) -> list[Text]:
 def _where_asked(record: Record) -> list[Text | Callable[[], list[Text]]]:
     """What is told of a recorded run, of tolerances, and of gaps for people, where a case has them."""
     lines: list[Text | Callable[[], list[Text]]] = []
-    if record.asked is not None:
+    if record.commanded is not None:
         from clearance.report.recordings import recording_lines
 
         lines += _rows("recorded", recording_lines(record))

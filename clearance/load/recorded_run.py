@@ -114,8 +114,8 @@ def _notes(found: Recording) -> list[str]:
     clock = "its clock is taken as the run's" if found.offset == 0.0 else (
         f"{found.offset:g} s are added to its times"
     )  # fmt: skip
-    end = float(found.timing.run_times(found.asked.times)[-1])
-    start = float(found.timing.run_times(found.asked.times)[0])
+    end = float(found.timing.run_times(found.commanded.times)[-1])
+    start = float(found.timing.run_times(found.commanded.times)[0])
     short = "" if (found.start, found.end) == (start, end) else f", of {start:.3f} to {end:.3f} s"
     return [
         f"recorded run {found.path}: held against what was asked {span}{short}; {clock}, no offset is estimated",

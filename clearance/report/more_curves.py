@@ -39,8 +39,8 @@ def more_curves(record: Record) -> tuple[PageCurve, ...]:
 
 
 def _curves(record: Record) -> Iterator[PageCurve]:
-    if record.asked is not None:
-        yield _thinned("as asked", record.asked.times, record.asked.clearances, "dash")
+    if record.commanded is not None:
+        yield _thinned("as asked", record.commanded.times, record.commanded.clearances, "dash")
     if record.budget:
         times, between = record.motions[0].times, least_between(record.budget)
         proven = least_proven(record.budget)

@@ -17,9 +17,9 @@ from clearance.world.recording import SHARE
 
 def recordings_of(record: Record) -> dict[str, Any] | None:
     """What `summary.json` holds of recorded runs; None where nothing was recorded."""
-    if record.asked is None:
+    if record.commanded is None:
         return None
-    worst = record.asked.worst
+    worst = record.commanded.worst
     return {
         "asked": {
             "clearance": worst.clearance,

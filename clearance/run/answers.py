@@ -349,7 +349,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         budget_of_pairs=None if answers.budget is None else partial(_budget_of_pairs, plan),
         today=question.today,
         body_gaps=question.body_gaps,
-        asked=_commanded(question) if question.motion == "recorded" else None,
+        commanded=_commanded(question) if question.motion == "recorded" else None,
     )
 
 

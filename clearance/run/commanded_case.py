@@ -16,4 +16,4 @@ def _commanded(placed: PlacedRobot) -> PlacedRobot:
     found = placed.recording
     if found is None:
         return placed
-    return replace(placed, trajectory=found.asked, timing=found.timing, recording=None)
+    return replace(placed, trajectory=found.commanded, timing=found.timing, recording=None)

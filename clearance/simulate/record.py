@@ -197,7 +197,7 @@ class Record(Samples):
         today: the day that waivers are held against; None where the case has none.
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
-        motion_kind: "kinematic", "simulated" or "recorded". asked: of recorded motion, what was asked instead.
+        motion_kind: "kinematic", "simulated" or "recorded". commanded: of recorded motion, in its place.
         budget_of_pairs: `budget` of some of the pairs alone; None where no more can be asked.
         body_gaps: whether gaps that people may be caught in are to be told.
     """
@@ -220,7 +220,7 @@ class Record(Samples):
     of_pairs: PairMeasurer | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
-    asked: CommandedCourse | None = None
+    commanded: CommandedCourse | None = None
     body_gaps: bool = False
     budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 

@@ -1,4 +1,4 @@
-"""What a robot really did, held against what it was asked. Not for: reading recordings (`load.recorded_run`)."""
+"""What a robot really did, held against what it was commanded. Not for: reading one (`load.recorded_run`)."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class Recording:
 
     Attributes:
         path: as it is shown. offset: [s] added to its times to have the run's.
-        asked, timing: what the robot was to do. start, end: [s] both are known between.
+        commanded, timing: what the robot was to do. start, end: [s] both are known between.
         joints: how far each was off.
     """
 
     path: str
     offset: float
-    asked: Trajectory
+    commanded: Trajectory
     timing: Timing
     start: float
     end: float
@@ -54,37 +54,37 @@ def recording_of(
     path: str,
     offset: float,
     driven: Trajectory,
-    asked: Trajectory,
+    commanded: Trajectory,
     timing: Timing,
     resting: Mapping[str, float],
 ) -> Recording:
-    """A recording held against what was asked, at the samples of both while both are known.
+    """A recording held against what was commanded, at the samples of both while both are known.
 
     Where joints move linearly between samples in both, the greatest error is at one of these.
 
     Args:
-        driven: at the run's times. asked: at its own. resting: [rad] or [m] where joints were to stay.
+        driven: at the run's times. commanded: at its own. resting: [rad] or [m] where joints were to stay.
 
     Raises:
         MissingKey: a joint that was to move is not recorded. BadTime: both are never known at one time.
-        BadInput: what was asked has no end.
+        BadInput: what was commanded has no end.
     """
-    _require_joints(driven, asked)
+    _require_joints(driven, commanded)
     if timing.after == "loop":
         raise BadInput("what was asked begins again and again", valid="after: hold")
-    times = _times_of_both(driven.times, timing.run_times(asked.times))
+    times = _times_of_both(driven.times, timing.run_times(commanded.times))
     was = dict(zip(driven.joint_names, asked_at(driven, times).T, strict=True))
-    own = asked_at(asked, (times - timing.start) * timing.rate).T
-    wanted = dict(zip(asked.joint_names, own, strict=True))
+    own = asked_at(commanded, (times - timing.start) * timing.rate).T
+    wanted = dict(zip(commanded.joint_names, own, strict=True))
     errors = tuple(
         _error(joint, np.abs(was[joint] - wanted.get(joint, resting.get(joint, 0.0))), times)
         for joint in driven.joint_names
     )
-    return Recording(path, offset, asked, timing, float(times[0]), float(times[-1]), errors)
+    return Recording(path, offset, commanded, timing, float(times[0]), float(times[-1]), errors)
 
 
-def _require_joints(driven: Trajectory, asked: Trajectory) -> None:
-    missing = [name for name in asked.joint_names if name not in driven.joint_names]
+def _require_joints(driven: Trajectory, commanded: Trajectory) -> None:
+    missing = [name for name in commanded.joint_names if name not in driven.joint_names]
     if missing:
         raise MissingKey(
             f"it does not tell of joints {listed(missing, 8)}, which were to move",
@@ -92,16 +92,16 @@ def _require_joints(driven: Trajectory, asked: Trajectory) -> None:
         )
 
 
-def _times_of_both(driven: np.ndarray, asked: np.ndarray) -> np.ndarray:
+def _times_of_both(driven: np.ndarray, commanded: np.ndarray) -> np.ndarray:
     """(n,) [s] the samples of both, from when both are known until one ends."""
-    start, end = max(driven[0], asked[0]), min(driven[-1], asked[-1])
+    start, end = max(driven[0], commanded[0]), min(driven[-1], commanded[-1])
     if not start < end:
-        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven, asked)]
+        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven, commanded)]
         raise BadTime(
             f"it is of {spans[0]}, and what the robot was asked of {spans[1]}",
             valid="--recorded-offset S, which is added to the recording's times",
         )
-    times = np.union1d(driven, asked)
+    times = np.union1d(driven, commanded)
     return times[(times >= start) & (times <= end)]
 
 

@@ -96,7 +96,7 @@ def test_its_errors_become_the_tracking(tmp_path):
     assert joints["shoulder"].tracking == pytest.approx(0.06 + 0.238 / 3 - 0.1)
     assert joints["lift"].tracking == pytest.approx(0.01 - 0.006 - 0.004 / 3)
     assert found.tolerance.sources == ("tracking: the greatest errors of the run run.csv",)
-    assert found.robots[0].asked.n_steps == 4 and found.robots[0].recording.asked.n_steps == 3
+    assert found.robots[0].asked.n_steps == 4 and found.robots[0].recording.commanded.n_steps == 3
     told = " | ".join(found.notes)
     assert (
         "recorded run run.csv: held against what was asked from 0.000 to 2.000 s; its clock is taken"
@@ -172,7 +172,7 @@ def test_the_run_is_measured_as_driven_beside_what_was_asked(tmp_path):
     driven = cl.check(base.with_trajectory(own.times, own.positions, joint_names=own.joint_names))
     assert found.steps["clearance"].to_pylist() == driven.steps["clearance"].to_pylist()
     asked = cl.check(base)
-    assert found.record.asked.clearances.tolist() == asked.steps["clearance"].to_pylist()
+    assert found.record.commanded.clearances.tolist() == asked.steps["clearance"].to_pylist()
     assert found.summary["motion"] == "recorded"
     told = found.summary["recordings"]
     assert told["asked"]["clearance"] == asked.worst_sample["clearance"]
