@@ -25,7 +25,7 @@ from clearance.late_dataclass import dataclass
 from clearance.simulate.physics_model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot
-from clearance.world.cubic import asked_at
+from clearance.world.cubic import positions_along
 from clearance.world.kinematics import moving_positions
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
@@ -104,7 +104,7 @@ def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndar
     start, end = trajectory.times[0], trajectory.times[-1]
     n_steps = int(np.ceil(((end - start) / rate + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
     times = start + rate * (np.arange(n_steps) / STEPS_PER_SECOND)
-    asked = moving_positions(placed, trajectory.joint_names, asked_at(trajectory, times))
+    asked = moving_positions(placed, trajectory.joint_names, positions_along(trajectory, times))
     rates = np.diff(asked, axis=0, prepend=asked[:1]) * STEPS_PER_SECOND
     return times, asked, rates
 

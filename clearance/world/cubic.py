@@ -65,13 +65,15 @@ def extremes_between(
     return np.min(reached, axis=0), np.max(reached, axis=0)
 
 
-def asked_at(asked: Trajectory, times: np.ndarray) -> np.ndarray:
+def positions_along(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     """(len(times), k) the positions of a trajectory at any times; before and after it, its first and last."""
-    if asked.velocities is None or asked.n_steps == 1:
-        columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
+    if trajectory.velocities is None or trajectory.n_steps == 1:
+        columns = [np.interp(times, trajectory.times, column) for column in trajectory.positions.T]
         return np.array(columns).reshape(-1, len(times)).T
-    interval = np.clip(np.searchsorted(asked.times, times, side="right") - 1, 0, asked.n_steps - 2)
-    length = np.diff(asked.times)[interval]
-    share = np.clip((times - asked.times[interval]) / length, 0.0, 1.0)[:, None]
-    cubics = cubics_of(asked.times, asked.positions, asked.velocities)
+    interval = np.clip(
+        np.searchsorted(trajectory.times, times, side="right") - 1, 0, trajectory.n_steps - 2
+    )
+    length = np.diff(trajectory.times)[interval]
+    share = np.clip((times - trajectory.times[interval]) / length, 0.0, 1.0)[:, None]
+    cubics = cubics_of(trajectory.times, trajectory.positions, trajectory.velocities)
     return position_on(Cubics(*(part[interval] for part in cubics)), share)

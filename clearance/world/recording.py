@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.errors import BadInput, BadTime, MissingKey
 from clearance.late_dataclass import dataclass
-from clearance.world.cubic import asked_at
+from clearance.world.cubic import positions_along
 from clearance.world.notice import listed
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
@@ -73,8 +73,8 @@ def recording_of(
     if timing.after == "loop":
         raise BadInput("what was asked begins again and again", valid="after: hold")
     times = _times_of_both(driven.times, timing.run_times(commanded.times))
-    was = dict(zip(driven.joint_names, asked_at(driven, times).T, strict=True))
-    own = asked_at(commanded, (times - timing.start) * timing.rate).T
+    was = dict(zip(driven.joint_names, positions_along(driven, times).T, strict=True))
+    own = positions_along(commanded, (times - timing.start) * timing.rate).T
     wanted = dict(zip(commanded.joint_names, own, strict=True))
     errors = tuple(
         _error(joint, np.abs(was[joint] - wanted.get(joint, resting.get(joint, 0.0))), times)

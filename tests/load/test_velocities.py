@@ -8,7 +8,7 @@ import pytest
 from clearance import check, load_case
 from clearance.errors import MissingKey, UnknownJoint
 from clearance.world.case import PlacedRobot
-from clearance.world.cubic import asked_at
+from clearance.world.cubic import positions_along
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.robot import Joint, JointKind, Robot
@@ -72,7 +72,7 @@ def test_a_case_file_is_certified_on_the_cubics_of_its_trajectory(tmp_path):
     assert asked.velocities.tolist() == [[0.8], [-0.8]]
     run = check(case, certify=True)
     times = np.linspace(0.0, 1.0, 501)
-    sampled = Trajectory(times, asked.joint_names, asked_at(asked, times))
+    sampled = Trajectory(times, asked.joint_names, positions_along(asked, times))
     finer = replace(case, robots=(replace(case.robots[0], trajectory=sampled),))
     least = check(finer).record.clearances.min()
     bound = run.record.certificate.lower_bound[0]

@@ -14,7 +14,7 @@ from clearance.simulate.swept_pieces import swept_pieces
 from clearance.simulate.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.cubic import asked_at
+from clearance.world.cubic import positions_along
 from clearance.world.motion import kinematic_motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.timeline import timeline_of
@@ -89,7 +89,7 @@ def between_the_steps(motion, n_parts):
     times = np.interp(fine, np.arange(n), motion.times)
     asked = Trajectory(motion.times, motion.joint_names, motion.positions, motion.velocities)
     return fine, dataclasses.replace(
-        motion, times=times, positions=asked_at(asked, times), velocities=None,
+        motion, times=times, positions=positions_along(asked, times), velocities=None,
         tracking_error=np.zeros(len(fine)),
     )  # fmt: skip
 

@@ -8,7 +8,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from clearance.errors import BadDimension, BadShape, NotFinite
 from clearance.world.case import PlacedRobot
-from clearance.world.cubic import asked_at, extremes_between
+from clearance.world.cubic import extremes_between, positions_along
 from clearance.world.kinematics import moving_velocities, positions_by_link, velocities_by_link
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
@@ -35,7 +35,7 @@ def test_positions_and_extremes_are_those_of_the_spline(seed):
         times = asked.times[i] + shares * (asked.times[i + 1] - asked.times[i])
         sampled = spline(times)
         size = 1.0 + np.abs(sampled).max()
-        assert np.abs(asked_at(asked, times) - sampled).max() <= 1e-13 * size
+        assert np.abs(positions_along(asked, times) - sampled).max() <= 1e-13 * size
         assert (least[i] <= sampled.min(axis=0) + 1e-13 * size).all()
         assert (greatest[i] >= sampled.max(axis=0) - 1e-13 * size).all()
         assert np.abs(least[i] - sampled.min(axis=0)).max() <= 1e-3 * size
@@ -51,7 +51,7 @@ def test_a_throw_goes_as_high_as_it_must():
 
 def test_before_and_after_a_trajectory_the_robot_rests():
     asked = random_trajectory(1)
-    ends = asked_at(asked, asked.times[[0, -1]] + [-5.0, 5.0])
+    ends = positions_along(asked, asked.times[[0, -1]] + [-5.0, 5.0])
     assert np.abs(ends - asked.positions[[0, -1]]).max() <= 1e-15
 
 
