@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from clearance.batch.options import Options
+from clearance.batch.options import CaseOptions
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,4 +36,4 @@ class Item:
     name: str
     file: str
     trajectory: GivenTrajectory | None
-    options: Options
+    options: CaseOptions

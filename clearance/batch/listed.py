@@ -12,7 +12,7 @@ from datetime import date
 from pathlib import Path
 
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.options import Options
+from clearance.batch.options import CaseOptions
 from clearance.errors import BadInput, MissingFile, nearest_name
 from clearance.load.tolerance_file import tolerance_digest
 from clearance.report.folder import write_file
@@ -80,21 +80,23 @@ def _told(item: Item) -> dict[str, object]:
     return told if item.trajectory is None else told | {"trajectory": asdict(item.trajectory)}
 
 
-def _item(number: int, row: dict, options: Sequence[Options]) -> Item:
+def _item(number: int, row: dict, options: Sequence[CaseOptions]) -> Item:
     given = row.get("trajectory")
     trajectory = None if given is None else GivenTrajectory(**given)
     return Item(number, row["name"], row["file"], trajectory, options[row["options"]])
 
 
-def _options_told(one: Options, index: dict[Waiver, int]) -> dict[str, object]:
+def _options_told(one: CaseOptions, index: dict[Waiver, int]) -> dict[str, object]:
     told = {field.name: getattr(one, field.name) for field in fields(one)}
     return told | {"waivers": [index[waiver] for waiver in one.waivers]}
 
 
-def _options(told: dict, waivers: Sequence[Waiver]) -> Options:
+def _options(told: dict, waivers: Sequence[Waiver]) -> CaseOptions:
     own = tuple(waivers[i] for i in told["waivers"])
     key = _key_now(told["tolerance"])
-    return Options(**told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key})
+    return CaseOptions(
+        **told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key}
+    )
 
 
 def _key_now(tolerance: str) -> str:

@@ -14,7 +14,7 @@ from datetime import UTC, date, datetime
 from pathlib import Path, PurePath
 
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.options import Options
+from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.late_dataclass import dataclass
@@ -87,7 +87,7 @@ def _with_tolerance(items: list[Item], path: Path | None) -> list[Item]:
 def _waived(items: Sequence[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
     """The items with the waivers that may be of them: a change of one is no change of what it is not of."""
     shared = as_shared(waivers)
-    known: dict[tuple[Options, tuple[int, ...]], Options] = {}
+    known: dict[tuple[CaseOptions, tuple[int, ...]], CaseOptions] = {}
     for item in items:  # the name of a case that is a file of its own is not known yet
         own = tuple(
             i
@@ -130,16 +130,18 @@ def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
                 yield Item(0, before + _name(one, folder), cell, asked, options)
 
 
-def _of_cases(paths: Sequence[Path], folder: Path, before: str, options: Options) -> Iterator[Item]:
+def _of_cases(
+    paths: Sequence[Path], folder: Path, before: str, options: CaseOptions
+) -> Iterator[Item]:
     for path in paths:
         yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
 
 
-def _options(given: Manifest, changes: Changes) -> Options:
+def _options(given: Manifest, changes: Changes) -> CaseOptions:
     """What is asked, of the manifest and the command line, which goes before."""
-    usual = Options()
+    usual = CaseOptions()
     certify = not given.samples_only if changes.certify is None else changes.certify
-    return Options(
+    return CaseOptions(
         need=changes.need or given.need or usual.need,
         certify=certify,
         certify_gap=changes.certify_gap or given.certify_gap or usual.certify_gap,

@@ -18,7 +18,7 @@ from clearance.world.waiver import Waiver
 
 
 @dataclass(frozen=True)
-class Options:
+class CaseOptions:
     """What is asked of a case; its `repr` distinguishes it in keys.
 
     Attributes:
@@ -81,13 +81,13 @@ class Options:
         """That which waivers are held against; None for the day that it is."""
         return date.fromisoformat(self.today) if self.today else None
 
-    def waived_by(self, waivers: tuple[Waiver, ...]) -> Options:
+    def waived_by(self, waivers: tuple[Waiver, ...]) -> CaseOptions:
         """The same with waivers."""
         today = self.day or datetime.now(UTC).date()
         told = [(waiver, waiver.is_expired(today)) for waiver in waivers]
         key = hashlib.sha256(repr(told).encode()).hexdigest() if waivers else ""
         return replace(self, waivers=waivers, waivers_key=key)
 
-    def of_report(self) -> Options:
+    def of_report(self) -> CaseOptions:
         """The same for a full report, which shows every step."""
         return replace(self, need="steps")

@@ -21,7 +21,7 @@ from clearance.world.case import Case, Limits
 __all__ = ["Question", "Resources", "Run", "answer", "check"]
 
 
-class Options(TypedDict, total=False):
+class CheckOptions(TypedDict, total=False):
     """The options of `check`, as in `Question`; `recorded` and `recorded_offset` are of motion "recorded" alone.
 
     Attributes:
@@ -43,7 +43,7 @@ def check(
     limits: Limits | None = None,
     tolerance: Budget | Mapping[str, Any] | str | PathLike[str] | None = None,
     resources: Resources = DEFAULT_RESOURCES,
-    **options: Unpack[Options],
+    **options: Unpack[CheckOptions],
 ) -> Run:
     """The least clearance of every step of a case, and the proof for the motion between.
 
@@ -71,15 +71,15 @@ def check(
     return answer(Question(asked, **given), resources)
 
 
-def _require_options(options: Options) -> None:
+def _require_options(options: CheckOptions) -> None:
     """Nothing, if all of them are.
 
     Raises:
         TypeError: with the nearest name.
     """
     for name in options:
-        if name not in Options.__annotations__:
-            near = nearest_name(name, Options.__annotations__)
+        if name not in CheckOptions.__annotations__:
+            near = nearest_name(name, CheckOptions.__annotations__)
             raise TypeError(f"check() has no option {name!r}; {near}")
 
 
