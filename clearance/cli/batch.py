@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.for_ci import Day
-from clearance.cli.options import Millimetres, OutputPath, accept_option
+from clearance.cli.for_ci import DateParamType
+from clearance.cli.options import LengthParamType, OutputPath, accept_option
 
 
 class _Commands(click.Group):
@@ -30,7 +30,7 @@ def batch() -> None:
     """
 
 
-class _Shard(click.ParamType):
+class _ShardParamType(click.ParamType):
     """A part of several, as 2/5."""
 
     name = "i/n"
@@ -64,7 +64,9 @@ class _Shard(click.ParamType):
     "--jobs", type=click.IntRange(min=1), help="Worker processes.  [default: all cores; same bytes]"
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler.")
-@click.option("--shard", type=_Shard(), help="Measure every n-th case only, from the i-th on.")
+@click.option(
+    "--shard", type=_ShardParamType(), help="Measure every n-th case only, from the i-th on."
+)
 @click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
 @click.option("--rehash", is_flag=True, help="Read every input file, whatever its times say.")
 @click.option("--strict", is_flag=True, help="A case that cannot be read is exit code 2, not 1.")
@@ -78,9 +80,9 @@ class _Shard(click.ParamType):
     is_flag=True,
     help="Look at the samples only: no proof for the motion between them.",
 )
-@click.option("--certify-mm", type=Millimetres(), help="As of check.  [default: 0.1]")
-@click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the cases'.")
-@click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the cases'.")
+@click.option("--certify-mm", type=LengthParamType(), help="As of check.  [default: 0.1]")
+@click.option("--fail-mm", type=LengthParamType(), help="Fail limit instead of the cases'.")
+@click.option("--warn-mm", type=LengthParamType(), help="Warn limit instead of the cases'.")
 @click.option(
     "--tolerance",
     metavar="FILE",
@@ -98,7 +100,7 @@ class _Shard(click.ParamType):
 )
 @click.option(
     "--today",
-    type=Day(),
+    type=DateParamType(),
     help="The day that the cases' waivers are held against.  [default: today, in UTC]",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")

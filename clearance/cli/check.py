@@ -14,7 +14,7 @@ from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import CiOutputs, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
-from clearance.cli.options import Millimetres, OutputPath, accept_option
+from clearance.cli.options import LengthParamType, OutputPath, accept_option
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
 from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
 from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write the report here.")
 @click.option(
     "--fail-mm",
-    type=Millimetres(),
+    type=LengthParamType(),
     help="Fail limit instead of the case's; rules that give one keep theirs.",
 )
-@click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
+@click.option("--warn-mm", type=LengthParamType(), help="Warn limit instead of the case's.")
 @click.option(
     "--samples-only",
     is_flag=True,
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 @click.option("--certify", is_flag=True, hidden=True, help="The default.")
 @click.option(
     "--certify-mm",
-    type=Millimetres(),
+    type=LengthParamType(),
     help="How tight the bound proven for the motion between the samples is.  [default: 0.1]",
 )
 @click.option(
@@ -81,7 +81,7 @@ if TYPE_CHECKING:
 @click.option(
     "--paper-tolerance-mm",
     "paper_tolerance",
-    type=Millimetres(),
+    type=LengthParamType(),
     help="With --method paper: its rule 1 leaves out polygons this far apart or farther.  [default: none]",
 )
 @recorded_options

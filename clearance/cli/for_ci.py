@@ -27,7 +27,7 @@ SUMMARY_VARIABLE, ROOT_VARIABLE = "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"
 """What GitHub Actions calls the file of a step's summary, and the folder of the repository."""
 
 
-class Day(click.ParamType):
+class DateParamType(click.ParamType):
     """A day, as 2027-03-31."""
 
     name = "DATE"
@@ -54,7 +54,7 @@ _OPTIONS = (
     ),
     click.option(
         "--today",
-        type=Day(),
+        type=DateParamType(),
         help="The day that waivers are held against.  [default: today, in UTC]",
     ),
     click.option(

@@ -12,9 +12,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.gain_options import Place, Pose, Room, Stretch
+from clearance.cli.gain_options import (
+    PointParamType,
+    ShiftRangeParamType,
+    TimeWindowParamType,
+    ToolToleranceParamType,
+)
 from clearance.cli.notices import say_notices
-from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.options import LengthParamType, OutputPath
 from clearance.errors import BadInput, shown
 
 if TYPE_CHECKING:
@@ -31,7 +36,7 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
 @click.option("--kind", type=click.Choice(_KINDS), required=True, help="What may be changed.")
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Where the changed case goes.")
 @click.option(
-    "--margin-mm", "margin", type=Millimetres(), default="0", help="Above the fail limits."
+    "--margin-mm", "margin", type=LengthParamType(), default="0", help="Above the fail limits."
 )
 @click.option(
     "--robot",
@@ -44,7 +49,7 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
     "--keep",
     metavar="START:END",
     multiple=True,
-    type=Stretch(),
+    type=TimeWindowParamType(),
     help="[s of the run] In which a path stays as it is, with the samples next to it; may be given again.",
 )
 @click.option(
@@ -54,7 +59,7 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
     "--keep-tool",
     metavar="TIME=MM,DEG",
     multiple=True,
-    type=Pose(),
+    type=ToolToleranceParamType(),
     help="How far the tool may move and turn at a time of the run, as 12.0=2mm,1deg; may be given again.",
 )
 @click.option(
@@ -72,7 +77,7 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
     "--within-mm",
     "within",
     metavar="X,Y,Z",
-    type=Room(),
+    type=ShiftRangeParamType(),
     help="How far a shift may go, either way; as LOW:HIGH one way more than the other, as 50,0:100,0.",
 )
 @click.option(
@@ -82,7 +87,7 @@ _KINDS = ("waypoints", "obstacle", "base", "timing", "all")
     "--about-mm",
     "about",
     metavar="X,Y,Z",
-    type=Place(),
+    type=PointParamType(),
     help="A point of that axis in the world; else the origin of what is moved.",
 )
 @click.option(

@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 
-class Stretch(click.ParamType):
+class TimeWindowParamType(click.ParamType):
     """A stretch of time, START:END."""
 
     name = "start:end"
@@ -34,7 +34,7 @@ class Stretch(click.ParamType):
         return start, end
 
 
-class Pose(click.ParamType):
+class ToolToleranceParamType(click.ParamType):
     """How far a tool may move and turn at a moment, TIME=Nmm,Ndeg; handed on in seconds, metres and radians."""
 
     name = "time=mm,deg"
@@ -60,7 +60,7 @@ class Pose(click.ParamType):
         return time, far / 1000.0, math.radians(turn)
 
 
-class Room(click.ParamType):
+class ShiftRangeParamType(click.ParamType):
     """How far a shift may go along x, y and z: N for either way or LOW:HIGH, in millimetres; handed on in
     metres.
     """
@@ -97,7 +97,7 @@ def _range(text: str) -> tuple[float, float]:
     return low, high
 
 
-class Place(click.ParamType):
+class PointParamType(click.ParamType):
     """A point X,Y,Z in millimetres; handed on in metres."""
 
     name = "x,y,z"

@@ -23,7 +23,7 @@ _MOST_NOTES = 8
 _UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
 
 
-class _Names(click.ParamType):
+class _NamesParamType(click.ParamType):
     """Names with commas between them."""
 
     name = "names"
@@ -64,11 +64,14 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     help="[s] From row to row of a CSV without times.",
 )
 @click.option(
-    "--joints", type=_Names(), metavar="A,B,…", help="The columns of a CSV without a header."
+    "--joints",
+    type=_NamesParamType(),
+    metavar="A,B,…",
+    help="The columns of a CSV without a header.",
 )
 @click.option(
     "--states",
-    type=_Names(),
+    type=_NamesParamType(),
     metavar="A,B,…",
     help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
 )

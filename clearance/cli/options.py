@@ -13,7 +13,7 @@ import click
 from clearance.world.notice import KINDS
 
 
-class Millimetres(click.ParamType):
+class LengthParamType(click.ParamType):
     """A length in millimetres, finite and not negative; handed on in metres."""
 
     name = "mm"
@@ -98,7 +98,7 @@ def motion_option(*more: str, told: str = "") -> Callable[..., Any]:
     )
 
 
-class XacroArguments(click.ParamType):
+class XacroArgumentParamType(click.ParamType):
     """One argument of a xacro file, as xacro's own command line writes it."""
 
     name = "name:=value"
@@ -127,7 +127,7 @@ XACRO_OPTIONS = (
         "xacro_args",
         metavar="NAME:=VALUE",
         multiple=True,
-        type=XacroArguments(),
+        type=XacroArgumentParamType(),
         callback=_by_name,
         help="An argument of the xacro file; may be given again.",
     ),

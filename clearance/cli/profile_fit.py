@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.options import LengthParamType, OutputPath
 
 
 @click.command()
@@ -18,7 +18,7 @@ from clearance.cli.options import Millimetres, OutputPath
 @click.option("--outside", "mode", flag_value="outside", help="Least area that contains it.")
 @click.option("--inside", "mode", flag_value="inside", help="Largest area that stays clear of it.")
 @click.option(
-    "--margin-mm", type=Millimetres(), default="0", help="Least gap to keep.  [default: 0]"
+    "--margin-mm", type=LengthParamType(), default="0", help="Least gap to keep.  [default: 0]"
 )
 @click.option(
     "--free", help="Dimensions to change, separated by commas.  [default: the driven ones]"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import Millimetres, OutputPath, motion_option
+from clearance.cli.options import LengthParamType, OutputPath, motion_option
 
 
 @click.command()
@@ -20,7 +20,9 @@ from clearance.cli.options import Millimetres, OutputPath, motion_option
 @click.option("--links", help="Only these links, separated by commas; '' for none.")
 @click.option("--obstacles", help="These obstacles as well, separated by commas.")
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
-@click.option("--tolerance", type=Millimetres(), help="[mm] How far it may exceed.  [default: 0.5]")
+@click.option(
+    "--tolerance", type=LengthParamType(), help="[mm] How far it may exceed.  [default: 0.5]"
+)
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
 @motion_option()
 @click.option(

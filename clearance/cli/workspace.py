@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.options import LengthParamType, OutputPath
 
 if TYPE_CHECKING:
     from clearance.simulate.workspace import Workspace
@@ -28,7 +28,7 @@ MOST_LINKS = 8
 )
 @click.option(
     "--within-mm",
-    type=Millimetres(),
+    type=LengthParamType(),
     help="How coarse the pieces of the sweep are; smaller is tighter, slower.  [default: 5]",
 )
 @click.option(
