@@ -56,7 +56,7 @@ class _Row(NamedTuple):
 
 
 @dataclass(eq=False)
-class Largest:
+class ToleranceSearch:
     """Finds the greatest tolerances with which the pairs of one rule keep a limit.
 
     Attributes:
@@ -104,7 +104,7 @@ class Largest:
 class _Trial:
     """Tries out one number of one error."""
 
-    asked: Largest
+    asked: ToleranceSearch
     key: SourceKey
     place: int
     unit: str

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from clearance.budget.expected import clock_rates, deviations, variance_of
-from clearance.budget.largest import Largest
+from clearance.budget.largest import ToleranceSearch
 from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import (
@@ -80,7 +80,7 @@ class WorstMoments(LazyItems[BudgetMoment]):
     def __init__(self, rule: str, limits: Limits, sections: Sequence[SectionBudget]) -> None:
         super().__init__(self._found)
         self._rule, self._sections = rule, sections
-        self._largest = Largest(limits.fail, sections)
+        self._largest = ToleranceSearch(limits.fail, sections)
 
     def _found(self) -> list[BudgetMoment]:
         lows = sorted(
