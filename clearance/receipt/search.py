@@ -42,7 +42,7 @@ DEEP = 8
 """Halvings of an interval after which a claim that may be lowered is, rather than cut on."""
 
 
-class Lowest(NamedTuple):
+class LowerableClaims(NamedTuple):
     """Claims (rules, intervals), which are lowered where they cannot be proven, and how far they may be."""
 
     claims: np.ndarray
@@ -106,7 +106,9 @@ def evidence_for(
         stage = Stage(stretch, shapes, halves, claims)
         items = first_items(len(stretch.pairs), stretch.n_intervals)
         while len(items.pair):
-            deeds, codes = _deeds(stage, items, None if lowest is None else Lowest(claims, lowest))
+            deeds, codes = _deeds(
+                stage, items, None if lowest is None else LowerableClaims(claims, lowest)
+            )
             found.add(deeds, codes)
             if found.n_items > most_items:
                 raise BadInput(
@@ -142,7 +144,7 @@ def _pair_text(stage: Stage, pair: int) -> str:
 
 
 def _deeds(
-    stage: Stage, items: Items, lowest: Lowest | None
+    stage: Stage, items: Items, lowest: LowerableClaims | None
 ) -> tuple[np.ndarray, dict[int, np.ndarray]]:
     """What to do with items, and the codes of the directions among it."""
     deeds = np.full(len(items.pair), CUT_TIME)
@@ -186,7 +188,7 @@ def _may_hold(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
 
 
 def _lowered(
-    stage: Stage, items: Items, u: np.ndarray, deeds: np.ndarray, lowest: Lowest
+    stage: Stage, items: Items, u: np.ndarray, deeds: np.ndarray, lowest: LowerableClaims
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lowers the claims of items that would be cut in time once more after many times.
 
