@@ -28,7 +28,7 @@ def _is_compiler_needed() -> bool:
     )
 
 
-class Deferred:
+class DeferredValue:
     """Stands for what `make` gives, until the compiler is needed."""
 
     def __init__(self, make: Callable[[], Any]) -> None:
@@ -60,7 +60,7 @@ def defer(namespace: dict[str, Any], make: Callable[[], Any]) -> Any:
     if _State.begun:
         return make()
     watch(namespace)
-    return Deferred(make)
+    return DeferredValue(make)
 
 
 def watch(namespace: dict[str, Any]) -> None:
@@ -88,5 +88,5 @@ def begin() -> None:
             action()
         for namespace in list(_namespaces.values()):
             for name, value in list(namespace.items()):
-                if isinstance(value, Deferred):
+                if isinstance(value, DeferredValue):
                     namespace[name] = value.made()

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from clearance.compile.deferred import Deferred, begin
+from clearance.compile.deferred import DeferredValue, begin
 from clearance.compile.forms import form_of
 from clearance.compile.kernel_files import KernelFiles
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _loading = threading.RLock()
 
 
-class ReadyKernel(Deferred):
+class ReadyKernel(DeferredValue):
     """A kernel as Python has it, where the compiler is not at work yet.
 
     Args:
