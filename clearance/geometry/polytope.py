@@ -16,7 +16,7 @@ from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope_exits import packed
 from clearance.geometry.polytope_graph import (
-    Trivalent,
+    TrivalentPolytope,
     trivalent_form,
     twins,
     vertex_graph,
@@ -210,7 +210,7 @@ class Polytope:
         return self.face_starts, entry_face[self._twin]
 
     @cached_property
-    def trivalent(self) -> Trivalent:
+    def trivalent(self) -> TrivalentPolytope:
         """The body with each corner split into vertices of three faces."""
         return trivalent_form(self.face_starts, self.face_vertices, self._twin, len(self.vertices))
 

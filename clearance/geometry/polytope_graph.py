@@ -13,7 +13,7 @@ import numpy as np
 from clearance.geometry.edges import rings_of
 
 
-class Trivalent(NamedTuple):
+class TrivalentPolytope(NamedTuple):
     """A polytope in which each vertex lies on three planes; see `kernels.polytope.cut`.
 
     Attributes:
@@ -48,7 +48,7 @@ def vertex_graph(
 
 def trivalent_form(
     face_starts: np.ndarray, face_vertices: np.ndarray, twin: np.ndarray, n_vertices: int
-) -> Trivalent:
+) -> TrivalentPolytope:
     """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon; in its order."""
     ring = rings_of(face_starts)
     before = np.empty_like(ring.ahead)
@@ -69,7 +69,7 @@ def trivalent_form(
     planes = np.concatenate(fans)[near]
     across = _across(planes, len(face_starts) - 1)
     mesh = np.column_stack([across, planes, np.zeros((len(near), 2), dtype=np.int64)])
-    return Trivalent(corners[near], planes, across, mesh.astype(np.int32))
+    return TrivalentPolytope(corners[near], planes, across, mesh.astype(np.int32))
 
 
 def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
