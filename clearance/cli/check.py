@@ -156,7 +156,7 @@ def check(
         body_gaps=body_gaps,
     )  # fmt: skip
     require_receipt(receipt, out, question)
-    run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
+    run = _answer(question, before, outputs, jobs, PrintedOutput(as_json, quiet))
     write_receipt_of(run, receipt, out, case_file, tolerance, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
@@ -175,7 +175,7 @@ def _require_proof_or_samples(samples_only: bool, certify: bool) -> None:
         )
 
 
-class Terminal(NamedTuple):
+class PrintedOutput(NamedTuple):
     """What is printed: the summary as JSON, nothing, or, where neither is asked for, words."""
 
     as_json: bool
@@ -192,7 +192,7 @@ def _answer(
     before: FindingList | None,
     outputs: Outputs,
     jobs: int | None,
-    terminal: Terminal,
+    printed: PrintedOutput,
 ) -> Run:
     """Measures, writes what is wanted, and prints the verdict."""
     from clearance.cli.progress import shown_progress
@@ -201,22 +201,22 @@ def _answer(
 
     outputs.withdraw_older()
     ahead = outputs.more.made_ahead(question.case, question.motion)
-    with kept_rows(outputs.out, terminal.quiet) as rows:
-        with shown_progress(not terminal.has_words, _passes(question)) as progress:
+    with kept_rows(outputs.out, printed.quiet) as rows:
+        with shown_progress(not printed.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if outputs.tell_contacts or terminal.as_json:
+            if outputs.tell_contacts or printed.as_json:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
         outputs.write(run, comparison)
         notes = outputs.more.write(run, ahead)
-    _print(run, outputs.out, terminal)
-    if terminal.has_words:
+    _print(run, outputs.out, printed)
+    if printed.has_words:
         outputs.more.print_written(notes)
         if comparison is not None:
             from clearance.cli.comparison import print_comparison
 
             print_comparison(comparison)
-    outputs.for_ci.write(run, comparison, to_stderr=terminal.as_json)
+    outputs.for_ci.write(run, comparison, to_stderr=printed.as_json)
     return run
 
 
@@ -280,13 +280,13 @@ def _compile_ahead(quiet: bool) -> None:
         click.echo(COMPILING, err=True)
 
 
-def _print(run: Run, out: Path | None, terminal: Terminal) -> None:
-    if terminal.as_json:
+def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
+    if printed.as_json:
         from clearance.report.output import json_text
         from clearance.report.summary import summary_of
 
         click.echo(json_text(summary_of(run.record)), nl=False)
-    elif not terminal.quiet:
+    elif not printed.quiet:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
