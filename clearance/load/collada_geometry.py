@@ -24,7 +24,7 @@ _LINES = ("lines", "linestrips")
 _NO_SURFACE = ("asset", "source", "vertices", "extra", *_LINES)
 
 
-class Ids:
+class ElementsById:
     """The elements of a document by kind and id; a reference must lead to exactly one."""
 
     def __init__(self, root: Element) -> None:
@@ -84,7 +84,7 @@ def whole_number(element: Element, key: str, default: int | None = None) -> int:
     return value
 
 
-def geometry_pieces(geometry: Element, ids: Ids) -> list[Triangles]:
+def geometry_pieces(geometry: Element, ids: ElementsById) -> list[Triangles]:
     """The triangles of each primitive of a `<geometry>`, in the file's order; lines and splines have none.
 
     Raises:
@@ -109,7 +109,7 @@ def _has_surface(item: Element) -> bool:
     return kind in _READERS
 
 
-def _piece(primitive: Element, ids: Ids) -> Triangles:
+def _piece(primitive: Element, ids: ElementsById) -> Triangles:
     kind = local_name(primitive)
     with at(f"<{kind}>"):
         if primitive.find("{*}ph") is not None:
@@ -130,7 +130,7 @@ def _piece(primitive: Element, ids: Ids) -> Triangles:
         return Triangles(points, _READERS[kind](primitive, rings, points))
 
 
-def _inputs(primitive: Element, ids: Ids) -> tuple[int, int, Element]:
+def _inputs(primitive: Element, ids: ElementsById) -> tuple[int, int, Element]:
     """Where the vertex stands among the indices of a corner, how many these are, and `<vertices>`."""
     inputs = primitive.findall("{*}input")
     vertex = [item for item in inputs if item.get("semantic") == "VERTEX"]
@@ -151,7 +151,7 @@ def _corners(p: Element, offset: int, n_inputs: int) -> np.ndarray:
     return indices[offset::n_inputs]
 
 
-def _positions(vertices: Element, ids: Ids) -> np.ndarray:
+def _positions(vertices: Element, ids: ElementsById) -> np.ndarray:
     """(n, 3) the positions of `<vertices>`."""
     inputs = [item for item in vertices.iterfind("{*}input") if item.get("semantic") == "POSITION"]
     if len(inputs) != 1:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadDimension, BadSyntax, NotFinite, at
-from clearance.load.collada_geometry import Ids, geometry_pieces, local_name, words_of
+from clearance.load.collada_geometry import ElementsById, geometry_pieces, local_name, words_of
 from clearance.load.number_text import floats
 from clearance.load.placing import MOST_COPIED_NODES, CopyCount, placed
 from clearance.load.triangles import Triangles
@@ -39,7 +39,7 @@ class _Scene:
 
     def __init__(self, root: Element) -> None:
         self.root = root
-        self.ids = Ids(root)
+        self.ids = ElementsById(root)
         self._made: dict[Element, list[Triangles]] = {}
         self._visits = CopyCount(MOST_COPIED_NODES, "nodes")
 
