@@ -26,7 +26,7 @@ PAGE = 64
 """Pixels along the longer side of the paper's page, which names no number; of 32 to 256 the fastest."""
 
 
-class _Way(NamedTuple):
+class _Direction(NamedTuple):
     """One direction: the curve searched, the other, the step between their frames, and whether it is a to b."""
 
     one: Curve
@@ -36,10 +36,10 @@ class _Way(NamedTuple):
     forward: bool
 
 
-def _ways(a: Curve, b: Curve) -> tuple[_Way, _Way]:
+def _directions(a: Curve, b: Curve) -> tuple[_Direction, _Direction]:
     shift, size = placed(a, b)
     margin = a.rounding + b.rounding + LAST_BITS * size
-    return _Way(a, b, shift, margin, True), _Way(b, a, -shift, margin, False)
+    return _Direction(a, b, shift, margin, True), _Direction(b, a, -shift, margin, False)
 
 
 def untrimmed(a: Curve, b: Curve) -> tuple[DirectedDistance, DirectedDistance]:
@@ -47,13 +47,13 @@ def untrimmed(a: Curve, b: Curve) -> tuple[DirectedDistance, DirectedDistance]:
 
     On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds show it.
     """
-    forth, back = (_untrimmed(way) for way in _ways(a, b))
+    forth, back = (_untrimmed(direction) for direction in _directions(a, b))
     return forth, back
 
 
-def _untrimmed(way: _Way) -> DirectedDistance:
-    state = _solved(way, _whole(way.one), _whole(way.two), _empty())
-    return _directed(way, state)
+def _untrimmed(direction: _Direction) -> DirectedDistance:
+    state = _solved(direction, _whole(direction.one), _whole(direction.two), _empty())
+    return _directed(direction, state)
 
 
 def paper(
@@ -65,20 +65,23 @@ def paper(
     the true one. `literal`: the systems have only the trimmed parts of the other curve as well, as the paper's
     4.3 can be read; its answers can then be too small.
     """
-    ways = _ways(a, b)
-    trimmed = [_trimmed(way) for way in ways]
-    parts = [_parts(way.one, kept) for way, (_, kept) in zip(ways, trimmed, strict=True)]
+    directions = _directions(a, b)
+    trimmed = [_trimmed(direction) for direction in directions]
+    parts = [
+        _parts(direction.one, kept)
+        for direction, (_, kept) in zip(directions, trimmed, strict=True)
+    ]
     found = []
-    for k, way in enumerate(ways):
-        other = parts[1 - k] if literal else _whole(way.two)
+    for k, direction in enumerate(directions):
+        other = parts[1 - k] if literal else _whole(direction.two)
         state, kept = trimmed[k]
-        state = _solved(way, parts[k], other, state)
+        state = _solved(direction, parts[k], other, state)
         if (
             not kept.all()
         ):  # what is trimmed is within the reach of (8) to (10) and both biarc errors
-            worst = state["map_bound"] + way.one.leaves.arcs[:, EPS].max()
+            worst = state["map_bound"] + direction.one.leaves.arcs[:, EPS].max()
             state["upper"] = np.maximum(state["upper"], worst)
-        found.append(_published(way, state))
+        found.append(_published(direction, state))
     return found[0], found[1]
 
 
@@ -104,9 +107,9 @@ def _parts(curve: Curve, kept: np.ndarray) -> np.ndarray:
     return np.stack([owner[new], arcs[new, 0], arcs[last, 1]], axis=1)
 
 
-def _trimmed(way: _Way) -> tuple[np.ndarray, np.ndarray]:
+def _trimmed(direction: _Direction) -> tuple[np.ndarray, np.ndarray]:
     """A state with the bound (2), and which arcs of the curve searched are kept (n,)."""
-    one, two, (shift_x, shift_y) = way.one, way.two, way.shift
+    one, two, (shift_x, shift_y) = direction.one, direction.two, direction.shift
     low = np.minimum(one.box[0], two.box[0]) - two.origin
     span = np.maximum(one.box[1], two.box[1]) - two.origin - low
     pixel = float(span.max()) / PAGE
@@ -122,27 +125,31 @@ def _trimmed(way: _Way) -> tuple[np.ndarray, np.ndarray]:
     return state, kept
 
 
-def _solved(way: _Way, parts: np.ndarray, other: np.ndarray, state: np.ndarray) -> np.ndarray:
+def _solved(
+    direction: _Direction, parts: np.ndarray, other: np.ndarray, state: np.ndarray
+) -> np.ndarray:
     solve_directed(
-        arrays_of(way.one),
+        arrays_of(direction.one),
         parts,
-        arrays_of(way.two),
+        arrays_of(direction.two),
         other,
-        way.shift[0],
-        way.shift[1],
+        direction.shift[0],
+        direction.shift[1],
         BUDGET,
         state,
     )
     return state
 
 
-def _directed(way: _Way, state: np.ndarray) -> DirectedDistance:
-    one, two = way.one, way.two
-    points = witness_of(arrays_of(one), arrays_of(two), way.shift[0], way.shift[1], state)
-    return directed_of(one, two, state[0], points, way.margin, way.forward)
+def _directed(direction: _Direction, state: np.ndarray) -> DirectedDistance:
+    one, two = direction.one, direction.two
+    points = witness_of(
+        arrays_of(one), arrays_of(two), direction.shift[0], direction.shift[1], state
+    )
+    return directed_of(one, two, state[0], points, direction.margin, direction.forward)
 
 
-def _published(way: _Way, state: np.ndarray) -> DirectedDistance:
+def _published(direction: _Direction, state: np.ndarray) -> DirectedDistance:
     """The greatest root as the answer, with what is proven of the true distance."""
     lower = float(state["lower"][0])
     upper = float(np.maximum(state["upper"], state["distance"])[0])
@@ -150,5 +157,5 @@ def _published(way: _Way, state: np.ndarray) -> DirectedDistance:
         state["distance"] = state["root"]
         for place in ("piece_a", "at_a", "piece_b", "at_b"):
             state[place] = state[f"root_{place}"]
-    found = _directed(way, state)
-    return replace(found, lower=max(0.0, lower - way.margin), upper=upper + way.margin)
+    found = _directed(direction, state)
+    return replace(found, lower=max(0.0, lower - direction.margin), upper=upper + direction.margin)
