@@ -31,7 +31,7 @@ else:
         return decorated if cls is None else decorated(cls)
 
 
-class _Late:
+class _LateMethod:
     """Stands in a class for a method, until that is asked for."""
 
     __slots__ = ("cls", "frozen", "name")
@@ -60,9 +60,9 @@ def _with_late_methods(cls: type, init: bool, eq: bool, frozen: bool) -> type:
         frozen  # so that the library lets frozen classes inherit from it
     )
     for name in names:
-        setattr(made, name, _Late(made, name, frozen))
+        setattr(made, name, _LateMethod(made, name, frozen))
     if eq and not gives_hash:
-        made.__hash__ = _Late(made, "__hash__", frozen) if frozen else None
+        made.__hash__ = _LateMethod(made, "__hash__", frozen) if frozen else None
     if frozen:
         made.__setattr__, made.__delattr__ = _refuse_to_set, _refuse_to_delete
     return made

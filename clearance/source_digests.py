@@ -49,7 +49,7 @@ def closure_digest(
     return kept.known[asked]
 
 
-class _Kept(NamedTuple):
+class _DigestStore(NamedTuple):
     """Digests by what was asked for: all that are known, and those that are not kept yet."""
 
     known: dict[str, str]
@@ -57,11 +57,11 @@ class _Kept(NamedTuple):
 
 
 @functools.cache
-def _kept(package: Path) -> _Kept:
+def _kept(package: Path) -> _DigestStore:
     """What earlier runs of the same sources have kept; what this one adds is written when it ends."""
     state = _state(package, time.time_ns())
     file_name = _file_name(package)
-    kept = _Kept({} if state is None else _read(file_name, state), {})
+    kept = _DigestStore({} if state is None else _read(file_name, state), {})
     if state is not None:
         atexit.register(_write, file_name, state, kept.new)
     return kept

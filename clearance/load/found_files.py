@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from clearance.load.mesh_paths import MeshPath
 from clearance.world.notice import Notice, Severity
 
-Found = Mapping[str, Mapping[str, str]]
+PathsByName = Mapping[str, Mapping[str, str]]
 """By package or variable: what was asked for, and the file as it is shown."""
 
 
@@ -38,12 +38,12 @@ class FoundFiles:
         return _notices_on_stand_ins(self._stand_ins)
 
 
-def notes_on_variables(by_variable: Found) -> list[str]:
+def notes_on_variables(by_variable: PathsByName) -> list[str]:
     """A line for each variable of the environment that led to files."""
     return [f"${name} leads to {_first(files)}" for name, files in by_variable.items()]
 
 
-def _notices_on_stand_ins(stand_ins: Found) -> list[Notice]:
+def _notices_on_stand_ins(stand_ins: PathsByName) -> list[Notice]:
     """A warning for each package that is not there, on the files that stand in for its own."""
     return [
         Notice(

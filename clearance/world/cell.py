@@ -13,7 +13,7 @@ from contextlib import suppress
 from functools import wraps
 from typing import Any, Protocol, TypeVar
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 MOST_CELLS = 16
 """Cells that are known at a time."""
@@ -62,17 +62,17 @@ class CellOwner(Protocol):
     def cell(self) -> Cell: ...
 
 
-def once_a_cell(most: int) -> Callable[[Callable[..., Found]], Callable[..., Found]]:
+def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Result]]:
     """Decorates a function of a case and of further keys whose answer follows from the case's cell and those.
 
     Nobody may change what it returns. Answers of the last `most` questions are kept.
     """
 
-    def decorated(work: Callable[..., Found]) -> Callable[..., Found]:
-        known: OrderedDict[tuple[Cell, tuple], Found] = OrderedDict()
+    def decorated(work: Callable[..., Result]) -> Callable[..., Result]:
+        known: OrderedDict[tuple[Cell, tuple], Result] = OrderedDict()
 
         @wraps(work)
-        def found(case: CellOwner, *others: Any) -> Found:
+        def found(case: CellOwner, *others: Any) -> Result:
             key = (case.cell, others)
             if key in known:
                 with suppress(KeyError):  # another thread may have let go of it

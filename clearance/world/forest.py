@@ -192,7 +192,7 @@ class _Planter:
         if i_robot in self.robot_starts:
             return
         placed = self.case.robots[i_robot]
-        with at(f"robot {placed.robot.name!r}: base.on"), self._waiting(placed.robot.name):
+        with at(f"robot {placed.robot.name!r}: base.on"), self._without_ring(placed.robot.name):
             parent, pose = self._stands_on(placed.mount)
         links = links_of_robot(placed.robot)
         fixed = links.parent_from_joint.copy()
@@ -212,7 +212,7 @@ class _Planter:
         if self.obstacle_links[i_obstacle] != WORLD:
             return
         obstacle = self.case.obstacles[i_obstacle]
-        with at(f"obstacle {obstacle.name!r}: on"), self._waiting(obstacle.name):
+        with at(f"obstacle {obstacle.name!r}: on"), self._without_ring(obstacle.name):
             parent, pose = self._stands_on(obstacle.mount)
         if parent == NO_PARENT:
             parent = self.n_links
@@ -247,15 +247,15 @@ class _Planter:
         self._plant_robot(i_robot)
         return self.robot_starts[i_robot] + link, mount.pose
 
-    def _waiting(self, name: str) -> _Waiting:
-        return _Waiting(self.under_way, name)
+    def _without_ring(self, name: str) -> _RingGuard:
+        return _RingGuard(self.under_way, name)
 
     def _add(self, links: Links) -> None:
         self.parts.append(links)
         self.n_links += len(links.parents)
 
 
-class _Waiting:
+class _RingGuard:
     """What waits until what it stands on is planted; a ring is refused."""
 
     def __init__(self, under_way: list[str], name: str) -> None:

@@ -58,7 +58,7 @@ TARGETS = {
 LIBRARIES = ("pinocchio", "fcl")
 
 
-class Asked(argparse.Namespace):
+class Arguments(argparse.Namespace):
     """The command line."""
 
     rows: list[str]
@@ -88,7 +88,7 @@ def main() -> None:
         write_csv(rows, COLUMNS, asked.csv)
 
 
-def arguments() -> Asked:
+def arguments() -> Arguments:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--rows", nargs="*", choices=ROWS, default=list(ROWS), metavar="NAME")
@@ -99,10 +99,10 @@ def arguments() -> Asked:
         "--cases", nargs="*", type=Path, default=inputs.case_files(), help="of `standing scenes`"
     )
     parser.add_argument("--csv", type=Path, help="write the rows here")
-    return parser.parse_args(namespace=Asked())
+    return parser.parse_args(namespace=Arguments())
 
 
-def against_peers(name: str, asked: Asked) -> list[dict]:
+def against_peers(name: str, asked: Arguments) -> list[dict]:
     """Ours and every peer's loop on one case."""
     actors = Actors(CASES[name]())
     loops = loops_of(actors)
@@ -140,7 +140,7 @@ def against_peers(name: str, asked: Asked) -> list[dict]:
     return rows
 
 
-def certificates(name: str, make: Callable, asked: Asked) -> list[dict]:
+def certificates(name: str, make: Callable, asked: Arguments) -> list[dict]:
     """A certificate to 0.1 mm in parts of the run's own `steps`; all phases and rules of the run."""
     case = make()
     sections = sections_of(case)
@@ -178,7 +178,7 @@ def handover() -> Case:
     return cl.load_case(inputs.SCENES / "dual_arm_handover" / "case.yaml")
 
 
-def standing(asked: Asked) -> list[dict]:
+def standing(asked: Arguments) -> list[dict]:
     """`steps` of today's scenes in this checkout and another."""
     if asked.against is None:
         return []
@@ -199,7 +199,7 @@ def standing(asked: Asked) -> list[dict]:
     ]
 
 
-def audited(asked: Asked) -> list[dict]:
+def audited(asked: Arguments) -> list[dict]:
     """All excused pairs of a 7-axis arm, once; seconds on one thread."""
     robot, matrix = read(*PANDA)
     audit(robot, matrix)  # compiles
@@ -224,7 +224,7 @@ def audited(asked: Asked) -> list[dict]:
     ]
 
 
-def unsynchronised(asked: Asked) -> list[dict]:
+def unsynchronised(asked: Arguments) -> list[dict]:
     """A whole check of two arms whose clocks nothing ties: steps, and the proof over all pairs of times."""
     case = replace(two_arms(), clock=Clock(np.inf))
     cl.check(case, resources=Resources(jobs=1))  # compiles
@@ -251,7 +251,7 @@ def unsynchronised(asked: Asked) -> list[dict]:
 OF_A_CLONE = ("standing scenes", "certificate of a handed part")
 """Rows whose robots come with what the tests need."""
 
-ROWS: dict[str, Callable[[Asked], list[dict]]] = {
+ROWS: dict[str, Callable[[Arguments], list[dict]]] = {
     "self and scene of an arm": partial(against_peers, "arm"),
     "humanoid": partial(against_peers, "humanoid"),
     "two arms": partial(against_peers, "two_arms"),
