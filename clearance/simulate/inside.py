@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.search.boxes_on_a_way import CarriedBoxes, steps_together
+from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
 from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.query.inside import PossibleContainment, doubt_of

@@ -256,7 +256,7 @@ class _Planter:
 
 
 class _RingGuard:
-    """What waits until what it stands on is planted; a ring is refused."""
+    """A context in which what a body stands on is planted; a ring of bodies is refused."""
 
     def __init__(self, under_way: list[str], name: str) -> None:
         self.under_way, self.name = under_way, name

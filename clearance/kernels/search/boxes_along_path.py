@@ -1,4 +1,4 @@
-"""When two bodies may overlap on their way, by the boxes about them: of most pairs, at no step.
+"""Steps at which two bodies on a path may overlap, by the boxes about them: of most pairs, none.
 
 Boxes that are beside each other along an axis of either stay so until they have moved and turned as far against
 each other, so that most steps are passed over. Not for: bounds of the distance (`motion.sweep`), and what is
@@ -41,7 +41,7 @@ class CarriedBoxes(NamedTuple):
     standing: np.ndarray
 
 
-class Ways(NamedTuple):
+class BoxDisplacements(NamedTuple):
     """How far boxes have moved in all up to each step, (b, n).
 
     Attributes:
@@ -134,7 +134,7 @@ def _turned(before, after):
 
 
 @inline
-def _fill_ways(boxes, poses, ways):
+def _fill_displacements(boxes, poses, displacements):
     for body in range(len(boxes.links)):
         if boxes.links[body] < 0:
             continue
@@ -143,8 +143,10 @@ def _fill_ways(boxes, poses, ways):
         for step in range(1, len(poses)):
             after = _pose(boxes, body, poses, step)
             moved = np.sqrt(gap_sq(move(before, middle), move(after, middle)))
-            ways.middles[body, step] = ways.middles[body, step - 1] + moved
-            ways.turns[body, step] = ways.turns[body, step - 1] + _turned(before, after)
+            displacements.middles[body, step] = displacements.middles[body, step - 1] + moved
+            displacements.turns[body, step] = displacements.turns[body, step - 1] + _turned(
+                before, after
+            )
             before = after
 
 
@@ -158,9 +160,9 @@ def steps_together(boxes, pairs, poses, spans):
         spans: (p, 2) where they are written.
     """
     n_steps, n_bodies = len(poses), len(boxes.links)
-    ways = Ways(np.zeros((n_bodies, n_steps)), np.zeros((n_bodies, n_steps)))
-    _fill_ways(boxes, poses, ways)
-    middles, turns = ways.middles, ways.turns
+    displacements = BoxDisplacements(np.zeros((n_bodies, n_steps)), np.zeros((n_bodies, n_steps)))
+    _fill_displacements(boxes, poses, displacements)
+    middles, turns = displacements.middles, displacements.turns
     for pair in range(len(pairs)):
         a, b = pairs[pair, 0], pairs[pair, 1]
         spans[pair, 0] = spans[pair, 1] = 0
