@@ -45,7 +45,7 @@ from clearance.kernels.search.front import POOL, Fronts, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 
 
-class SweepState(NamedTuple):
+class BudgetSweepState(NamedTuple):
     """What is carried from moment to moment, and scratch.
 
     Attributes:
@@ -86,7 +86,7 @@ class BudgetScene(NamedTuple):
     world: World
     path: JointPath
     errors: Errors
-    state: SweepState
+    state: BudgetSweepState
 
 
 ROUNDED = 2.0**-40
@@ -103,7 +103,7 @@ def new_state(world, errors):
         new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
         new_along_rows(errors.most_rows), new_pieces(), new_scratch(),
     )  # fmt: skip
-    return SweepState(
+    return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)), np.zeros(n_bodies),
