@@ -32,7 +32,7 @@ from clearance.kernels.motion.unsynchronised import (
     certify_unsynchronised,
 )
 from clearance.kernels.motion.unsynchronised_steps import (
-    StepsFound,
+    StepMinima,
     least_of_unsynchronised_steps,
 )
 from clearance.kernels.motion.world import World
@@ -217,7 +217,7 @@ class _Work:
     def steps(self, *, least_only: bool = False) -> tuple[UnsynchronisedSteps, dict[str, int]]:
         """The least of each step, or what is right of the least of all only."""
         n = self.n_a
-        found = StepsFound(
+        found = StepMinima(
             np.empty(n),
             np.empty(n, np.int64),
             np.empty(n, np.int64),
@@ -229,7 +229,7 @@ class _Work:
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
             clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
-            own = StepsFound(*(column[span] for column in found))
+            own = StepMinima(*(column[span] for column in found))
             call(least_of_unsynchronised_steps, self.surface, clocks, least_only, own, counts)
             return span.stop, counts
 

@@ -43,7 +43,7 @@ ALL_TIMES = Rectangle(0, 0, 0.0, 1.0, 0.0, 1.0)
 """All of both clocks' times."""
 
 
-class Waiting(NamedTuple):
+class RectangleStack(NamedTuple):
     """Rectangles that wait, each with the pairs that are to be looked at in it.
 
     Attributes:
@@ -59,9 +59,9 @@ class Waiting(NamedTuple):
 
 
 @shared
-def new_waiting(n_pairs):
+def new_rectangle_stack(n_pairs):
     """Room for rectangles, of which none waits."""
-    return Waiting(
+    return RectangleStack(
         np.empty((DEPTH, 2), dtype=np.int64), np.empty((DEPTH, 4)), np.empty(DEPTH, dtype=np.int64),
         np.empty((DEPTH, n_pairs), dtype=np.int64), np.arange(n_pairs),
     )  # fmt: skip

@@ -33,14 +33,14 @@ from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
 from clearance.kernels.motion.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
-    Waiting,
+    RectangleStack,
     clipped,
     halves_of,
     is_whole,
     meets_band,
     middle_occurs,
     middle_of_side,
-    new_waiting,
+    new_rectangle_stack,
     put_rectangle,
     take_rectangle,
 )
@@ -100,7 +100,7 @@ class RectangleState(NamedTuple):
         part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
     """
 
-    waiting: Waiting
+    waiting: RectangleStack
     gaps: np.ndarray
     n_looked_at: np.ndarray
     lower_bounds: np.ndarray
@@ -362,7 +362,7 @@ def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
     n_links, n_rows = len(clocks.world.links.parents), len(bounds.upper)
     n_pairs = len(clocks.world.pairs)
     state = RectangleState(
-        new_waiting(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
+        new_rectangle_stack(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
         np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
         new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
     )  # fmt: skip

@@ -21,12 +21,12 @@ from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
-    Waiting,
+    RectangleStack,
     halves_of,
     meets_band,
     middle_occurs,
     middle_of_side,
-    new_waiting,
+    new_rectangle_stack,
     put_rectangle,
     take_rectangle,
 )
@@ -50,7 +50,7 @@ WALK = 16
 """Steps of the other clock at most from the last best one to where the next begins."""
 
 
-class StepsFound(NamedTuple):
+class StepMinima(NamedTuple):
     """What is found of each step of clock a.
 
     Attributes:
@@ -69,7 +69,7 @@ class StepsFound(NamedTuple):
 class StepsState(NamedTuple):
     """Scratch: rectangles that wait, the faces of each pair that were nearest, and that of a search."""
 
-    waiting: Waiting
+    waiting: RectangleStack
     witness_faces: np.ndarray
     fronts: Fronts
     scratch: Scratch
@@ -322,7 +322,7 @@ def least_of_unsynchronised_steps(surface, clocks, least_only, found, tally, tab
     """
     n_pairs = len(clocks.world.pairs)
     state = StepsState(
-        new_waiting(n_pairs), np.full((n_pairs, 2), NO_FACE), no_fronts(1, 0), new_scratch()
+        new_rectangle_stack(n_pairs), np.full((n_pairs, 2), NO_FACE), no_fronts(1, 0), new_scratch()
     )
     for i in range(len(tally)):
         tally[i] = 0
