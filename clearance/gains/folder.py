@@ -92,16 +92,16 @@ def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
 
 def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
     """All figures, in metres, radians and seconds."""
-    asked, blocked = gain.asked, gain.blocked
+    request, blocked = gain.request, gain.blocked
     return {
         "format": FORMAT,
         "name": gain.case.name,
-        "kind": asked.kind,
+        "kind": request.kind,
         "who": gain.who,
         "kept": gain.kept,
-        "margin": asked.margin,
-        "keep": [list(window) for window in asked.keep],
-        "keep_ends": asked.keep_ends,
+        "margin": request.margin,
+        "keep": [list(window) for window in request.keep],
+        "keep_ends": request.keep_ends,
         "tool": [
             {
                 "link": one.link,
@@ -115,9 +115,9 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         ],
         "tool_path": None if gain.tool_path is None else vars(gain.tool_path),
         "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
-        "within": None if asked.within is None else [list(ends) for ends in asked.within],
-        "turn": None if asked.turn is None else vars(asked.turn),
-        "slow_down": asked.slow_down,
+        "within": None if request.within is None else [list(ends) for ends in request.within],
+        "turn": None if request.turn is None else vars(request.turn),
+        "slow_down": request.slow_down,
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,

@@ -35,7 +35,7 @@ class Moved(NamedTuple):
 
 def moved_parts(gain: Gain) -> list[Moved]:
     """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
-    if gain.asked.kind == "waypoints":
+    if gain.request.kind == "waypoints":
         changes = gain.change if isinstance(gain.change, tuple) else (gain.change,)
         each = zip(changed_robots(gain), changes, strict=True)
         return [
@@ -43,12 +43,12 @@ def moved_parts(gain: Gain) -> list[Moved]:
         ]
     assert not isinstance(gain.change, tuple)
     change = gain.change.tolist()
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         return [Moved("duration", change[0], "share")]
-    if gain.asked.kind == "timing":
+    if gain.request.kind == "timing":
         return [Moved("start", change[0], "s")]
     parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
-    turn = gain.asked.turn
+    turn = gain.request.turn
     return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
 
 
@@ -64,7 +64,7 @@ def joint_parts(gain: Gain) -> list[Moved]:
 def changed_robots(gain: Gain) -> list[PlacedRobot]:
     """The robots of the changed case that are changed."""
     robots = gain.case.robots
-    return [robots[index_of_robot(robots, name)] for name in gain.asked.robots or (gain.who,)]
+    return [robots[index_of_robot(robots, name)] for name in gain.request.robots or (gain.who,)]
 
 
 def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[Moved]:
@@ -87,10 +87,10 @@ def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> lis
 
 def size_unit(gain: Gain) -> tuple[float, str]:
     """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         return 100.0, "%"
-    if gain.asked.kind != "waypoints":
-        return (1.0, "s") if gain.asked.kind == "timing" else (1e3, "mm")
+    if gain.request.kind != "waypoints":
+        return (1.0, "s") if gain.request.kind == "timing" else (1e3, "mm")
     from clearance.gains.offsets import SLIDE
 
     return (1e3 / SLIDE, "mm") if not turning(gain) else (math.degrees(1.0), "deg")
@@ -125,4 +125,4 @@ def proven_after(gain: Gain) -> float | None:
     found, limits = proven_bound(gain.after), gain.case.limits
     if found is None or not gain.kept or limits.rules:
         return found
-    return max(found, limits.fail + gain.asked.margin)
+    return max(found, limits.fail + gain.request.margin)

@@ -39,7 +39,7 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
 
 
 def _header(gain: Gain) -> Markup:
-    kicker = element("p", f"Least change of kind {gain.asked.kind}", class_="kicker")
+    kicker = element("p", f"Least change of kind {gain.request.kind}", class_="kicker")
     title = element("div", kicker, element("h1", gain.case.name))
     badge = element("p", _badge(gain), class_=f"verdict {'clear' if gain.kept else 'violated'}")
     lines = [
@@ -67,14 +67,14 @@ def _curves(gain: Gain) -> Markup:
     fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
     picture = element(
         "div",
-        chart(curves, fail + gain.asked.margin, "with margin" if gain.asked.margin else "fail"),
+        chart(curves, fail + gain.request.margin, "with margin" if gain.request.margin else "fail"),
         class_="scroll",
     )
     what = element(
         "p",
         "The least clearance of each step"
-        + (f"; the line is the limit with the margin of {limit_mm(gain.asked.margin)} mm."
-           if gain.asked.margin else "; the line is the limit."),
+        + (f"; the line is the limit with the margin of {limit_mm(gain.request.margin)} mm."
+           if gain.request.margin else "; the line is the limit."),
         class_="faint",
     )  # fmt: skip
     return section("Clearance over time", picture, element("div", *key, class_="key"), what)
@@ -84,17 +84,17 @@ def _moved(gain: Gain) -> Markup:
     parts = moved_parts(gain)
     if not parts or gain.size == 0.0:
         return section("What is changed", element("p", "Nothing is changed."))
-    if gain.asked.kind == "waypoints":
+    if gain.request.kind == "waypoints":
         return section("What is changed", _joints(parts))
     rows = [
         element("tr", element("td", _what(gain, part)), _number(signed_text(part)))
         for part in parts
     ]
-    if gain.asked.kind != "timing":
+    if gain.request.kind != "timing":
         rows.append(
             element(
                 "tr",
-                element("td", "length" if gain.asked.turn is None else "size"),
+                element("td", "length" if gain.request.turn is None else "size"),
                 _number(size_text(gain)),
             )
         )
@@ -112,9 +112,9 @@ def _joints(parts: Sequence[Moved]) -> Markup:
 def _what(gain: Gain, part: Moved) -> str:
     if part.unit == "rad":
         return part.name
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         return "takes longer"
-    return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
+    return "begins later" if gain.request.kind == "timing" else f"along {part.name}"
 
 
 def _joint(part: Moved) -> Markup:

@@ -67,7 +67,7 @@ def written_case(gain: Gain, folder: Path) -> WrittenCase:
         "base": made.base,
         "obstacle": made.obstacle,
     }
-    ways[gain.asked.kind]()
+    ways[gain.request.kind]()
     files = {CASE: made.case(), **made.contents}
     _require_same(gain, files, folder)
     return WrittenCase(files, tuple(made.notes))
@@ -99,7 +99,7 @@ class _Files:
     def paths(self) -> None:
         """The tables of all paths that are changed, each of several with its robot's name."""
         robots = self.gain.case.robots
-        names = self.gain.asked.robots or (self.gain.who,)
+        names = self.gain.request.robots or (self.gain.who,)
         for name in names:
             self.path(index_of_robot(robots, name), f"_{name}" if len(names) > 1 else "")
 
@@ -116,7 +116,7 @@ class _Files:
 
     def delay(self) -> None:
         """A start, or a rate, in place of another."""
-        if self.gain.asked.slow_down:
+        if self.gain.request.slow_down:
             self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate}, self._i_robot)
             return
         self._table({"start": self.gain.case.robots[self._i_robot].timing.start}, self._i_robot)
@@ -195,7 +195,7 @@ class _Files:
 
     def _pose(self, given: Node, before: np.ndarray, after: np.ndarray) -> Node:
         """A pose of a file in another place; where it is turned with the quaternion that it was made of."""
-        turn, change = self.gain.asked.turn, self.gain.change
+        turn, change = self.gain.request.turn, self.gain.change
         if turn is None or change[3] == 0.0:
             return {**given, "xyz": after[:3, 3].tolist()}
         place, quaternion = Pivot(turn, before).placed(np.append(change[:3], change[3] * ARM))

@@ -130,7 +130,7 @@ def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Change:
 
 def intervals_of(case: Case, found: Gain) -> int:
     """On how many intervals the splines are that a path was mended with; else the fewest."""
-    for n_intervals in INTERVALS if found.kept and found.asked.kind == "waypoints" else ():
+    for n_intervals in INTERVALS if found.kept and found.request.kind == "waypoints" else ():
         change = change_of(case, "waypoints", found.who, n_intervals)
         assert isinstance(change, JointOffsets)
         splines = change.basis.at(change.placed.asked.times)

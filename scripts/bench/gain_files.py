@@ -19,7 +19,7 @@ from inputs import ROOT
 from rows import write_csv
 
 import clearance as cl
-from clearance.gains.answer import Asked, Gain
+from clearance.gains.answer import Gain, Request
 from clearance.gains.written import written_case
 from clearance.load.rewritten_case import Node, rewritten_case
 from clearance.run import Question, answer
@@ -90,10 +90,10 @@ def _filed(one: Made, folder: Path, i: int) -> Filed:
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_bytes(_limited(one.source, one.case.limits.fail, file.parent))
     if one.how != "raised":
-        asked = Asked(one.kind, **_named(one))
+        request = Request(one.kind, **_named(one))
         run = answer(Question(one.case))
         change = Gain(
-            asked, True, one.case, np.zeros(0), one.known, 0.0, one.who, run, run, None, 0
+            request, True, one.case, np.zeros(0), one.known, 0.0, one.who, run, run, None, 0
         )
         write_proposal(change, file, file.parent)
         place = place / "case.yaml"
