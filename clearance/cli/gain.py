@@ -135,9 +135,9 @@ def _robot(names: tuple[str, ...]) -> str | tuple[str, ...] | None:
 
 def _folders(read: Case, out: Path, robot: str | tuple[str, ...] | None) -> list[Path]:
     """Where each kind goes, of each robot where there are several."""
-    from clearance.gains.every_kind import name_of, tries_of
+    from clearance.gains.every_kind import name_of, trials_of
 
-    return [out / name_of(kind, who, read) for kind, who in tries_of(read, robot)]
+    return [out / name_of(kind, who, read) for kind, who in trials_of(read, robot)]
 
 
 def _with_turn(options: dict[str, Any]) -> dict[str, Any]:

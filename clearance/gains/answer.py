@@ -28,14 +28,14 @@ from clearance.gains.blocked import (
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import Delayed, least_delay, least_slowing
+from clearance.gains.delay import TimingResult, least_delay, least_slowing
 from clearance.gains.held_back import held_back
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
 from clearance.gains.request import Options, Request, request_of
-from clearance.gains.search import Change, Found, Search
+from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
@@ -154,7 +154,7 @@ def _by_shift(case: Case, request: Request) -> Gain:
     blocked = blocked_by(first, shift.gradient, shift.handed)
     if blocked is None and at_least > shift.farthest:
         blocked = worst_pair(first, TOO_FAR)
-    found = Found(first, None, 1)
+    found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, shift, first, at_least)
     return _gain(
@@ -172,7 +172,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_base(way, first, request.margin)
     blocked = blocked_by(first, way.gradient, way.handed)
-    found = Found(first, None, 1)
+    found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, way, first, at_least)
     x = found.state.x
@@ -188,7 +188,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
 
 def _least_of_several(
     search: Search, shift: Shift | ToolPathKept, first: State, at_least: float
-) -> Found:
+) -> SearchResult:
     """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
@@ -230,7 +230,7 @@ def _by_path(case: Case, request: Request) -> Gain:
             blocked = _kept_still(blocked, first, offsets, request)
         elif isinstance(offsets, JointOffsets):
             blocked = held_back(first, offsets)
-        found = Found(first, None, 1) if blocked else search.from_state(first)
+        found = SearchResult(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
@@ -270,7 +270,7 @@ def _kept_still(
 def _gain(
     case: Case,
     request: Request,
-    found: Found,
+    found: SearchResult,
     change: np.ndarray | tuple[np.ndarray, ...],
     way: Change,
     at_least: float,
@@ -291,7 +291,7 @@ def _gain(
     )  # fmt: skip
 
 
-def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
+def _binding(found: SearchResult, way: Change, blocked: Blocked) -> tuple[str, ...]:
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
     if isinstance(way, JointOffsets | PathsTogether):
@@ -321,7 +321,7 @@ def _by_delay(case: Case, request: Request) -> Gain:
     )  # fmt: skip
 
 
-def _blocked_in_time(found: Delayed, request: Request, after: Run) -> Blocked:
+def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Blocked:
     """What stays too near with every delay, else what does with the last that was looked at."""
     if found.stays is not None and np.isinf(found.at_least):
         return found.stays

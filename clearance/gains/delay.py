@@ -44,7 +44,7 @@ Longer = Callable[[State, Approach, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class Delayed:
+class TimingResult:
     """Where the search ended.
 
     Attributes:
@@ -85,7 +85,7 @@ def case_slower(case: Case, i_robot: int, more: float) -> Case:
     return replace(case, robots=tuple(robots))
 
 
-def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed:
+def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingResult:
     """The least delay up to `most` [s] at which the rules hold by a margin [m].
 
     Raises:
@@ -105,7 +105,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     )
 
 
-def least_slowing(case: Case, i_robot: int, margin: float) -> Delayed:
+def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
     """By what share a robot's path takes longer at least, up to `MOST_SLOWER`, so that the rules hold.
 
     Raises:
@@ -151,7 +151,7 @@ def _least(
     i_robot: int,
     margin: float,
     steps: tuple[float, float],
-) -> Delayed:
+) -> TimingResult:
     """The least change of time found.
 
     Args:
@@ -179,7 +179,7 @@ def _least(
         if max(excluded, delay + finest) > most:
             break
         delay = max(excluded, delay + finest)
-    return Delayed(state, record, delay, at_least, n_measured, stays)
+    return TimingResult(state, record, delay, at_least, n_measured, stays)
 
 
 def greatest_speed(case: Case, i_robot: int) -> float:

@@ -108,7 +108,7 @@ class Change(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SearchResult:
     """Where a search ended.
 
     Attributes:
@@ -143,7 +143,7 @@ class Search:
         """The case of some variables (m,), measured."""
         return self._state(x, self.change.first_reach)
 
-    def from_state(self, state: State, below: float = np.inf) -> Found:
+    def from_state(self, state: State, below: float = np.inf) -> SearchResult:
         """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
         for _ in range(MOST_PROOFS):
@@ -154,7 +154,7 @@ class Search:
             if keeps(record):
                 break
             state, record = self._wanting_more(state, record), None
-        return Found(state, record, self.n_measured)
+        return SearchResult(state, record, self.n_measured)
 
     def _wanting_more(self, state: State, unproven: Record) -> State:
         """The same variables, measured by what is wanted so that the motion between the steps is proven too."""
