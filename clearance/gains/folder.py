@@ -12,7 +12,7 @@ from typing import Any
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
-from clearance.gains.moved import joint_parts, moved_parts, proven_after, proven_bound
+from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
 from clearance.gains.page import page_of
 from clearance.gains.written import OWN as OF_CASE
 from clearance.gains.written import written_case
@@ -121,7 +121,7 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
-        "parts": [part._asdict() for part in moved_parts(gain)],
+        "parts": [part._asdict() for part in change_parts(gain)],
         "before": _of_run(gain.before, proven_bound(gain.before)),
         "after": _of_run(gain.after, proven_after(gain)),
         "blocked": None if blocked is None else vars(blocked) | {"text": str(blocked)},

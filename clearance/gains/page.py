@@ -10,7 +10,13 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
-from clearance.gains.moved import Moved, joint_parts, moved_parts, proven_after, proven_bound
+from clearance.gains.change_parts import (
+    ChangePart,
+    change_parts,
+    joint_parts,
+    proven_after,
+    proven_bound,
+)
 from clearance.gains.told import is_hopeless, lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
@@ -81,7 +87,7 @@ def _curves(gain: Gain) -> Markup:
 
 
 def _moved(gain: Gain) -> Markup:
-    parts = moved_parts(gain)
+    parts = change_parts(gain)
     if not parts or gain.size == 0.0:
         return section("What is changed", element("p", "Nothing is changed."))
     if gain.request.kind == "waypoints":
@@ -104,12 +110,12 @@ def _moved(gain: Gain) -> Markup:
     return section("What is changed", shifted, _joints(joint_parts(gain)))
 
 
-def _joints(parts: Sequence[Moved]) -> Markup:
+def _joints(parts: Sequence[ChangePart]) -> Markup:
     heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
     return table(heads, [_joint(part) for part in parts])
 
 
-def _what(gain: Gain, part: Moved) -> str:
+def _what(gain: Gain, part: ChangePart) -> str:
     if part.unit == "rad":
         return part.name
     if gain.request.slow_down:
@@ -117,7 +123,7 @@ def _what(gain: Gain, part: Moved) -> str:
     return "begins later" if gain.request.kind == "timing" else f"along {part.name}"
 
 
-def _joint(part: Moved) -> Markup:
+def _joint(part: ChangePart) -> Markup:
     times = [part.time, part.start, part.end]
     cells = [_number(seconds(time)) for time in times if time is not None]
     return element("tr", element("td", part.name), _number(signed_text(part)), *cells)

@@ -11,9 +11,16 @@ from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
 from clearance.gains.blocked import HOPELESS
+from clearance.gains.change_parts import (
+    ChangePart,
+    change_parts,
+    joint_parts,
+    size_unit,
+    sliding,
+    turning,
+)
 from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
-from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
@@ -84,7 +91,7 @@ def is_hopeless(gain: Gain) -> bool:
 
 def changed_lines(gain: Gain) -> list[str]:
     """What is moved by how much."""
-    parts = moved_parts(gain)
+    parts = change_parts(gain)
     if gain.request.kind == "waypoints":
         return [_joint(part) for part in parts] or ["no joint moves"]
     if gain.request.slow_down:
@@ -135,7 +142,7 @@ def tool_lines(gain: Gain) -> Iterator[str]:
         )
 
 
-def amount_text(part: Moved) -> str:
+def amount_text(part: ChangePart) -> str:
     """How far a part moves, without a sign."""
     units = {
         "rad": (math.degrees(1.0), "deg"),
@@ -147,7 +154,7 @@ def amount_text(part: Moved) -> str:
     return f"{_figure(abs(part.amount) * factor)} {unit}"
 
 
-def signed_text(part: Moved) -> str:
+def signed_text(part: ChangePart) -> str:
     """The same with its sign; none where that is nothing in the digits told."""
     text = amount_text(part)
     return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
@@ -227,12 +234,12 @@ def _worst(run: Run) -> str:
     return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.text()}"
 
 
-def _joint(part: Moved) -> str:
+def _joint(part: ChangePart) -> str:
     told = f"joint {part.name} by up to {signed_text(part)}"
     return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 
-def _signed(part: Moved) -> str:
+def _signed(part: ChangePart) -> str:
     figure = _figure(part.amount * 1e3)
     return f"+{figure}" if part.amount > 0.0 and figure != "0" else figure
 

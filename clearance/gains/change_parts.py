@@ -15,7 +15,7 @@ STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""
 
 
-class Moved(NamedTuple):
+class ChangePart(NamedTuple):
     """A part of a change.
 
     Attributes:
@@ -33,7 +33,7 @@ class Moved(NamedTuple):
     end: float | None = None
 
 
-def moved_parts(gain: Gain) -> list[Moved]:
+def change_parts(gain: Gain) -> list[ChangePart]:
     """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
     if gain.request.kind == "waypoints":
         changes = gain.change if isinstance(gain.change, tuple) else (gain.change,)
@@ -44,15 +44,17 @@ def moved_parts(gain: Gain) -> list[Moved]:
     assert not isinstance(gain.change, tuple)
     change = gain.change.tolist()
     if gain.request.slow_down:
-        return [Moved("duration", change[0], "share")]
+        return [ChangePart("duration", change[0], "share")]
     if gain.request.kind == "timing":
-        return [Moved("start", change[0], "s")]
-    parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
+        return [ChangePart("start", change[0], "s")]
+    parts = [ChangePart(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
     turn = gain.request.turn
-    return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
+    return (
+        parts if turn is None else [*parts, ChangePart(f"turn about {turn.axis}", change[3], "rad")]
+    )
 
 
-def joint_parts(gain: Gain) -> list[Moved]:
+def joint_parts(gain: Gain) -> list[ChangePart]:
     """The joints of a robot whose base is moved and whose tool path is kept."""
     i_robot = index_of_robot(gain.case.robots, gain.who)
     before, after = (
@@ -67,7 +69,7 @@ def changed_robots(gain: Gain) -> list[PlacedRobot]:
     return [robots[index_of_robot(robots, name)] for name in gain.request.robots or (gain.who,)]
 
 
-def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[Moved]:
+def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[ChangePart]:
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     times = placed.timing.run_times(placed.asked.times)
     found = []
@@ -81,7 +83,7 @@ def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> lis
                 float(times[min(rows[-1] + 1, len(times) - 1)]),
             )
             shown = f"{placed.robot.name}/{name}" if named else name
-            found.append(Moved(shown, float(offsets[most]), unit, float(times[most]), *ends))
+            found.append(ChangePart(shown, float(offsets[most]), unit, float(times[most]), *ends))
     return found
 
 
