@@ -15,22 +15,21 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
-from clearance.gains.blocked import (
+from clearance.gains.delay import TimingResult, least_delay, least_slowing
+from clearance.gains.joint_ranges import require_within_limits
+from clearance.gains.obstruction import (
     HOWEVER_SLOW,
     NOT_FOUND,
     TOO_FAR,
     TOO_LATE,
     TOO_SLOW,
-    Blocked,
+    Obstruction,
     approach_of,
     blocked_by,
     kept_still,
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import TimingResult, least_delay, least_slowing
-from clearance.gains.held_back import held_back
-from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
@@ -39,6 +38,7 @@ from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
+from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
@@ -90,7 +90,7 @@ class Gain:
     who: str
     before: Run
     after: Run
-    blocked: Blocked | None
+    blocked: Obstruction | None
     n_measured: int
     joint_names: tuple[str, ...] = field(default=())
     binding: tuple[str, ...] = field(default=())
@@ -229,7 +229,7 @@ def _by_path(case: Case, request: Request) -> Gain:
         if blocked is not None:
             blocked = _kept_still(blocked, first, offsets, request)
         elif isinstance(offsets, JointOffsets):
-            blocked = held_back(first, offsets)
+            blocked = tool_obstruction(first, offsets)
         found = SearchResult(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
@@ -255,8 +255,8 @@ def _offsets(
 
 
 def _kept_still(
-    blocked: Blocked, first: State, offsets: JointOffsets | PathsTogether, request: Request
-) -> Blocked:
+    blocked: Obstruction, first: State, offsets: JointOffsets | PathsTogether, request: Request
+) -> Obstruction:
     """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
     approach = approach_of(blocked, first)
     told = [
@@ -275,7 +275,7 @@ def _gain(
     way: Change,
     at_least: float,
     who: str,
-    blocked: Blocked | None,
+    blocked: Obstruction | None,
 ) -> Gain:
     size = way.size(found.state.x)
     before, after = answer(Question(case)), answer(Question(found.state.case))
@@ -291,7 +291,7 @@ def _gain(
     )  # fmt: skip
 
 
-def _binding(found: SearchResult, way: Change, blocked: Blocked) -> tuple[str, ...]:
+def _binding(found: SearchResult, way: Change, blocked: Obstruction) -> tuple[str, ...]:
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
     if isinstance(way, JointOffsets | PathsTogether):
@@ -321,7 +321,7 @@ def _by_delay(case: Case, request: Request) -> Gain:
     )  # fmt: skip
 
 
-def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Blocked:
+def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Obstruction:
     """What stays too near with every delay, else what does with the last that was looked at."""
     if found.stays is not None and np.isinf(found.at_least):
         return found.stays

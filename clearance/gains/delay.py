@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gains.blocked import Blocked
+from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gains.unreachable import INWARD, motion_radii, way_needed
@@ -60,7 +60,7 @@ class TimingResult:
     delay: float
     at_least: float
     n_measured: int
-    stays: Blocked | None = None
+    stays: Obstruction | None = None
 
     @property
     def kept(self) -> bool:
@@ -160,7 +160,7 @@ def _least(
     finest, most = steps
     wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
-    stays: Blocked | None = None
+    stays: Obstruction | None = None
     n_measured = 0
     while n_measured < MOST_DELAYS:
         n_measured += 1

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
-from clearance.gains.blocked import HOPELESS
 from clearance.gains.change_parts import (
     ChangePart,
     change_parts,
@@ -21,6 +20,7 @@ from clearance.gains.change_parts import (
 )
 from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
+from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.gains.blocked import AT_REST, NOT_MOVED, ON_ITS_WAY, Blocked, pair_at
+from clearance.gains.obstruction import AT_REST, NOT_MOVED, ON_ITS_WAY, Obstruction, pair_at
 from clearance.gains.shortfalls import SAME, State
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
@@ -20,7 +20,7 @@ from clearance.world.rules import PairPattern
 from clearance.world.timing import Timing
 
 
-def stays_whatever(state: State, i_robot: int) -> Blocked | None:
+def stays_whatever(state: State, i_robot: int) -> Obstruction | None:
     """The worst pair that falls short, and does with every later start and every slower path; None without one."""
     handed = Handed(state.case, (False, i_robot))
     found = [

@@ -34,7 +34,7 @@ HOPELESS = (NOT_MOVED, KEPT_STILL, TOO_FAR, HOWEVER_SLOW, AT_REST, ON_ITS_WAY)
 
 
 @dataclass(frozen=True)
-class Blocked:
+class Obstruction:
     """A pair that stays too near.
 
     Attributes:
@@ -57,7 +57,7 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Blocked | None:
+def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Obstruction | None:
     """The worst pair that falls short and that no change moves; None without one.
 
     Args:
@@ -68,23 +68,23 @@ def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> 
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 
 
-def approach_of(blocked: Blocked, state: State) -> Approach:
+def approach_of(blocked: Obstruction, state: State) -> Approach:
     """The approach that something is blocked by."""
     names = {blocked.body_a, blocked.body_b}
     return next(one for one in state.near if {body.name_in(one.case) for body in one.pair} == names)
 
 
-def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:
+def kept_still(blocked: Obstruction, windows: Sequence[tuple[float, float]]) -> Obstruction:
     """The same, for the reason that a path stays as it is then, if one of the windows [s of the run] says so."""
     within = any(start <= blocked.time <= end for start, end in windows)
     return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_APART else blocked
 
 
-def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
+def pair_at(state: State, approach: Approach, row: int, why: str) -> Obstruction:
     """What falls short in a row of an approach."""
     case, phase = approach.case, approach.section.phase
     step = int(approach.steps[row])
-    return Blocked(
+    return Obstruction(
         approach.pair.a.name_in(case),
         approach.pair.b.name_in(case),
         float(phase.motions[0].times[step - phase.first]),
@@ -94,7 +94,7 @@ def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
     )
 
 
-def worst_pair(state: State, why: str) -> Blocked | None:
+def worst_pair(state: State, why: str) -> Obstruction | None:
     """The pair that falls short by most; None where none does at a step.
 
     What is wanted beyond, for the motion between the steps, does not count.
@@ -107,14 +107,16 @@ def worst_pair(state: State, why: str) -> Blocked | None:
     return pair_at(state, state.near[i], row, why)
 
 
-def unproven(record: Record, margin: float) -> Blocked:
+def unproven(record: Record, margin: float) -> Obstruction:
     """The moment that stands worst in a run whose steps keep what is wanted, and that is not proven."""
     moment = record.worst
     wanted = record.rule(moment.rule).limits.fail + margin
-    return Blocked(moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN)
+    return Obstruction(
+        moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN
+    )
 
 
-def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
+def _worst(state: State, approach: Approach, gradient: Gradient) -> Obstruction | None:
     missing, by_unit = state.missing(approach), gradient(approach, None)
     stays = missing > 0.0
     if by_unit is not None:
