@@ -104,8 +104,8 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
+    from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.gains.written import CASE, OWN
     from clearance.load.case_file import load_case
     from clearance.overwriting import refuse_inputs
 
@@ -194,7 +194,7 @@ def _every_kind(
 
 
 def _say(found: Gain, before: str = "") -> None:
-    from clearance.gains.told import lines_of
+    from clearance.gains.sentences import lines_of
 
     for label, line in lines_of(found):
         click.echo(f"{before}{label:10}{shown(line)}")

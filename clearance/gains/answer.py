@@ -1,6 +1,6 @@
 """What can be gained: the least change of a kind, proven, with what no such change can do better.
 
-Not for: how it is written down (`written`), told (`told`) or shown (`page`).
+Not for: how it is written down (`changed_files`), told (`sentences`) or shown (`page`).
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from typing import Unpack
 import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
-from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
+from clearance.gains.binding_constraints import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.delay import TimingResult, least_delay, least_slowing
 from clearance.gains.joint_ranges import require_within_limits
+from clearance.gains.lower_bounds import least_base, least_offset, least_shift
 from clearance.gains.obstruction import (
     HOWEVER_SLOW,
     NOT_FOUND,
@@ -42,7 +43,6 @@ from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
-from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case

@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.gains.delay_obstruction import is_told_by, stays_whatever
+from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
-from clearance.gains.unreachable import INWARD, motion_radii, way_needed
-from clearance.gains.whatever_delay import is_told_by, stays_whatever
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed

@@ -12,7 +12,7 @@ from typing import Any
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import Gain, gain
 from clearance.gains.request import OWN
-from clearance.gains.told import bound_text, size_text
+from clearance.gains.sentences import bound_text, size_text
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
 from clearance.world.case import Case, PlacedRobot

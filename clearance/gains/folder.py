@@ -1,6 +1,6 @@
 """A gain as a folder: the changed case, its figures, a page, and the reports of before and after, all or none.
 
-Not for: how the case is written (`written`), the page (`page`).
+Not for: how the case is written (`changed_files`), the page (`page`).
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
 from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
+from clearance.gains.changed_files import OWN as OF_CASE
+from clearance.gains.changed_files import case_files
 from clearance.gains.page import page_of
-from clearance.gains.written import OWN as OF_CASE
-from clearance.gains.written import written_case
 from clearance.overwriting import refuse_inputs
 from clearance.report.folder import fill_folder
 from clearance.report.output import OWN as OF_REPORT
@@ -37,10 +37,10 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
     The reports are left out, and the page says so, where what draws them is not installed.
 
     Raises:
-        BadInput: as `written_case`. Unwritable: something is there, or there is no way to write.
+        BadInput: as `case_files`. Unwritable: something is there, or there is no way to write.
     """
     folder = Path(folder)
-    made = written_case(gain, folder)
+    made = case_files(gain, folder)
     drawn = all(is_installed(library) for library in LIBRARIES["report"])
     names = [*dict.fromkeys((*OF_CASE, FIGURES, PAGE, *made.files))]
     sources = [one.read_from for one in gain.before.record.case.sources if one.is_file]

@@ -1,6 +1,6 @@
 """What no change of a kind can mend: a pair at a step that falls short, and that nothing of it moves.
 
-Not for: what is too far to reach (`unreachable`).
+Not for: what is too far to reach (`lower_bounds`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A gain as a page: both curves, what moved by how much, both worst moments, what is proven. No script is in it.
 
-Not for: the sentences (`told`), nor the replays, which are in the reports beside it.
+Not for: the sentences (`sentences`), nor the replays, which are in the reports beside it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from clearance.gains.change_parts import (
     proven_after,
     proven_bound,
 )
-from clearance.gains.told import is_hopeless, lines_of, signed_text, size_text
+from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table

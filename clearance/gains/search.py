@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.gains.closer import looked_closer
+from clearance.gains.interval_moments import looked_closer
 from clearance.gains.programme import Box, Inequalities, least_missing
 from clearance.gains.shortfalls import (
     Rows,

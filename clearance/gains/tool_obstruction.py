@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import KEPT_STILL, Obstruction, pair_at
 from clearance.gains.offsets import JointOffsets
 from clearance.gains.shortfalls import SAME, State
 from clearance.gains.tool_poses import ToolKeep
-from clearance.gains.unreachable import INWARD, motion_radii, way_needed
 from clearance.simulate.approaches import Approach
 from clearance.world.forest import WORLD, forest_of
 

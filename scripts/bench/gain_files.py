@@ -20,7 +20,7 @@ from rows import write_csv
 
 import clearance as cl
 from clearance.gains.answer import Gain, Request
-from clearance.gains.written import written_case
+from clearance.gains.changed_files import case_files
 from clearance.load.rewritten_case import Node, rewritten_case
 from clearance.run import Question, answer
 
@@ -78,7 +78,7 @@ def write_proposal(found: Gain, file: Path, folder: Path) -> Path:
         file: what was mended.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for name, content in written_case(replace(found, case_file=file), folder).files.items():
+    for name, content in case_files(replace(found, case_file=file), folder).files.items():
         (folder / name).write_bytes(content)
     return folder / "case.yaml"
 

@@ -42,14 +42,14 @@ WHEN = ("start", "rate", "after")
 """Keys that say when a table is followed, which stay; how another file was to be read goes."""
 
 
-class WrittenCase(NamedTuple):
+class CaseFiles(NamedTuple):
     """Files by name, and a line each on what is not as it was."""
 
     files: Mapping[str, bytes]
     notes: tuple[str, ...]
 
 
-def written_case(gain: Gain, folder: Path) -> WrittenCase:
+def case_files(gain: Gain, folder: Path) -> CaseFiles:
     """The changed case as files in `folder`, which need not be there.
 
     Raises:
@@ -70,7 +70,7 @@ def written_case(gain: Gain, folder: Path) -> WrittenCase:
     ways[gain.request.kind]()
     files = {CASE: made.case(), **made.contents}
     _require_same(gain, files, folder)
-    return WrittenCase(files, tuple(made.notes))
+    return CaseFiles(files, tuple(made.notes))
 
 
 class _Files:
