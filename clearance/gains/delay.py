@@ -19,7 +19,7 @@ from clearance.gains.delay_obstruction import is_told_by, stays_whatever
 from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
-from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
+from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.handed import Handed
@@ -158,7 +158,7 @@ def _least(
         steps: how finely it is sought, and up to what.
     """
     finest, most = steps
-    wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
+    wanted, delay, at_least = Requirement(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
     stays: Obstruction | None = None
     n_measured = 0

@@ -14,9 +14,9 @@ import numpy as np
 from clearance.gains.interval_moments import looked_closer
 from clearance.gains.programme import Box, Inequalities, least_missing
 from clearance.gains.shortfalls import (
+    Requirement,
     Rows,
     State,
-    Wanted,
     keeps,
     looked_into,
     measured,
@@ -136,7 +136,7 @@ class Search:
 
     def __init__(self, change: Change, margin: float) -> None:
         self.change, self.margin, self.price = change, margin, change.price
-        self.wanted = Wanted(margin, 2.0 * FINE, np.zeros(0))
+        self.wanted = Requirement(margin, 2.0 * FINE, np.zeros(0))
         self.n_measured = 0
 
     def state_at(self, x: np.ndarray) -> State:
