@@ -35,7 +35,7 @@ class Stretch(click.ParamType):
 
 
 class Pose(click.ParamType):
-    """How far a tool may move and turn at a moment, TIME=Nmm,Ndeg; handed on in seconds, metres and radians."""
+    """How far a tool may move and turn at a moment, TIME=Nmm,Ndeg; transfers on in seconds, metres and radians."""
 
     name = "time=mm,deg"
     _FORM = re.compile(r"([^=]+?)s?=([^,]+)mm,([^,]+)deg")
@@ -61,7 +61,7 @@ class Pose(click.ParamType):
 
 
 class Room(click.ParamType):
-    """How far a shift may go along x, y and z: N for either way or LOW:HIGH, in millimetres; handed on in
+    """How far a shift may go along x, y and z: N for either way or LOW:HIGH, in millimetres; transfers on in
     metres.
     """
 
@@ -98,7 +98,7 @@ def _range(text: str) -> tuple[float, float]:
 
 
 class Place(click.ParamType):
-    """A point X,Y,Z in millimetres; handed on in metres."""
+    """A point X,Y,Z in millimetres; transfers on in metres."""
 
     name = "x,y,z"
 

@@ -151,7 +151,7 @@ def _by_shift(case: Case, request: Request) -> Gain:
     search = Search(shift, request.margin)
     first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_shift(shift, first, request.margin)
-    blocked = blocked_by(first, shift.gradient, shift.handed)
+    blocked = blocked_by(first, shift.gradient, shift.transfers)
     if blocked is None and at_least > shift.farthest:
         blocked = worst_pair(first, TOO_FAR)
     found = SearchResult(first, None, 1)
@@ -171,7 +171,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     search = Search(way, request.margin)
     first = search.state_at(np.zeros(shift.size_of_x))
     at_least = least_base(way, first, request.margin)
-    blocked = blocked_by(first, way.gradient, way.handed)
+    blocked = blocked_by(first, way.gradient, way.transfers)
     found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, way, first, at_least)
@@ -225,7 +225,7 @@ def _by_path(case: Case, request: Request) -> Gain:
         first = search.state_at(np.zeros(len(offsets.first_reach)))
         require_in_run(request.keep, first.record.timeline.times)
         at_least = least_offset(offsets, first, request.margin)
-        blocked = blocked_by(first, offsets.gradient, offsets.handed)
+        blocked = blocked_by(first, offsets.gradient, offsets.transfers)
         if blocked is not None:
             blocked = _kept_still(blocked, first, offsets, request)
         elif isinstance(offsets, JointOffsets):

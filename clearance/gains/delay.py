@@ -22,8 +22,8 @@ from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 
@@ -212,10 +212,10 @@ def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> floa
     brings the path's beginning to it.
     """
     columns, most = columns_of(state.case, i_robot), 0.0
-    handed = Handed(state.case, (False, i_robot))
+    transfers = Transfers(state.case, (False, i_robot))
     for approach in state.near:
         radii = [motion_radii(approach.case, body)[columns].any() for body in approach.pair]
-        if not any(radii) or all(radii) or handed.has(approach):
+        if not any(radii) or all(radii) or transfers.has(approach):
             continue
         ways = np.maximum(way_needed(approach, margin), 0.0)
         most = max(most, float(longer(state, approach, ways).max(initial=0.0)))

@@ -13,8 +13,8 @@ import numpy as np
 from clearance.gains.shortfalls import Gradient, State
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import AnyHanded, Handed
 from clearance.simulate.record import Record
+from clearance.simulate.transfers import CombinedTransfers, Transfers
 
 NOT_MOVED = "nothing of this change moves them"
 KEPT_STILL = "that moment is to be kept"
@@ -57,13 +57,15 @@ class Obstruction:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Obstruction | None:
+def blocked_by(
+    state: State, gradient: Gradient, transfers: Transfers | CombinedTransfers
+) -> Obstruction | None:
     """The worst pair that falls short and that no change moves; None without one.
 
     Args:
-        handed: parts that the change hands over elsewhere, which it moves though none of it carries them then.
+        transfers: parts that the change hands over elsewhere, which it moves though none of it carries them then.
     """
-    near = [one for one in state.near if not handed.has(one)]
+    near = [one for one in state.near if not transfers.has(one)]
     found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 

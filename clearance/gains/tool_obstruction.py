@@ -26,7 +26,7 @@ def tool_obstruction(state: State, offsets: JointOffsets) -> Obstruction | None:
         return None
     link = offsets.tool_poses.tool.link
     for approach in state.near:
-        if offsets.handed.has(approach):
+        if offsets.transfers.has(approach):
             continue
         phase = approach.section.phase
         times = phase.times[approach.steps - phase.first]

@@ -25,7 +25,7 @@ from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex
@@ -79,9 +79,9 @@ class ToolPathKept:
         return self.shift.first_reach
 
     @property
-    def handed(self) -> Handed:
+    def transfers(self) -> Transfers:
         """The parts that it hands over elsewhere."""
-        return self.shift.handed
+        return self.shift.transfers
 
     @property
     def placed(self) -> PlacedRobot:

@@ -19,7 +19,7 @@ SPARSE = 4
 """Times as long are parts of which many rows need not be looked at."""
 
 WAITING = 8
-"""Parts a thread that are handed out ahead: so many results wait at most."""
+"""Parts a thread that are transfers out ahead: so many results wait at most."""
 
 BLOCK = 2**16
 """Rows that are looked at together where all rows are gone through: 0.5 MB of each number."""
