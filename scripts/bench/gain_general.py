@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 from gain_cases import Change, change_of
-from gain_files import Filed
+from gain_files import CaseOnDisk
 
 import clearance as cl
 from clearance.gains.offsets import JointOffsets
@@ -64,7 +64,7 @@ class Linear:
     b: np.ndarray
 
 
-def general_change(one: Filed, n_intervals: int, seconds: float) -> GeneralChange:
+def general_change(one: CaseOnDisk, n_intervals: int, seconds: float) -> GeneralChange:
     """The least size that it finds within so many seconds of CPU.
 
     Args:
