@@ -1,4 +1,4 @@
-"""What a change moves, part by part, for who reads of it: joints, axes, a delay. Not for: sentences (`sentences`)."""
+"""What a change moves, part by part, for who reads of it: joints, axes, a delay. Not for: `sentences`."""
 
 from __future__ import annotations
 

@@ -109,9 +109,9 @@ def test_what_needs_one_time_is_refused():
     case = loose(1, 0.5)
     with pytest.raises(BadInput, match="clocks are not tied"):
         cl.check(case, need="pairs")
-    transfers = replace(case, carries=(case.carries[0], Carry("part", "right/tool", Window(4.0))))
+    handed = replace(case, carries=(case.carries[0], Carry("part", "right/tool", Window(4.0))))
     with pytest.raises(BadInput, match="changes hands between actors whose clocks are not tied"):
-        cl.check(transfers)
+        cl.check(handed)
 
 
 @pytest.mark.peer
