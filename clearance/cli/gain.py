@@ -109,8 +109,8 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.cli.places import require_folder_place
+    from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.gains.written import CASE, OWN
     from clearance.load.case_file import load_case
     from clearance.overwriting import refuse_inputs
 
@@ -140,9 +140,9 @@ def _robot(names: tuple[str, ...]) -> str | tuple[str, ...] | None:
 
 def _folders(read: Case, out: Path, robot: str | tuple[str, ...] | None) -> list[Path]:
     """Where each kind goes, of each robot where there are several."""
-    from clearance.gains.every_kind import name_of, tries_of
+    from clearance.gains.every_kind import name_of, trials_of
 
-    return [out / name_of(kind, who, read) for kind, who in tries_of(read, robot)]
+    return [out / name_of(kind, who, read) for kind, who in trials_of(read, robot)]
 
 
 def _with_turn(options: dict[str, Any]) -> dict[str, Any]:
@@ -199,7 +199,7 @@ def _every_kind(
 
 
 def _say(found: Gain, before: str = "") -> None:
-    from clearance.gains.told import lines_of
+    from clearance.gains.sentences import lines_of
 
     for label, line in lines_of(found):
         click.echo(f"{before}{label:10}{shown(line)}")

@@ -1,6 +1,6 @@
 """What can be gained: the least change of a kind, proven, with what no such change can do better.
 
-Not for: how it is written down (`written`), told (`told`) or shown (`page`).
+Not for: how it is written down (`changed_files`), told (`sentences`) or shown (`page`).
 """
 
 from __future__ import annotations
@@ -14,35 +14,35 @@ from typing import Unpack
 import numpy as np
 
 from clearance.errors import BadInput, UnknownRobot, nearest_name
-from clearance.gains.asked import Asked, Options, asked_as
-from clearance.gains.binding import bound_by, ends_reached, joints_held, tools_held
-from clearance.gains.blocked import (
+from clearance.gains.binding_constraints import bound_by, ends_reached, joints_held, tools_held
+from clearance.gains.delay import TimingResult, least_delay, least_slowing
+from clearance.gains.joint_ranges import require_within_limits
+from clearance.gains.lower_bounds import least_base, least_offset, least_shift
+from clearance.gains.obstruction import (
     HOWEVER_SLOW,
     NOT_FOUND,
     TOO_FAR,
     TOO_LATE,
     TOO_SLOW,
-    Blocked,
+    Obstruction,
     approach_of,
     blocked_by,
     kept_still,
     unproven,
     worst_pair,
 )
-from clearance.gains.delay import Delayed, least_delay, least_slowing
-from clearance.gains.held_back import held_back
-from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
-from clearance.gains.search import Change, Found, Search
+from clearance.gains.request import Options, Request, request_of
+from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
+from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
-from clearance.gains.unreachable import least_base, least_offset, least_shift
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
@@ -65,7 +65,7 @@ class Gain:
     """What a change comes to.
 
     Attributes:
-        asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
+        request: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
         case: the changed case; the best that was reached where it is not kept.
         change: (3,) [m] of a shift, (4,) with the angle [rad] where a turn is allowed; (n, k) [rad or m] of the
             samples of a path, one such array for each of several robots; (1,) [s] of a delay, or the share
@@ -81,7 +81,7 @@ class Gain:
         joint_names: of the columns of a path's change. case_file: what the case was read from, if it was.
     """
 
-    asked: Asked
+    request: Request
     kept: bool
     case: Case
     change: np.ndarray | tuple[np.ndarray, ...]
@@ -90,7 +90,7 @@ class Gain:
     who: str
     before: Run
     after: Run
-    blocked: Blocked | None
+    blocked: Obstruction | None
     n_measured: int
     joint_names: tuple[str, ...] = field(default=())
     binding: tuple[str, ...] = field(default=())
@@ -101,9 +101,9 @@ class Gain:
     @property
     def unit(self) -> str:
         """Of `size` and `lower_bound`."""
-        if self.asked.slow_down:
+        if self.request.slow_down:
             return "share"
-        return {"waypoints": "rad", "timing": "s"}.get(self.asked.kind, "m")
+        return {"waypoints": "rad", "timing": "s"}.get(self.request.kind, "m")
 
 
 def gain(
@@ -115,7 +115,7 @@ def gain(
         case: or the path of a case file.
         kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
             joints as they are; "timing": a robot begins later.
-        options: by name, each as `asked.Options` says: margin, robot, obstacle, keep, keep_ends, most_delay,
+        options: by name, each as `request.Options` says: margin, robot, obstacle, keep, keep_ends, most_delay,
             within, turn, keep_tool, tool, tool_path, slow_down.
 
     Raises:
@@ -123,17 +123,17 @@ def gain(
     """
     from clearance.load.case_file import load_case
 
-    asked = asked_as(kind, options)
+    request = request_of(kind, options)
     if isinstance(case, Case):
-        return gained(case, asked)
+        return gained(case, request)
     if not isinstance(case, str | PathLike):
         given = type(case).__name__
         raise BadInput(f"a {given} is given", valid="a Case, or the path of a case file")
-    return replace(gained(load_case(case), asked), case_file=Path(case))
+    return replace(gained(load_case(case), request), case_file=Path(case))
 
 
-def gained(case: Case, asked: Asked) -> Gain:
-    """The gain of what is asked.
+def gained(case: Case, request: Request) -> Gain:
+    """The gain of what is request.
 
     Raises:
         BadInput: as `gain`; clocks that are not tied, where no pair has one time that could be looked at.
@@ -141,41 +141,43 @@ def gained(case: Case, asked: Asked) -> Gain:
     if case.clock.slack:
         raise BadInput("the clocks of the case are not tied", valid="clock: common")
     ways = {"timing": _by_delay, "waypoints": _by_path, "obstacle": _by_shift, "base": _by_shift}
-    return ways[asked.kind](case, asked)
+    return ways[request.kind](case, request)
 
 
-def _by_shift(case: Case, asked: Asked) -> Gain:
-    shift, who = _shift(case, asked)
-    if asked.tool_path == "kept":
-        return _by_base_alone(case, asked, shift)
-    search = Search(shift, asked.margin)
+def _by_shift(case: Case, request: Request) -> Gain:
+    shift, who = _shift(case, request)
+    if request.tool_path == "kept":
+        return _by_base_alone(case, request, shift)
+    search = Search(shift, request.margin)
     first = search.state_at(np.zeros(shift.size_of_x))
-    at_least = least_shift(shift, first, asked.margin)
-    blocked = blocked_by(first, shift.gradient, shift.handed)
+    at_least = least_shift(shift, first, request.margin)
+    blocked = blocked_by(first, shift.gradient, shift.transfers)
     if blocked is None and at_least > shift.farthest:
         blocked = worst_pair(first, TOO_FAR)
-    found = Found(first, None, 1)
+    found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, shift, first, at_least)
-    return _gain(case, asked, found, shift.change_of(found.state.x), shift, at_least, who, blocked)
+    return _gain(
+        case, request, found, shift.change_of(found.state.x), shift, at_least, who, blocked
+    )
 
 
-def _by_base_alone(case: Case, asked: Asked, shift: Shift) -> Gain:
+def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     """A base that is moved while its tool goes the same way."""
-    i_robot = _robot(case, asked.one_robot)
+    i_robot = _robot(case, request.one_robot)
     before = case.robots[i_robot]
     require_within_limits(before)
-    way = tool_path_kept(shift, i_robot, asked.tool)
-    search = Search(way, asked.margin)
+    way = tool_path_kept(shift, i_robot, request.tool)
+    search = Search(way, request.margin)
     first = search.state_at(np.zeros(shift.size_of_x))
-    at_least = least_base(way, first, asked.margin)
-    blocked = blocked_by(first, way.gradient, way.handed)
-    found = Found(first, None, 1)
+    at_least = least_base(way, first, request.margin)
+    blocked = blocked_by(first, way.gradient, way.transfers)
+    found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, way, first, at_least)
     x = found.state.x
     who = before.robot.name
-    told = _gain(case, asked, found, shift.change_of(x), way, at_least, who, blocked)
+    told = _gain(case, request, found, shift.change_of(x), way, at_least, who, blocked)
     after = found.state.case.robots[i_robot]
     return replace(
         told,
@@ -186,7 +188,7 @@ def _by_base_alone(case: Case, asked: Asked, shift: Shift) -> Gain:
 
 def _least_of_several(
     search: Search, shift: Shift | ToolPathKept, first: State, at_least: float
-) -> Found:
+) -> SearchResult:
     """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
     if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
@@ -212,51 +214,53 @@ def _starts(size: float | None, shift: Shift | ToolPathKept) -> Iterator[np.ndar
                 yield start
 
 
-def _by_path(case: Case, asked: Asked) -> Gain:
-    changed = [_robot(case, name) for name in asked.robots or (None,)]
+def _by_path(case: Case, request: Request) -> Gain:
+    changed = [_robot(case, name) for name in request.robots or (None,)]
     for i_robot in changed:
         require_within_limits(case.robots[i_robot])
-        require_in_path(case.robots[i_robot], asked.keep_tool)
+        require_in_path(case.robots[i_robot], request.keep_tool)
     for n_intervals in INTERVALS:
-        offsets = _offsets(case, changed, n_intervals, asked)
-        search = Search(offsets, asked.margin)
+        offsets = _offsets(case, changed, n_intervals, request)
+        search = Search(offsets, request.margin)
         first = search.state_at(np.zeros(len(offsets.first_reach)))
-        require_in_run(asked.keep, first.record.timeline.times)
-        at_least = least_offset(offsets, first, asked.margin)
-        blocked = blocked_by(first, offsets.gradient, offsets.handed)
+        require_in_run(request.keep, first.record.timeline.times)
+        at_least = least_offset(offsets, first, request.margin)
+        blocked = blocked_by(first, offsets.gradient, offsets.transfers)
         if blocked is not None:
-            blocked = _kept_still(blocked, first, offsets, asked)
+            blocked = _kept_still(blocked, first, offsets, request)
         elif isinstance(offsets, JointOffsets):
-            blocked = held_back(first, offsets)
-        found = Found(first, None, 1) if blocked else search.from_state(first)
+            blocked = tool_obstruction(first, offsets)
+        found = SearchResult(first, None, 1) if blocked else search.from_state(first)
         if found.kept:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
     change = offsets.offsets(found.state.x)
-    told = _gain(case, asked, found, change, offsets, at_least, who, blocked)
+    told = _gain(case, request, found, change, offsets, at_least, who, blocked)
     moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
     names = tuple(name for part in offsets.parts for name in part.placed.asked.joint_names)
     return replace(told, joint_names=names, tool_moves=moves)
 
 
 def _offsets(
-    case: Case, changed: Sequence[int], n_intervals: int, asked: Asked
+    case: Case, changed: Sequence[int], n_intervals: int, request: Request
 ) -> JointOffsets | PathsTogether:
     """What may be changed of one robot's path, or of several at once."""
     parts = [
-        joint_offsets(case, i, n_intervals, kept_of(case, i, asked), asked.keep_tool, asked.tool)
+        joint_offsets(
+            case, i, n_intervals, kept_of(case, i, request), request.keep_tool, request.tool
+        )
         for i in changed
     ]
     return parts[0] if len(parts) == 1 else PathsTogether(tuple(parts))
 
 
 def _kept_still(
-    blocked: Blocked, first: State, offsets: JointOffsets | PathsTogether, asked: Asked
-) -> Blocked:
+    blocked: Obstruction, first: State, offsets: JointOffsets | PathsTogether, request: Request
+) -> Obstruction:
     """The same, for the reason that all that moves the pair is to stay as it is then, if that is so."""
     approach = approach_of(blocked, first)
     told = [
-        kept_still(blocked, windows_of(part.case, part.i_robot, asked))
+        kept_still(blocked, windows_of(part.case, part.i_robot, request))
         for part in offsets.parts
         if part.gradient(approach) is not None
     ]
@@ -265,13 +269,13 @@ def _kept_still(
 
 def _gain(
     case: Case,
-    asked: Asked,
-    found: Found,
+    request: Request,
+    found: SearchResult,
     change: np.ndarray | tuple[np.ndarray, ...],
     way: Change,
     at_least: float,
     who: str,
-    blocked: Blocked | None,
+    blocked: Obstruction | None,
 ) -> Gain:
     size = way.size(found.state.x)
     before, after = answer(Question(case)), answer(Question(found.state.case))
@@ -279,15 +283,15 @@ def _gain(
     if found.kept:
         at_least = min(at_least, size)
     elif blocked is None:
-        blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, asked.margin)
+        blocked = worst_pair(found.state, NOT_FOUND) or unproven(after.record, request.margin)
         binding = _binding(found, way, blocked)
     return Gain(
-        asked, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
+        request, found.kept, found.state.case, change, size, at_least, who, before, after, blocked,
         found.n_measured, binding=binding,
     )  # fmt: skip
 
 
-def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
+def _binding(found: SearchResult, way: Change, blocked: Obstruction) -> tuple[str, ...]:
     """What the best that was reached is up against."""
     x, robots = found.state.x, found.state.case.robots
     if isinstance(way, JointOffsets | PathsTogether):
@@ -299,46 +303,46 @@ def _binding(found: Found, way: Change, blocked: Blocked) -> tuple[str, ...]:
     return told + ends_reached(x, way.box)
 
 
-def _by_delay(case: Case, asked: Asked) -> Gain:
-    i_robot = _robot(case, asked.one_robot)
-    if asked.slow_down:
-        found = least_slowing(case, i_robot, asked.margin)
+def _by_delay(case: Case, request: Request) -> Gain:
+    i_robot = _robot(case, request.one_robot)
+    if request.slow_down:
+        found = least_slowing(case, i_robot, request.margin)
     else:
-        found = least_delay(case, i_robot, asked.margin, asked.most_delay)
+        found = least_delay(case, i_robot, request.margin, request.most_delay)
     before, after = answer(Question(case)), answer(Question(found.state.case))
     blocked, at_least = None, found.at_least
     if not found.kept:
-        blocked = _blocked_in_time(found, asked, after)
+        blocked = _blocked_in_time(found, request, after)
     if np.isinf(at_least):
         at_least = found.delay
     return Gain(
-        asked, found.kept, found.state.case, np.array([found.delay]), found.delay, at_least,
+        request, found.kept, found.state.case, np.array([found.delay]), found.delay, at_least,
         case.robots[i_robot].robot.name, before, after, blocked, found.n_measured,
     )  # fmt: skip
 
 
-def _blocked_in_time(found: Delayed, asked: Asked, after: Run) -> Blocked:
+def _blocked_in_time(found: TimingResult, request: Request, after: Run) -> Obstruction:
     """What stays too near with every delay, else what does with the last that was looked at."""
     if found.stays is not None and np.isinf(found.at_least):
         return found.stays
-    why = TOO_SLOW if asked.slow_down else TOO_LATE
+    why = TOO_SLOW if request.slow_down else TOO_LATE
     if np.isinf(found.at_least):
         why = HOWEVER_SLOW
-    return worst_pair(found.state, why) or unproven(after.record, asked.margin)
+    return worst_pair(found.state, why) or unproven(after.record, request.margin)
 
 
-def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
-    box = ANYWHERE if asked.within is None else Box(*np.array(asked.within).T)
-    if asked.kind == "base":
-        who = case.robots[_robot(case, asked.one_robot)].robot.name
-        return base_shift(case, who, box, asked.turn), who
+def _shift(case: Case, request: Request) -> tuple[Shift, str]:
+    box = ANYWHERE if request.within is None else Box(*np.array(request.within).T)
+    if request.kind == "base":
+        who = case.robots[_robot(case, request.one_robot)].robot.name
+        return base_shift(case, who, box, request.turn), who
     if not case.obstacles:
         raise BadInput("the case has no obstacle", valid="kind waypoints, base or timing")
-    if asked.obstacle is None and len(case.obstacles) != 1:
+    if request.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
         raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")
-    who = asked.obstacle or case.obstacles[0].name
-    return obstacle_shift(case, who, box, asked.turn), who
+    who = request.obstacle or case.obstacles[0].name
+    return obstacle_shift(case, who, box, request.turn), who
 
 
 def _robot(case: Case, name: str | None) -> int:

@@ -15,15 +15,15 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gains.blocked import Blocked
+from clearance.gains.delay_obstruction import is_told_by, stays_whatever
+from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
+from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
-from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
-from clearance.gains.unreachable import INWARD, motion_radii, way_needed
-from clearance.gains.whatever_delay import is_told_by, stays_whatever
+from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
 from clearance.simulate.record import Record
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 
@@ -44,7 +44,7 @@ Longer = Callable[[State, Approach, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class Delayed:
+class TimingResult:
     """Where the search ended.
 
     Attributes:
@@ -60,7 +60,7 @@ class Delayed:
     delay: float
     at_least: float
     n_measured: int
-    stays: Blocked | None = None
+    stays: Obstruction | None = None
 
     @property
     def kept(self) -> bool:
@@ -85,7 +85,7 @@ def case_slower(case: Case, i_robot: int, more: float) -> Case:
     return replace(case, robots=tuple(robots))
 
 
-def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed:
+def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingResult:
     """The least delay up to `most` [s] at which the rules hold by a margin [m].
 
     Raises:
@@ -105,7 +105,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     )
 
 
-def least_slowing(case: Case, i_robot: int, margin: float) -> Delayed:
+def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
     """By what share a robot's path takes longer at least, up to `MOST_SLOWER`, so that the rules hold.
 
     Raises:
@@ -151,16 +151,16 @@ def _least(
     i_robot: int,
     margin: float,
     steps: tuple[float, float],
-) -> Delayed:
+) -> TimingResult:
     """The least change of time found.
 
     Args:
         steps: how finely it is sought, and up to what.
     """
     finest, most = steps
-    wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
+    wanted, delay, at_least = Requirement(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
-    stays: Blocked | None = None
+    stays: Obstruction | None = None
     n_measured = 0
     while n_measured < MOST_DELAYS:
         n_measured += 1
@@ -179,7 +179,7 @@ def _least(
         if max(excluded, delay + finest) > most:
             break
         delay = max(excluded, delay + finest)
-    return Delayed(state, record, delay, at_least, n_measured, stays)
+    return TimingResult(state, record, delay, at_least, n_measured, stays)
 
 
 def greatest_speed(case: Case, i_robot: int) -> float:
@@ -212,10 +212,10 @@ def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> floa
     brings the path's beginning to it.
     """
     columns, most = columns_of(state.case, i_robot), 0.0
-    handed = Handed(state.case, (False, i_robot))
+    transfers = Transfers(state.case, (False, i_robot))
     for approach in state.near:
         radii = [motion_radii(approach.case, body)[columns].any() for body in approach.pair]
-        if not any(radii) or all(radii) or handed.has(approach):
+        if not any(radii) or all(radii) or transfers.has(approach):
             continue
         ways = np.maximum(way_needed(approach, margin), 0.0)
         most = max(most, float(longer(state, approach, ways).max(initial=0.0)))

@@ -11,8 +11,8 @@ from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import Gain, gain
-from clearance.gains.asked import OWN
-from clearance.gains.told import bound_text, size_text
+from clearance.gains.request import OWN
+from clearance.gains.sentences import bound_text, size_text
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
 from clearance.world.case import Case, PlacedRobot
@@ -22,7 +22,7 @@ SUB_FOLDERS = ("waypoints", "base", "timing", "obstacle")
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class Trial:
     """A kind of change that was tried.
 
     Attributes:
@@ -44,7 +44,7 @@ Robot = str | tuple[str, ...] | None
 """Which robot, or which together; None for the only one."""
 
 
-def tries_of(case: Case, robot: Robot) -> list[tuple[str, Robot]]:
+def trials_of(case: Case, robot: Robot) -> list[tuple[str, Robot]]:
     """Kinds, in order, and the robot that each is to change: all that it may be of, where none is named."""
     found: list[tuple[str, Robot]] = []
     for kind in SUB_FOLDERS:
@@ -64,7 +64,7 @@ def name_of(kind: str, robot: Robot, case: Case) -> str:
 
 def every_kind(
     case: Case, options: Mapping[str, Any], told: Callable[[str], AbstractContextManager[None]]
-) -> Iterator[Tried]:
+) -> Iterator[Trial]:
     """What each kind comes to, of each robot and of the obstacle of the worst pair, where none is named.
 
     Args:
@@ -73,7 +73,7 @@ def every_kind(
     Raises:
         UnknownRobot, UnknownObstacle: with the nearest name.
     """
-    for kind, robot in tries_of(case, options.get("robot")):
+    for kind, robot in trials_of(case, options.get("robot")):
         own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
         if robot is not None and kind != "obstacle":
             own["robot"] = robot
@@ -83,7 +83,7 @@ def every_kind(
         if kind == "obstacle" and own.get("obstacle") is None:
             nearest = _obstacle_of_worst(case)
             if nearest is None:
-                yield Tried(name, None, "the worst pair is of no obstacle that stands free")
+                yield Trial(name, None, "the worst pair is of no obstacle that stands free")
                 continue
             own["obstacle"] = nearest
         try:
@@ -92,9 +92,9 @@ def every_kind(
         except (UnknownObstacle, UnknownRobot):
             raise
         except BadInput as error:
-            yield Tried(name, None, str(error))
+            yield Trial(name, None, str(error))
             continue
-        yield Tried(name, found)
+        yield Trial(name, found)
 
 
 def _is_of(kind: str, placed: PlacedRobot) -> bool:
@@ -102,7 +102,7 @@ def _is_of(kind: str, placed: PlacedRobot) -> bool:
     return placed.mount is None if kind == "base" else placed.trajectory is not None
 
 
-def table_lines(tried: Sequence[Tried]) -> list[str]:
+def table_lines(tried: Sequence[Trial]) -> list[str]:
     """A line for each kind."""
     rows = [("kind", "kept", "change", "what")]
     for one in tried:

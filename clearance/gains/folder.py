@@ -1,6 +1,6 @@
 """A gain as a folder: the changed case, its figures, a page, and the reports of before and after, all or none.
 
-Not for: how the case is written (`written`), the page (`page`).
+Not for: how the case is written (`changed_files`), the page (`page`).
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Any
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.gains.answer import Gain
-from clearance.gains.moved import joint_parts, moved_parts, proven_after, proven_bound
+from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
+from clearance.gains.changed_files import OWN as OF_CASE
+from clearance.gains.changed_files import case_files
 from clearance.gains.page import page_of
-from clearance.gains.written import OWN as OF_CASE
-from clearance.gains.written import written_case
 from clearance.overwriting import refuse_inputs
 from clearance.report.folder import fill_folder
 from clearance.report.output import OWN as OF_REPORT
@@ -37,10 +37,10 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
     The reports are left out, and the page says so, where what draws them is not installed.
 
     Raises:
-        BadInput: as `written_case`. Unwritable: something is there, or there is no way to write.
+        BadInput: as `case_files`. Unwritable: something is there, or there is no way to write.
     """
     folder = Path(folder)
-    made = written_case(gain, folder)
+    made = case_files(gain, folder)
     drawn = all(is_installed(library) for library in LIBRARIES["report"])
     names = [*dict.fromkeys((*OF_CASE, FIGURES, PAGE, *made.files))]
     sources = [one.read_from for one in gain.before.record.case.sources if one.is_file]
@@ -92,16 +92,16 @@ def refuse_taken(folder: Path, names: Collection[str], *, force: bool) -> None:
 
 def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
     """All figures, in metres, radians and seconds."""
-    asked, blocked = gain.asked, gain.blocked
+    request, blocked = gain.request, gain.blocked
     return {
         "format": FORMAT,
         "name": gain.case.name,
-        "kind": asked.kind,
+        "kind": request.kind,
         "who": gain.who,
         "kept": gain.kept,
-        "margin": asked.margin,
-        "keep": [list(window) for window in asked.keep],
-        "keep_ends": asked.keep_ends,
+        "margin": request.margin,
+        "keep": [list(window) for window in request.keep],
+        "keep_ends": request.keep_ends,
         "tool": [
             {
                 "link": one.link,
@@ -115,13 +115,13 @@ def figures_of(gain: Gain, notes: Collection[str] = ()) -> dict[str, Any]:
         ],
         "tool_path": None if gain.tool_path is None else vars(gain.tool_path),
         "joints": [] if gain.tool_path is None else [part._asdict() for part in joint_parts(gain)],
-        "within": None if asked.within is None else [list(ends) for ends in asked.within],
-        "turn": None if asked.turn is None else vars(asked.turn),
-        "slow_down": asked.slow_down,
+        "within": None if request.within is None else [list(ends) for ends in request.within],
+        "turn": None if request.turn is None else vars(request.turn),
+        "slow_down": request.slow_down,
         "size": gain.size,
         "unit": gain.unit,
         "lower_bound": gain.lower_bound if gain.lower_bound > 0.0 else None,
-        "parts": [part._asdict() for part in moved_parts(gain)],
+        "parts": [part._asdict() for part in change_parts(gain)],
         "before": _of_run(gain.before, proven_bound(gain.before)),
         "after": _of_run(gain.after, proven_after(gain)),
         "blocked": None if blocked is None else vars(blocked) | {"text": str(blocked)},

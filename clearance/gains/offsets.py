@@ -24,8 +24,8 @@ from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import motion_of_frame
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import link_poses_at
 from clearance.world.phase import Phase
@@ -72,9 +72,9 @@ class JointOffsets:
         object.__setattr__(self, "weights", slides)
 
     @cached_property
-    def handed(self) -> Handed:
+    def transfers(self) -> Transfers:
         """The parts that it hands over elsewhere."""
-        return Handed(self.case, (False, self.i_robot))
+        return Transfers(self.case, (False, self.i_robot))
 
     @property
     def placed(self) -> PlacedRobot:
@@ -148,7 +148,7 @@ class JointOffsets:
         return replace(self.placed, trajectory=changed)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
-        if timeline is not None and self.handed.has(approach):
+        if timeline is not None and self.transfers.has(approach):
             size = self.n_joints * self.n_splines
             return Grasps(timeline, self._of_frame, size).gradient(approach)
         by_joint = approach.by_columns()[:, self.columns]

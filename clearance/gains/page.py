@@ -1,6 +1,6 @@
 """A gain as a page: both curves, what moved by how much, both worst moments, what is proven. No script is in it.
 
-Not for: the sentences (`told`), nor the replays, which are in the reports beside it.
+Not for: the sentences (`sentences`), nor the replays, which are in the reports beside it.
 """
 
 from __future__ import annotations
@@ -10,8 +10,14 @@ from collections.abc import Sequence
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
-from clearance.gains.moved import Moved, joint_parts, moved_parts, proven_after, proven_bound
-from clearance.gains.told import is_hopeless, lines_of, signed_text, size_text
+from clearance.gains.change_parts import (
+    ChangePart,
+    change_parts,
+    joint_parts,
+    proven_after,
+    proven_bound,
+)
+from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
 from clearance.report.comparison_chart import chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
@@ -39,7 +45,7 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
 
 
 def _header(gain: Gain) -> Markup:
-    kicker = element("p", f"Least change of kind {gain.asked.kind}", class_="kicker")
+    kicker = element("p", f"Least change of kind {gain.request.kind}", class_="kicker")
     title = element("div", kicker, element("h1", gain.case.name))
     badge = element("p", _badge(gain), class_=f"verdict {'clear' if gain.kept else 'violated'}")
     lines = [
@@ -67,34 +73,34 @@ def _curves(gain: Gain) -> Markup:
     fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
     picture = element(
         "div",
-        chart(curves, fail + gain.asked.margin, "with margin" if gain.asked.margin else "fail"),
+        chart(curves, fail + gain.request.margin, "with margin" if gain.request.margin else "fail"),
         class_="scroll",
     )
     what = element(
         "p",
         "The least clearance of each step"
-        + (f"; the line is the limit with the margin of {limit_mm(gain.asked.margin)} mm."
-           if gain.asked.margin else "; the line is the limit."),
+        + (f"; the line is the limit with the margin of {limit_mm(gain.request.margin)} mm."
+           if gain.request.margin else "; the line is the limit."),
         class_="faint",
     )  # fmt: skip
     return section("Clearance over time", picture, element("div", *key, class_="key"), what)
 
 
 def _moved(gain: Gain) -> Markup:
-    parts = moved_parts(gain)
+    parts = change_parts(gain)
     if not parts or gain.size == 0.0:
         return section("What is changed", element("p", "Nothing is changed."))
-    if gain.asked.kind == "waypoints":
+    if gain.request.kind == "waypoints":
         return section("What is changed", _joints(parts))
     rows = [
         element("tr", element("td", _what(gain, part)), _number(signed_text(part)))
         for part in parts
     ]
-    if gain.asked.kind != "timing":
+    if gain.request.kind != "timing":
         rows.append(
             element(
                 "tr",
-                element("td", "length" if gain.asked.turn is None else "size"),
+                element("td", "length" if gain.request.turn is None else "size"),
                 _number(size_text(gain)),
             )
         )
@@ -104,20 +110,20 @@ def _moved(gain: Gain) -> Markup:
     return section("What is changed", shifted, _joints(joint_parts(gain)))
 
 
-def _joints(parts: Sequence[Moved]) -> Markup:
+def _joints(parts: Sequence[ChangePart]) -> Markup:
     heads = ("Joint", ">Greatest offset", ">At", ">From", ">Until")
     return table(heads, [_joint(part) for part in parts])
 
 
-def _what(gain: Gain, part: Moved) -> str:
+def _what(gain: Gain, part: ChangePart) -> str:
     if part.unit == "rad":
         return part.name
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         return "takes longer"
-    return "begins later" if gain.asked.kind == "timing" else f"along {part.name}"
+    return "begins later" if gain.request.kind == "timing" else f"along {part.name}"
 
 
-def _joint(part: Moved) -> Markup:
+def _joint(part: ChangePart) -> Markup:
     times = [part.time, part.start, part.end]
     cells = [_number(seconds(time)) for time in times if time is not None]
     return element("tr", element("td", part.name), _number(signed_text(part)), *cells)

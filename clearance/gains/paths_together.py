@@ -15,7 +15,7 @@ from clearance.gains.programme import Box, Inequalities
 from clearance.gains.shortfalls import Rows
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import AnyHanded
+from clearance.simulate.transfers import CombinedTransfers
 from clearance.world.case import Case
 from clearance.world.timeline import Timeline
 
@@ -34,9 +34,9 @@ class PathsTogether:
     bends: bool = True
 
     @cached_property
-    def handed(self) -> AnyHanded:
+    def transfers(self) -> CombinedTransfers:
         """The parts that any of them hands over elsewhere."""
-        return AnyHanded(tuple(part.handed for part in self.parts))
+        return CombinedTransfers(tuple(part.transfers for part in self.parts))
 
     @cached_property
     def box(self) -> Box:

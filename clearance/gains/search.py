@@ -11,12 +11,12 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.gains.closer import looked_closer
+from clearance.gains.interval_moments import looked_closer
 from clearance.gains.programme import Box, Inequalities, least_missing
 from clearance.gains.shortfalls import (
+    Requirement,
     Rows,
     State,
-    Wanted,
     keeps,
     looked_into,
     measured,
@@ -108,7 +108,7 @@ class Change(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class SearchResult:
     """Where a search ended.
 
     Attributes:
@@ -136,14 +136,14 @@ class Search:
 
     def __init__(self, change: Change, margin: float) -> None:
         self.change, self.margin, self.price = change, margin, change.price
-        self.wanted = Wanted(margin, 2.0 * FINE, np.zeros(0))
+        self.wanted = Requirement(margin, 2.0 * FINE, np.zeros(0))
         self.n_measured = 0
 
     def state_at(self, x: np.ndarray) -> State:
         """The case of some variables (m,), measured."""
         return self._state(x, self.change.first_reach)
 
-    def from_state(self, state: State, below: float = np.inf) -> Found:
+    def from_state(self, state: State, below: float = np.inf) -> SearchResult:
         """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
         for _ in range(MOST_PROOFS):
@@ -154,7 +154,7 @@ class Search:
             if keeps(record):
                 break
             state, record = self._wanting_more(state, record), None
-        return Found(state, record, self.n_measured)
+        return SearchResult(state, record, self.n_measured)
 
     def _wanting_more(self, state: State, unproven: Record) -> State:
         """The same variables, measured by what is wanted so that the motion between the steps is proven too."""

@@ -20,8 +20,8 @@ from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.transfers import Transfers
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of
@@ -41,14 +41,14 @@ class Shift:
     Attributes:
         moved: whether a body moves with it. place: the case with it moved by (3,) [m], or (4,) with its angle
             times `turn.ARM`. pose_in: (4, 4) where it stands in a case [m].
-        box: [m] how far it may be moved. handed: the parts that it hands over elsewhere.
+        box: [m] how far it may be moved. transfers: the parts that it hands over elsewhere.
         radius: [m] from its origin to the farthest that moves with it, roughly.
         moved_frame: whether a link moves with it; None for what carries no part.
         pivot: None where it is not turned.
     """
 
     case: Case
-    handed: Handed
+    transfers: Transfers
     moved: Callable[[Case, BodyIndex], bool]
     place: Callable[[Case, np.ndarray], Case]
     pose_in: Callable[[Case], np.ndarray]
@@ -82,7 +82,7 @@ class Shift:
         return self.place(self.case, x)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
-        if timeline is not None and self.moved_frame is not None and self.handed.has(approach):
+        if timeline is not None and self.moved_frame is not None and self.transfers.has(approach):
             return Grasps(timeline, self._of_frame, self.size_of_x).gradient(approach)
         case = approach.case
         a, b = (self.moved(case, body) for body in approach.pair)
@@ -168,8 +168,8 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
         return plain.obstacles[i_obstacle].world_from_body
 
     radius = float(np.linalg.norm(np.abs(asked.body.shape.bounds).max(axis=0)))
-    handed = Handed(case, (True, i_obstacle))
-    return _shift(Shift(case, handed, moved, place, pose_in, box, radius), pivot)
+    transfers = Transfers(case, (True, i_obstacle))
+    return _shift(Shift(case, transfers, moved, place, pose_in, box, radius), pivot)
 
 
 def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = None) -> Shift:
@@ -204,9 +204,9 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = N
         forest = forest_of(plain)
         return forest.robot_starts[i_robot] in carried_by(forest, frame)
 
-    handed = Handed(case, (False, i_robot))
+    transfers = Transfers(case, (False, i_robot))
     radius = reach_of(asked)
-    plain = Shift(case, handed, moved, place, pose_in, box, radius, moved_frame)
+    plain = Shift(case, transfers, moved, place, pose_in, box, radius, moved_frame)
     return _shift(plain, pivot)
 
 

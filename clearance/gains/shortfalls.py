@@ -58,7 +58,7 @@ class Rows(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Requirement:
     """What a case is to keep.
 
     Attributes:
@@ -98,7 +98,7 @@ class State:
     case: Case
     record: Record
     beyond: float
-    wanted: Wanted
+    wanted: Requirement
     beside: Rows | None = None
 
     @cached_property
@@ -153,7 +153,7 @@ class State:
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
-def measured(case: Case, x: np.ndarray, wanted: Wanted, beyond: float) -> State:
+def measured(case: Case, x: np.ndarray, wanted: Requirement, beyond: float) -> State:
     """A case with all that comes within `beyond` [m] of what is wanted, at its steps and the moments wanted."""
     finer = with_moments(case, wanted.moments)
     record = answer(Question(finer, certify=False, contact="none")).record
@@ -175,7 +175,9 @@ def keeps(record: Record) -> bool:
     return all(code_of(rule) < VIOLATED for rule in record.rules)
 
 
-def raised(wanted: Wanted, record: Record, spared: Sequence[int] | np.ndarray = ()) -> Wanted:
+def raised(
+    wanted: Requirement, record: Record, spared: Sequence[int] | np.ndarray = ()
+) -> Requirement:
     """What is wanted, with more at both ends of each motion that is not proven, and at the moments in it.
 
     Where bodies touch between two steps the certificate does not say how deep: three times as much is wanted.
@@ -194,7 +196,7 @@ def raised(wanted: Wanted, record: Record, spared: Sequence[int] | np.ndarray = 
     return replace(wanted, extra=extra, times=times, more=more)
 
 
-def looked_into(wanted: Wanted, record: Record) -> Wanted:
+def looked_into(wanted: Requirement, record: Record) -> Requirement:
     """What is wanted, at moments too in the motions that are farthest from being proven."""
     times, short = record.motions[0].times, short_of(record)
     short[intervals(times, wanted.moments)] = 0.0
@@ -205,7 +207,7 @@ def looked_into(wanted: Wanted, record: Record) -> Wanted:
     return with_new_moments(wanted, new)
 
 
-def with_new_moments(wanted: Wanted, new: np.ndarray) -> Wanted:
+def with_new_moments(wanted: Requirement, new: np.ndarray) -> Requirement:
     """What is wanted, at more moments (k,) [s] too."""
     order = np.argsort(np.concatenate([wanted.moments, new]), kind="stable")
     moments = np.concatenate([wanted.moments, new])[order]

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gains.asked import Asked
+from clearance.gains.request import Request
 from clearance.gains.tool_poses import ToolKeep
 from clearance.world.case import Case, PlacedRobot
 
@@ -46,27 +46,27 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
             )
 
 
-def kept_of(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
+def kept_of(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, float], ...]:
     """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
     next to a window draw the path in it."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
     kept = []
-    for window in asked.keep:
+    for window in request.keep:
         start, end = ((time - timing.start) * timing.rate for time in window)
         before = max(int(np.searchsorted(times, start, side="right")) - 1, 0)
         after = min(int(np.searchsorted(times, end)), len(times) - 1)
         kept.append((times[before], times[after]))
-    if asked.keep_ends:
+    if request.keep_ends:
         kept += [(times[0], times[0]), (times[-1], times[-1])]
     return tuple((float(start), float(end)) for start, end in kept)
 
 
-def windows_of(case: Case, i_robot: int, asked: Asked) -> list[tuple[float, float]]:
+def windows_of(case: Case, i_robot: int, request: Request) -> list[tuple[float, float]]:
     """The same in times of the run; before its path begins and after it ends the robot stands at an end that may
     be kept."""
     timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
     found = []
-    for start, end in kept_of(case, i_robot, asked):
+    for start, end in kept_of(case, i_robot, request):
         first = -np.inf if start <= times[0] else timing.start + start / timing.rate
         last = np.inf if end >= times[-1] else timing.start + end / timing.rate
         found.append((float(first), float(last)))

@@ -25,7 +25,7 @@ from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex
@@ -40,7 +40,7 @@ UNREACHED = 10.0
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class FollowedPath:
     """The joints with the base at another place.
 
     Attributes:
@@ -68,7 +68,7 @@ class ToolPathKept:
     price: float = 30.0
     kept: None = None
     bends: bool = False
-    _known: dict[bytes, Solved] = field(default_factory=dict)
+    _known: dict[bytes, FollowedPath] = field(default_factory=dict)
 
     @property
     def box(self) -> Box:
@@ -79,9 +79,9 @@ class ToolPathKept:
         return self.shift.first_reach
 
     @property
-    def handed(self) -> Handed:
+    def transfers(self) -> Transfers:
         """The parts that it hands over elsewhere."""
-        return self.shift.handed
+        return self.shift.transfers
 
     @property
     def placed(self) -> PlacedRobot:
@@ -104,14 +104,14 @@ class ToolPathKept:
         robots[self.i_robot] = replace(robots[self.i_robot], trajectory=solved.trajectory)
         return replace(moved, robots=tuple(robots))
 
-    def solved(self, base: np.ndarray) -> Solved:
+    def solved(self, base: np.ndarray) -> FollowedPath:
         """What the joints come to with the base at a pose (4, 4) [m]."""
         key = base.tobytes()
         if key not in self._known:
             self._known[key] = self._solution(base)
         return self._known[key]
 
-    def _solution(self, base: np.ndarray) -> Solved:
+    def _solution(self, base: np.ndarray) -> FollowedPath:
         asked, left, rates_kept = self.placed.asked, 0.0, None
         if not np.array_equal(base, self.placed.world_from_base):
             at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
@@ -125,7 +125,7 @@ class ToolPathKept:
             asked = replace(asked, velocities=rates_kept + more)
         by_base = self._by_base(base @ poses, base)
         followed = -least_squares(rates, by_base)
-        return Solved(asked, followed, by_base + rates @ followed, left)
+        return FollowedPath(asked, followed, by_base + rates @ followed, left)
 
     @cached_property
     def world_from_tool(self) -> np.ndarray:
@@ -194,7 +194,7 @@ class ToolPathKept:
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
-def _same_poses(solved: Solved) -> Rows:
+def _same_poses(solved: FollowedPath) -> Rows:
     """Rows that leave out the directions in which the joints cannot make up for the base."""
     flat = solved.missed.reshape(-1, solved.missed.shape[2])
     _, sizes, directions = np.linalg.svd(flat, full_matrices=False)

@@ -16,11 +16,11 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
-from clearance.simulate.handed import Handed
 from clearance.simulate.moment import Moment
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.simulate.record import Record
 from clearance.simulate.sections import Section
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.forest import forest_of, joined_positions, positions_between
 from clearance.world.pairs import BodyIndex, Pair
@@ -227,8 +227,8 @@ def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
         if one.mount is None
     ]
     for kind, name, moves, i in things:
-        handed = Handed(case, (kind == "obstacle", i))
-        if any(handed.has_of(one.case, one.pair) for one in near):
+        transfers = Transfers(case, (kind == "obstacle", i))
+        if any(transfers.has_of(one.case, one.pair) for one in near):
             continue
         sides = [tuple(moves(one.case, body, i) for body in one.pair) for one in near]
         if not any(a != b for a, b in sides):

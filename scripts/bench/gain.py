@@ -20,7 +20,7 @@ from pathlib import Path
 import inputs  # first: it sets the number of threads before numpy is loaded
 from gain_cases import KINDS, intervals_of
 from gain_drake import drake_path, has_drake, takes
-from gain_files import Filed, cases_in, kept_afresh, kept_by_command, write_proposal
+from gain_files import CaseOnDisk, cases_in, kept_afresh, kept_by_command, write_proposal
 from gain_general import general_change
 from gain_journal import Journal, Row
 from gain_summary import line_of, print_summary
@@ -42,7 +42,7 @@ COLUMNS = {
 RESULTS = Path(__file__).parent / "results" / "gain.csv"
 
 
-def ours(cases: list[Filed], journal: Journal, asked: argparse.Namespace) -> None:
+def ours(cases: list[CaseOnDisk], journal: Journal, asked: argparse.Namespace) -> None:
     """Mends the cases that are not in the journal, or are asked for again."""
     every = max(1, len(cases) // max(1, asked.commands))
     robot = str(cl.load_case(cases[0].file).robots[0].robot.name)
@@ -54,7 +54,7 @@ def ours(cases: list[Filed], journal: Journal, asked: argparse.Namespace) -> Non
             print(line_of(row), flush=True)
 
 
-def general(cases: list[Filed], journal: Journal, asked: argparse.Namespace) -> None:
+def general(cases: list[CaseOnDisk], journal: Journal, asked: argparse.Namespace) -> None:
     """So many cases of some kinds, of those that ours has kept by now, by the general optimiser."""
     for kind in asked.kinds:
         kept = [row for row in _ours_by_now(asked, kind) if row["kept"]]
@@ -67,7 +67,7 @@ def general(cases: list[Filed], journal: Journal, asked: argparse.Namespace) -> 
                 _note(journal, row, asked, vars(found))
 
 
-def drake(cases: list[Filed], journal: Journal, asked: argparse.Namespace) -> None:
+def drake(cases: list[CaseOnDisk], journal: Journal, asked: argparse.Namespace) -> None:
     """So many paths by Drake, of those that it takes."""
     if not has_drake():
         raise SystemExit("Drake is not installed: pip install 'clearance[bench]'")
@@ -98,7 +98,7 @@ def _note(journal: Journal, row: Row, asked: argparse.Namespace, found: Row) -> 
     print({**own, **found}, "ours", row["size"], flush=True)
 
 
-def _is_done(journal: Journal, number: int, one: Filed) -> bool:
+def _is_done(journal: Journal, number: int, one: CaseOnDisk) -> bool:
     """Whether the journal has a row of it.
 
     Raises:
@@ -111,7 +111,7 @@ def _is_done(journal: Journal, number: int, one: Filed) -> bool:
     return row is not None
 
 
-def _ours_of(one: Filed, *, by_command: bool) -> Row:
+def _ours_of(one: CaseOnDisk, *, by_command: bool) -> Row:
     """What one case came to, and whether what was proposed holds when it is checked anew."""
     case = cl.load_case(one.file)
     began = time.process_time()
@@ -132,7 +132,7 @@ def _ours_of(one: Filed, *, by_command: bool) -> Row:
     return row
 
 
-def _extent(case: Case, one: Filed) -> tuple[int, int]:
+def _extent(case: Case, one: CaseOnDisk) -> tuple[int, int]:
     """The steps and joints of a path; of what is shifted the steps of the run, and no joint."""
     if one.kind != "waypoints":
         steps = max(p.trajectory.n_steps for p in case.robots if p.trajectory)

@@ -63,7 +63,7 @@ OPENED = (0.2, 0.8)
 """[-] Of the way from the least clearance to that of the change, where a raised limit lies."""
 
 
-Change = JointOffsets | Shift
+Perturbation = JointOffsets | Shift
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
-class Made:
+class ViolatedCase:
     """A violated case.
 
     Attributes:
@@ -104,7 +104,9 @@ def sources(names: Sequence[str] = ()) -> Iterator[Source]:
             yield Source(folder.name, folder / "case.yaml", limited)
 
 
-def made(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[Made]:
+def violated_cases(
+    n_cases: int, seed: int = 0, names: Sequence[str] = ()
+) -> Iterator[ViolatedCase]:
     """So many cases, of each source of some names, or of all, each kind and way as many as can be."""
     rng, kept = np.random.default_rng(seed), [*sources(names)]
     n_made = 0
@@ -119,7 +121,7 @@ def made(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[Mad
             return
 
 
-def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Change:
+def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Perturbation:
     """What may be changed of a case; of a path with splines on so many intervals, its ends as they are."""
     if kind != "waypoints":
         return (obstacle_shift if kind == "obstacle" else base_shift)(case, who)
@@ -130,7 +132,7 @@ def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Change:
 
 def intervals_of(case: Case, found: Gain) -> int:
     """On how many intervals the splines are that a path was mended with; else the fewest."""
-    for n_intervals in INTERVALS if found.kept and found.asked.kind == "waypoints" else ():
+    for n_intervals in INTERVALS if found.kept and found.request.kind == "waypoints" else ():
         change = change_of(case, "waypoints", found.who, n_intervals)
         assert isinstance(change, JointOffsets)
         splines = change.basis.at(change.placed.asked.times)
@@ -151,7 +153,7 @@ def _above(case: Case) -> float:
     return float(run.record.worst.clearance)
 
 
-def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Made | None:
+def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase | None:
     """A case that is changed until it is violated."""
     case = source.case
     if kind == "waypoints":
@@ -162,7 +164,7 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Made | N
         if x is None or not _within_limits(offsets, x):
             return None
         who = offsets.placed.robot.name
-        return Made(source, HOW[0], offsets.case_of(x), kind, who, offsets.size(x))
+        return ViolatedCase(source, HOW[0], offsets.case_of(x), kind, who, offsets.size(x))
     found = _near_pair(case, kind, rng)
     if found is None:
         return None
@@ -172,15 +174,15 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Made | N
     for sign in (1.0, -1.0):
         x = _until_short(shift, sign * way / np.linalg.norm(way), NEAR, 1.0, rng)
         if x is not None:
-            return Made(source, HOW[0], shift.case_of(x), kind, who, shift.size(x))
+            return ViolatedCase(source, HOW[0], shift.case_of(x), kind, who, shift.size(x))
     return None
 
 
-def _raised(source: Source, kind: str, rng: np.random.Generator) -> Made | None:
+def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase | None:
     """A case whose limit is between what it comes to and what a change of it is proven to come to."""
     case = source.case
     if kind == "waypoints":
-        change: Change | None = _offsets(case, rng)
+        change: Perturbation | None = _offsets(case, rng)
         who = "" if change is None else change.placed.robot.name
         ways = [] if change is None else [_random_bend(change, rng) for _ in range(TRIED)]
         ways = [way for way in ways if _within_limits(change, way)]
@@ -198,7 +200,7 @@ def _raised(source: Source, kind: str, rng: np.random.Generator) -> Made | None:
         return None
     fail = low + float(rng.uniform(*OPENED)) * (high - low)
     violated = replace(case, limits=Limits(fail=fail))
-    return Made(source, HOW[-1], violated, kind, who, change.size(best))
+    return ViolatedCase(source, HOW[-1], violated, kind, who, change.size(best))
 
 
 def _near_pair(
@@ -249,7 +251,7 @@ def _bend_of_one(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
 
 
 def _until_short(
-    change: Change, way: np.ndarray, most: float, lever: float, rng: np.random.Generator
+    change: Perturbation, way: np.ndarray, most: float, lever: float, rng: np.random.Generator
 ) -> np.ndarray | None:
     """A change along a way by which the worst falls short by about a chosen length; None if it never does.
 

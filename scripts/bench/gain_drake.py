@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from gain_cases import change_of
-from gain_files import Filed
+from gain_files import CaseOnDisk
 from inputs import round_shape
 
 import clearance as cl
@@ -74,7 +74,7 @@ def takes(case: Case) -> bool:
     return one and still and all(o.body.origin != "cloud" for o in case.obstacles)
 
 
-def drake_path(one: Filed, n_intervals: int, seconds: float) -> DrakePath:
+def drake_path(one: CaseOnDisk, n_intervals: int, seconds: float) -> DrakePath:
     """Drake's change of a path, with splines on so many intervals, within so many seconds."""
     from pydrake.solvers import SnoptSolver, SolverOptions
 

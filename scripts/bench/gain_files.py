@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from gain_cases import Made, Source, made
+from gain_cases import Source, ViolatedCase, violated_cases
 from inputs import ROOT
 from rows import write_csv
 
 import clearance as cl
-from clearance.gains.answer import Asked, Gain
-from clearance.gains.written import written_case
+from clearance.gains.answer import Gain, Request
+from clearance.gains.changed_files import case_files
 from clearance.load.rewritten_case import Node, rewritten_case
 from clearance.run import Question, answer
 
@@ -30,8 +30,8 @@ COLUMNS = ("source", "how", "kind", "who", "known", "file")
 
 
 @dataclass(frozen=True)
-class Filed:
-    """A made case, as it lies on disk; what its attributes say is in `Made`."""
+class CaseOnDisk:
+    """A made case, as it lies on disk; what its attributes say is in `ViolatedCase`."""
 
     source: str
     how: str
@@ -46,15 +46,21 @@ class Filed:
         return {"obstacle" if self.kind == "obstacle" else "robot": self.who}
 
 
-def cases_in(folder: Path, n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> list[Filed]:
+def cases_in(
+    folder: Path, n_cases: int, seed: int = 0, names: Sequence[str] = ()
+) -> list[CaseOnDisk]:
     """The cases of a folder, which are made and written first where it has none."""
     if not (folder / INDEX).exists():
-        rows = [vars(_filed(one, folder, i)) for i, one in enumerate(made(n_cases, seed, names))]
+        rows = [
+            vars(_written(one, folder, i))
+            for i, one in enumerate(violated_cases(n_cases, seed, names))
+        ]
         write_csv(rows, COLUMNS, folder / INDEX, digits=17)
     with (folder / INDEX).open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines))
     return [
-        Filed(**row | {"known": float(row["known"]), "file": folder / row["file"]}) for row in rows
+        CaseOnDisk(**row | {"known": float(row["known"]), "file": folder / row["file"]})
+        for row in rows
     ][:n_cases]
 
 
@@ -78,31 +84,31 @@ def write_proposal(found: Gain, file: Path, folder: Path) -> Path:
         file: what was mended.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for name, content in written_case(replace(found, case_file=file), folder).files.items():
+    for name, content in case_files(replace(found, case_file=file), folder).files.items():
         (folder / name).write_bytes(content)
     return folder / "case.yaml"
 
 
-def _filed(one: Made, folder: Path, i: int) -> Filed:
+def _written(one: ViolatedCase, folder: Path, i: int) -> CaseOnDisk:
     """A made case written: its limit, then, as a gain writes it, what is changed."""
     place = Path(f"{i:03}_{one.source.name}")
     file = folder / place / "limited.yaml"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_bytes(_limited(one.source, one.case.limits.fail, file.parent))
     if one.how != "raised":
-        asked = Asked(one.kind, **_named(one))
+        request = Request(one.kind, **_named(one))
         run = answer(Question(one.case))
         change = Gain(
-            asked, True, one.case, np.zeros(0), one.known, 0.0, one.who, run, run, None, 0
+            request, True, one.case, np.zeros(0), one.known, 0.0, one.who, run, run, None, 0
         )
         write_proposal(change, file, file.parent)
         place = place / "case.yaml"
     else:
         place = place / "limited.yaml"
-    return Filed(one.source.name, one.how, one.kind, one.who, one.known, place)
+    return CaseOnDisk(one.source.name, one.how, one.kind, one.who, one.known, place)
 
 
-def _named(one: Made) -> dict[str, str]:
+def _named(one: ViolatedCase) -> dict[str, str]:
     return {"obstacle" if one.kind == "obstacle" else "robot": one.who}
 
 

@@ -13,11 +13,11 @@ from functools import lru_cache
 
 import numpy as np
 from gain_cases import Change, change_of
-from gain_files import Filed
+from gain_files import CaseOnDisk
 
 import clearance as cl
 from clearance.gains.offsets import JointOffsets
-from clearance.gains.shortfalls import State, Wanted, keeps, measured, proven
+from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 
 STARTS = 20
 
@@ -64,7 +64,7 @@ class Linear:
     b: np.ndarray
 
 
-def general_change(one: Filed, n_intervals: int, seconds: float) -> GeneralChange:
+def general_change(one: CaseOnDisk, n_intervals: int, seconds: float) -> GeneralChange:
     """The least size that it finds within so many seconds of CPU.
 
     Args:
@@ -132,7 +132,9 @@ class _Problem:
         if time.process_time() > self.ends:
             raise OutOfTime
         x = np.frombuffer(key)
-        found = measured(self.change.case_of(x), x, Wanted(0.0, 0.0, np.zeros(0)), BEYOND + ENOUGH)
+        found = measured(
+            self.change.case_of(x), x, Requirement(0.0, 0.0, np.zeros(0)), BEYOND + ENOUGH
+        )
         if found.worst <= ENOUGH and self._is_less(x) and self._keeps(x):
             self.best = x.copy()
         return _stretches(found, self.change)

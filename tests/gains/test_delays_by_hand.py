@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.gains.answer import gain
-from clearance.gains.told import lines_of
+from clearance.gains.sentences import lines_of
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, standing
 

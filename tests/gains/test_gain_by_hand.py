@@ -10,8 +10,8 @@ import clearance as cl
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import gain
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.sentences import lines_of
 from clearance.gains.shortfalls import proven
-from clearance.gains.told import lines_of
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic

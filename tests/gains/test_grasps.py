@@ -34,7 +34,7 @@ def test_rows_go_through_the_grasp(until, i_way):
     states = [search.state_at(x + side * step) for side in (-1.0, 0.0, 1.0)]
     n_compared = 0
     for one in states[1].near:
-        if not way.handed.has(one):
+        if not way.transfers.has(one):
             continue
         foretold = way.gradient(one, states[1].record.timeline) @ step
         for step_of, grows in zip(one.steps.tolist(), foretold, strict=True):

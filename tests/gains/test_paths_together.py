@@ -8,7 +8,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.gains.answer import gain
-from clearance.gains.told import lines_of
+from clearance.gains.sentences import lines_of
 from tests.gains.gantries import along_x, gantry, standing
 
 BOTH = ("one", "other")

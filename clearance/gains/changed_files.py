@@ -42,14 +42,14 @@ WHEN = ("start", "rate", "after")
 """Keys that say when a table is followed, which stay; how another file was to be read goes."""
 
 
-class WrittenCase(NamedTuple):
+class CaseFiles(NamedTuple):
     """Files by name, and a line each on what is not as it was."""
 
     files: Mapping[str, bytes]
     notes: tuple[str, ...]
 
 
-def written_case(gain: Gain, folder: Path) -> WrittenCase:
+def case_files(gain: Gain, folder: Path) -> CaseFiles:
     """The changed case as files in `folder`, which need not be there.
 
     Raises:
@@ -67,10 +67,10 @@ def written_case(gain: Gain, folder: Path) -> WrittenCase:
         "base": made.base,
         "obstacle": made.obstacle,
     }
-    ways[gain.asked.kind]()
+    ways[gain.request.kind]()
     files = {CASE: made.case(), **made.contents}
     _require_same(gain, files, folder)
-    return WrittenCase(files, tuple(made.notes))
+    return CaseFiles(files, tuple(made.notes))
 
 
 class _Files:
@@ -99,7 +99,7 @@ class _Files:
     def paths(self) -> None:
         """The tables of all paths that are changed, each of several with its robot's name."""
         robots = self.gain.case.robots
-        names = self.gain.asked.robots or (self.gain.who,)
+        names = self.gain.request.robots or (self.gain.who,)
         for name in names:
             self.path(index_of_robot(robots, name), f"_{name}" if len(names) > 1 else "")
 
@@ -116,7 +116,7 @@ class _Files:
 
     def delay(self) -> None:
         """A start, or a rate, in place of another."""
-        if self.gain.asked.slow_down:
+        if self.gain.request.slow_down:
             self._table({"rate": self.gain.case.robots[self._i_robot].timing.rate}, self._i_robot)
             return
         self._table({"start": self.gain.case.robots[self._i_robot].timing.start}, self._i_robot)
@@ -195,7 +195,7 @@ class _Files:
 
     def _pose(self, given: Node, before: np.ndarray, after: np.ndarray) -> Node:
         """A pose of a file in another place; where it is turned with the quaternion that it was made of."""
-        turn, change = self.gain.asked.turn, self.gain.change
+        turn, change = self.gain.request.turn, self.gain.change
         if turn is None or change[3] == 0.0:
             return {**given, "xyz": after[:3, 3].tolist()}
         place, quaternion = Pivot(turn, before).placed(np.append(change[:3], change[3] * ARM))

@@ -1,4 +1,4 @@
-"""What may be changed, and what must stay as it is: checked as it is asked.
+"""What may be changed, and what must stay as it is: checked as it is request.
 
 Not for: whether a case has what is named (`answer`).
 """
@@ -41,7 +41,7 @@ MOST_DELAY = 60.0
 
 
 @dataclass(frozen=True)
-class Asked:
+class Request:
     """What may be changed.
 
     Attributes:
@@ -120,7 +120,7 @@ NAMES, FIGURES, SWITCHES = (
 )  # fmt: skip
 
 
-def _require_sorts(asked: Asked) -> None:
+def _require_sorts(request: Request) -> None:
     """Nothing, if names are text, lengths and times numbers, a turn a turn, and the rest true or false.
 
     Raises:
@@ -132,34 +132,34 @@ def _require_sorts(asked: Asked) -> None:
         (SWITCHES, (bool, np.bool_), "True or False"),
         (("turn",), (Turn, type(None)), "'x', 'y', 'z' or a Turn"),
     ]
-    if not all(isinstance(name, str) for name in asked.robots):
-        raise BadInput(f"robot is {asked.robot!r:.60}", valid="a name, or several")
+    if not all(isinstance(name, str) for name in request.robots):
+        raise BadInput(f"robot is {request.robot!r:.60}", valid="a name, or several")
     for names, sort, valid in sorts:
         for name in names:
-            given = getattr(asked, name)
+            given = getattr(request, name)
             if not isinstance(given, sort) or (valid == "a number" and isinstance(given, bool)):
                 raise BadInput(f"{name} is {given!r:.60}", valid=valid)
 
 
-def _require_one_robot(asked: Asked) -> None:
+def _require_one_robot(request: Request) -> None:
     """Nothing, if several robots are named only where their paths may be changed together, each once.
 
     Raises:
         BadInput: they are not.
     """
-    if not isinstance(asked.robot, tuple):
+    if not isinstance(request.robot, tuple):
         return
-    if asked.kind != "waypoints" or asked.keep_tool or asked.tool:
+    if request.kind != "waypoints" or request.keep_tool or request.tool:
         raise BadInput(
-            f"{len(asked.robot)} robots are named, of which one is changed",
+            f"{len(request.robot)} robots are named, of which one is changed",
             valid="one; several with kind waypoints, without a tool",
         )
-    if len({*asked.robot}) < len(asked.robot):
+    if len({*request.robot}) < len(request.robot):
         raise BadInput("a robot is named twice", valid="each once")
 
 
 class Options(TypedDict, total=False):
-    """What a change may be given by name; each has the value of `Asked` where it is not given.
+    """What a change may be given by name; each has the value of `Request` where it is not given.
 
     Attributes:
         margin: [m] above the fail limits.
@@ -190,11 +190,11 @@ class Options(TypedDict, total=False):
     slow_down: bool
 
 
-def asked_as(kind: str, options: Options) -> Asked:
+def request_of(kind: str, options: Options) -> Request:
     """What is asked for by name.
 
     Raises:
-        BadInput: as `Asked`; an option that there is not, or that is none of its sort.
+        BadInput: as `Request`; an option that there is not, or that is none of its sort.
     """
     given: dict[str, Any] = dict(options)
     unknown = sorted(given.keys() - Options.__annotations__.keys())
@@ -211,7 +211,7 @@ def asked_as(kind: str, options: Options) -> Asked:
     within, turn = options.get("within"), options.get("turn")
     given["within"] = None if within is None else ranges_of(within)
     given["turn"] = Turn(turn) if isinstance(turn, str) else turn
-    return Asked(kind, **given)
+    return Request(kind, **given)
 
 
 def stretches_of(keep: Sequence[Range]) -> tuple[Range, ...]:

@@ -1,6 +1,6 @@
 """What no change of a kind can mend: a pair at a step that falls short, and that nothing of it moves.
 
-Not for: what is too far to reach (`unreachable`).
+Not for: what is too far to reach (`lower_bounds`).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from clearance.gains.shortfalls import Gradient, State
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import AnyHanded, Handed
 from clearance.simulate.record import Record
+from clearance.simulate.transfers import CombinedTransfers, Transfers
 
 NOT_MOVED = "nothing of this change moves them"
 KEPT_STILL = "that moment is to be kept"
@@ -34,7 +34,7 @@ HOPELESS = (NOT_MOVED, KEPT_STILL, TOO_FAR, HOWEVER_SLOW, AT_REST, ON_ITS_WAY)
 
 
 @dataclass(frozen=True)
-class Blocked:
+class Obstruction:
     """A pair that stays too near.
 
     Attributes:
@@ -57,34 +57,36 @@ class Blocked:
         return f"{told}, {self.wanted * 1e3:.6g} mm are needed, and {self.why}"
 
 
-def blocked_by(state: State, gradient: Gradient, handed: Handed | AnyHanded) -> Blocked | None:
+def blocked_by(
+    state: State, gradient: Gradient, transfers: Transfers | CombinedTransfers
+) -> Obstruction | None:
     """The worst pair that falls short and that no change moves; None without one.
 
     Args:
-        handed: parts that the change hands over elsewhere, which it moves though none of it carries them then.
+        transfers: parts that the change hands over elsewhere, which it moves though none of it carries them then.
     """
-    near = [one for one in state.near if not handed.has(one)]
+    near = [one for one in state.near if not transfers.has(one)]
     found = [told for one in near if (told := _worst(state, one, gradient)) is not None]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)
 
 
-def approach_of(blocked: Blocked, state: State) -> Approach:
+def approach_of(blocked: Obstruction, state: State) -> Approach:
     """The approach that something is blocked by."""
     names = {blocked.body_a, blocked.body_b}
     return next(one for one in state.near if {body.name_in(one.case) for body in one.pair} == names)
 
 
-def kept_still(blocked: Blocked, windows: Sequence[tuple[float, float]]) -> Blocked:
+def kept_still(blocked: Obstruction, windows: Sequence[tuple[float, float]]) -> Obstruction:
     """The same, for the reason that a path stays as it is then, if one of the windows [s of the run] says so."""
     within = any(start <= blocked.time <= end for start, end in windows)
     return replace(blocked, why=KEPT_STILL) if within and blocked.why == NOT_APART else blocked
 
 
-def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
+def pair_at(state: State, approach: Approach, row: int, why: str) -> Obstruction:
     """What falls short in a row of an approach."""
     case, phase = approach.case, approach.section.phase
     step = int(approach.steps[row])
-    return Blocked(
+    return Obstruction(
         approach.pair.a.name_in(case),
         approach.pair.b.name_in(case),
         float(phase.motions[0].times[step - phase.first]),
@@ -94,7 +96,7 @@ def pair_at(state: State, approach: Approach, row: int, why: str) -> Blocked:
     )
 
 
-def worst_pair(state: State, why: str) -> Blocked | None:
+def worst_pair(state: State, why: str) -> Obstruction | None:
     """The pair that falls short by most; None where none does at a step.
 
     What is wanted beyond, for the motion between the steps, does not count.
@@ -107,14 +109,16 @@ def worst_pair(state: State, why: str) -> Blocked | None:
     return pair_at(state, state.near[i], row, why)
 
 
-def unproven(record: Record, margin: float) -> Blocked:
+def unproven(record: Record, margin: float) -> Obstruction:
     """The moment that stands worst in a run whose steps keep what is wanted, and that is not proven."""
     moment = record.worst
     wanted = record.rule(moment.rule).limits.fail + margin
-    return Blocked(moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN)
+    return Obstruction(
+        moment.link, moment.obstacle, moment.time, moment.clearance, wanted, NOT_PROVEN
+    )
 
 
-def _worst(state: State, approach: Approach, gradient: Gradient) -> Blocked | None:
+def _worst(state: State, approach: Approach, gradient: Gradient) -> Obstruction | None:
     missing, by_unit = state.missing(approach), gradient(approach, None)
     stays = missing > 0.0
     if by_unit is not None:

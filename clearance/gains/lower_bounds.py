@@ -37,7 +37,7 @@ def least_shift(shift: Shift, state: State, margin: float) -> float:
 def _least_of(shift: Shift, near: Sequence[Approach], margin: float) -> float:
     least = 0.0
     for approach in near:
-        if shift.gradient(approach) is not None and not shift.handed.has(approach):
+        if shift.gradient(approach) is not None and not shift.transfers.has(approach):
             sizes = way_needed(approach, margin) / shift.factors(approach)
             least = max(least, float(sizes.max(initial=0.0)))
     return INWARD * least
@@ -54,7 +54,7 @@ def least_offset(offsets: JointOffsets | PathsTogether, state: State, margin: fl
     least = 0.0
     for approach in state.near:
         way = sum(_way_of_unit(part, approach) for part in offsets.parts)
-        if way > 0.0 and not offsets.handed.has(approach):
+        if way > 0.0 and not offsets.transfers.has(approach):
             least = max(least, float(way_needed(approach, margin).max(initial=0.0)) / way)
     return INWARD * least
 

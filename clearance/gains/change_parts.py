@@ -1,4 +1,4 @@
-"""What a change moves, part by part, for who reads of it: joints, axes, a delay. Not for: sentences (`told`)."""
+"""What a change moves, part by part, for who reads of it: joints, axes, a delay. Not for: `sentences`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STILL = 1e-9
 """[rad], [m] or [s]: what moves no farther is not told as moved."""
 
 
-class Moved(NamedTuple):
+class ChangePart(NamedTuple):
     """A part of a change.
 
     Attributes:
@@ -33,9 +33,9 @@ class Moved(NamedTuple):
     end: float | None = None
 
 
-def moved_parts(gain: Gain) -> list[Moved]:
+def change_parts(gain: Gain) -> list[ChangePart]:
     """All joints that move, in their table's order; the components of a shift, and its turn; the delay."""
-    if gain.asked.kind == "waypoints":
+    if gain.request.kind == "waypoints":
         changes = gain.change if isinstance(gain.change, tuple) else (gain.change,)
         each = zip(changed_robots(gain), changes, strict=True)
         return [
@@ -43,16 +43,18 @@ def moved_parts(gain: Gain) -> list[Moved]:
         ]
     assert not isinstance(gain.change, tuple)
     change = gain.change.tolist()
-    if gain.asked.slow_down:
-        return [Moved("duration", change[0], "share")]
-    if gain.asked.kind == "timing":
-        return [Moved("start", change[0], "s")]
-    parts = [Moved(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
-    turn = gain.asked.turn
-    return parts if turn is None else [*parts, Moved(f"turn about {turn.axis}", change[3], "rad")]
+    if gain.request.slow_down:
+        return [ChangePart("duration", change[0], "share")]
+    if gain.request.kind == "timing":
+        return [ChangePart("start", change[0], "s")]
+    parts = [ChangePart(axis, amount, "m") for axis, amount in zip("xyz", change, strict=False)]
+    turn = gain.request.turn
+    return (
+        parts if turn is None else [*parts, ChangePart(f"turn about {turn.axis}", change[3], "rad")]
+    )
 
 
-def joint_parts(gain: Gain) -> list[Moved]:
+def joint_parts(gain: Gain) -> list[ChangePart]:
     """The joints of a robot whose base is moved and whose tool path is kept."""
     i_robot = index_of_robot(gain.case.robots, gain.who)
     before, after = (
@@ -64,10 +66,10 @@ def joint_parts(gain: Gain) -> list[Moved]:
 def changed_robots(gain: Gain) -> list[PlacedRobot]:
     """The robots of the changed case that are changed."""
     robots = gain.case.robots
-    return [robots[index_of_robot(robots, name)] for name in gain.asked.robots or (gain.who,)]
+    return [robots[index_of_robot(robots, name)] for name in gain.request.robots or (gain.who,)]
 
 
-def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[Moved]:
+def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[ChangePart]:
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
     times = placed.timing.run_times(placed.asked.times)
     found = []
@@ -81,16 +83,16 @@ def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> lis
                 float(times[min(rows[-1] + 1, len(times) - 1)]),
             )
             shown = f"{placed.robot.name}/{name}" if named else name
-            found.append(Moved(shown, float(offsets[most]), unit, float(times[most]), *ends))
+            found.append(ChangePart(shown, float(offsets[most]), unit, float(times[most]), *ends))
     return found
 
 
 def size_unit(gain: Gain) -> tuple[float, str]:
     """What a size is multiplied by to be shown, and its unit: millimetres where all joints slide."""
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         return 100.0, "%"
-    if gain.asked.kind != "waypoints":
-        return (1.0, "s") if gain.asked.kind == "timing" else (1e3, "mm")
+    if gain.request.kind != "waypoints":
+        return (1.0, "s") if gain.request.kind == "timing" else (1e3, "mm")
     from clearance.gains.offsets import SLIDE
 
     return (1e3 / SLIDE, "mm") if not turning(gain) else (math.degrees(1.0), "deg")
@@ -125,4 +127,4 @@ def proven_after(gain: Gain) -> float | None:
     found, limits = proven_bound(gain.after), gain.case.limits
     if found is None or not gain.kept or limits.rules:
         return found
-    return max(found, limits.fail + gain.asked.margin)
+    return max(found, limits.fail + gain.request.margin)

@@ -19,7 +19,7 @@ from clearance.world.pairs import Pair
 
 
 @dataclass(frozen=True, eq=False)
-class Handed:
+class Transfers:
     """What a change hands over elsewhere.
 
     Attributes:
@@ -57,10 +57,10 @@ class Handed:
 
 
 @dataclass(frozen=True, eq=False)
-class AnyHanded:
+class CombinedTransfers:
     """What several changes at once hand over elsewhere."""
 
-    each: tuple[Handed, ...]
+    each: tuple[Transfers, ...]
 
     def has(self, approach: Approach) -> bool:
         """True if a body of a pair is a part that any of them does, or stands on one."""

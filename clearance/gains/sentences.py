@@ -10,10 +10,17 @@ from collections.abc import Iterator
 from decimal import ROUND_FLOOR, Decimal
 
 from clearance.gains.answer import Gain
-from clearance.gains.blocked import HOPELESS
+from clearance.gains.change_parts import (
+    ChangePart,
+    change_parts,
+    joint_parts,
+    size_unit,
+    sliding,
+    turning,
+)
 from clearance.gains.delay import FINEST, FINEST_SHARE, MOST_SLOWER
 from clearance.gains.joint_ranges import too_fast
-from clearance.gains.moved import Moved, joint_parts, moved_parts, size_unit, sliding, turning
+from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
 from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
@@ -42,7 +49,7 @@ def lines_of(gain: Gain) -> Iterator[Line]:
             "note",
             f"faster than the robot's own file allows as it is, and made no faster: {fast}",
         )
-    if gain.asked.margin:
+    if gain.request.margin:
         yield "margin", "it is not written into the changed case, whose limits are as they were"
 
 
@@ -50,7 +57,7 @@ def _too_fast(gain: Gain) -> str:
     if not gain.joint_names:
         return ""
     robots = gain.before.record.case.robots
-    names = gain.asked.robots or (gain.who,)
+    names = gain.request.robots or (gain.who,)
     told = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
     return ", ".join(line for line in told if line)
 
@@ -84,22 +91,22 @@ def is_hopeless(gain: Gain) -> bool:
 
 def changed_lines(gain: Gain) -> list[str]:
     """What is moved by how much."""
-    parts = moved_parts(gain)
-    if gain.asked.kind == "waypoints":
+    parts = change_parts(gain)
+    if gain.request.kind == "waypoints":
         return [_joint(part) for part in parts] or ["no joint moves"]
-    if gain.asked.slow_down:
+    if gain.request.slow_down:
         rate = 1.0 / (1.0 + gain.size)
         return [
             f"robot {gain.who} takes {amount_text(parts[0])} longer for its path: {rate:.4f} times as fast, "
             "from its table's time 0 on"
         ]
-    if gain.asked.kind == "timing":
+    if gain.request.kind == "timing":
         return [f"robot {gain.who} begins {amount_text(parts[0])} later"]
-    who = f"{'robot' if gain.asked.kind == 'base' else 'obstacle'} {gain.who}"
+    who = f"{'robot' if gain.request.kind == 'base' else 'obstacle'} {gain.who}"
     axes = ", ".join(f"{part.name} {_signed(part)}" for part in parts if part.unit == "m")
     turned = [f", turned {signed_text(part)}{_about(gain)}" for part in parts if part.unit == "rad"]
     joints = ""
-    if gain.asked.kind == "base":
+    if gain.request.kind == "base":
         joints = "; its joints as they are, so its tool moves along"
     if gain.tool_path is not None:
         joints = f"; its joints make up for it, so that {gain.tool_path.link} goes the same way"
@@ -110,7 +117,7 @@ def changed_lines(gain: Gain) -> list[str]:
 
 def _about(gain: Gain) -> str:
     """What a turn is about, and how it counts."""
-    turn = gain.asked.turn
+    turn = gain.request.turn
     assert turn is not None
     through = "its origin"
     if turn.about is not None:
@@ -135,7 +142,7 @@ def tool_lines(gain: Gain) -> Iterator[str]:
         )
 
 
-def amount_text(part: Moved) -> str:
+def amount_text(part: ChangePart) -> str:
     """How far a part moves, without a sign."""
     units = {
         "rad": (math.degrees(1.0), "deg"),
@@ -147,7 +154,7 @@ def amount_text(part: Moved) -> str:
     return f"{_figure(abs(part.amount) * factor)} {unit}"
 
 
-def signed_text(part: Moved) -> str:
+def signed_text(part: ChangePart) -> str:
     """The same with its sign; none where that is nothing in the digits told."""
     text = amount_text(part)
     return text if text.startswith("0 ") else f"{'+' if part.amount > 0.0 else '-'}{text}"
@@ -177,7 +184,7 @@ _LOCAL = "this is the smallest found, by a search that is local"
 
 def _counted(gain: Gain) -> str:
     """How slides and turns are held against each other."""
-    if gain.asked.kind != "waypoints":
+    if gain.request.kind != "waypoints":
         return ""
     if turning(gain) and sliding(gain):
         return f" at a joint, where {1e3 * math.radians(1.0) / SLIDE:.1f} mm of a slide count as 1 deg,"
@@ -187,7 +194,7 @@ def _counted(gain: Gain) -> str:
 def _not_kept_text(gain: Gain) -> str:
     if is_hopeless(gain):
         return "no change of this kind can make every rule hold"
-    if gain.asked.kind == "timing":
+    if gain.request.kind == "timing":
         return _not_in_time(gain)
     return "no change of this kind was found with which every rule is proven to hold"
 
@@ -195,8 +202,8 @@ def _not_kept_text(gain: Gain) -> str:
 def _not_in_time(gain: Gain) -> str:
     """Up to what was looked."""
     looked = max(gain.size, gain.lower_bound)
-    slow = gain.asked.slow_down
-    finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.asked.most_delay)
+    slow = gain.request.slow_down
+    finest, most = (FINEST_SHARE, MOST_SLOWER) if slow else (FINEST, gain.request.most_delay)
     more = "; longer ones were not looked at"
     if looked + finest >= most:
         looked, more = most, ""
@@ -209,7 +216,11 @@ def _not_in_time(gain: Gain) -> str:
 
 
 def _by_margin(gain: Gain) -> str:
-    return f", by {limit_mm(gain.asked.margin)} mm more than its limit" if gain.asked.margin else ""
+    return (
+        f", by {limit_mm(gain.request.margin)} mm more than its limit"
+        if gain.request.margin
+        else ""
+    )
 
 
 def _worst(run: Run) -> str:
@@ -223,12 +234,12 @@ def _worst(run: Run) -> str:
     return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.text()}"
 
 
-def _joint(part: Moved) -> str:
+def _joint(part: ChangePart) -> str:
     told = f"joint {part.name} by up to {signed_text(part)}"
     return f"{told} at {part.time:.3f} s, between {part.start:.3f} and {part.end:.3f} s"
 
 
-def _signed(part: Moved) -> str:
+def _signed(part: ChangePart) -> str:
     figure = _figure(part.amount * 1e3)
     return f"+{figure}" if part.amount > 0.0 and figure != "0" else figure
 

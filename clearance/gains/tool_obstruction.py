@@ -1,23 +1,23 @@
 """Pairs that a tool's tolerance keeps too near: what is fixed to a tool goes no farther than the tool may.
 
 A point that is R off the tool's origin moves no farther than the origin may and R times the angle it may turn. Not
-for: stretches of a path that are kept (`blocked`).
+for: stretches of a path that are kept (`obstruction`).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from clearance.gains.blocked import KEPT_STILL, Blocked, pair_at
+from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
+from clearance.gains.obstruction import KEPT_STILL, Obstruction, pair_at
 from clearance.gains.offsets import JointOffsets
 from clearance.gains.shortfalls import SAME, State
 from clearance.gains.tool_poses import ToolKeep
-from clearance.gains.unreachable import INWARD, motion_radii, way_needed
 from clearance.simulate.approaches import Approach
 from clearance.world.forest import WORLD, forest_of
 
 
-def held_back(state: State, offsets: JointOffsets) -> Blocked | None:
+def tool_obstruction(state: State, offsets: JointOffsets) -> Obstruction | None:
     """A pair that no path parts while its tool stays within what it is given; None without one.
 
     Moments are looked at that are steps of the run.
@@ -26,7 +26,7 @@ def held_back(state: State, offsets: JointOffsets) -> Blocked | None:
         return None
     link = offsets.tool_poses.tool.link
     for approach in state.near:
-        if offsets.handed.has(approach):
+        if offsets.transfers.has(approach):
             continue
         phase = approach.section.phase
         times = phase.times[approach.steps - phase.first]

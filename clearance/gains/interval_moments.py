@@ -13,8 +13,8 @@ from clearance.gains.shortfalls import (
     MOMENTS,
     MOST_INTERVALS,
     SAME,
+    Requirement,
     State,
-    Wanted,
     intervals,
     raised,
     short_of,
@@ -23,7 +23,7 @@ from clearance.gains.shortfalls import (
 from clearance.simulate.record import Record
 
 
-def looked_closer(wanted: Wanted, record: Record, state: State) -> Wanted:
+def looked_closer(wanted: Requirement, record: Record, state: State) -> Requirement:
     """What is wanted, with moments in the motions that are farthest from being proven, and more in the others.
 
     Args:

@@ -9,24 +9,24 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.gains.blocked import AT_REST, NOT_MOVED, ON_ITS_WAY, Blocked, pair_at
+from clearance.gains.obstruction import AT_REST, NOT_MOVED, ON_ITS_WAY, Obstruction, pair_at
 from clearance.gains.shortfalls import SAME, State
 from clearance.simulate.approaches import Approach
-from clearance.simulate.handed import Handed
 from clearance.simulate.point_motion import Thing, owners_of
+from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import names_of
 from clearance.world.rules import PairPattern
 from clearance.world.timing import Timing
 
 
-def stays_whatever(state: State, i_robot: int) -> Blocked | None:
+def stays_whatever(state: State, i_robot: int) -> Obstruction | None:
     """The worst pair that falls short, and does with every later start and every slower path; None without one."""
-    handed = Handed(state.case, (False, i_robot))
+    transfers = Transfers(state.case, (False, i_robot))
     found = [
         pair_at(state, approach, row, why)
         for approach in state.near
-        if not handed.has(approach)
+        if not transfers.has(approach)
         for row, why in _staying(state, approach, i_robot)
     ]
     return min(found, key=lambda told: told.clearance - told.wanted, default=None)

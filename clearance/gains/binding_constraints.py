@@ -1,6 +1,6 @@
 """What the best that a search reached is up against: other pairs, and limits of joints.
 
-Not for: what is plain before any search (`blocked`).
+Not for: what is plain before any search (`obstruction`).
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from clearance.gains.blocked import Blocked
 from clearance.gains.joint_ranges import joint_ranges
+from clearance.gains.obstruction import Obstruction
 from clearance.gains.programme import Box
 from clearance.gains.shortfalls import State
 from clearance.gains.tool_poses import ToolMove
@@ -24,7 +24,7 @@ MOST = 4
 
 
 def bound_by(
-    state: State, blocked: Blocked, changed: Sequence[PlacedRobot] = ()
+    state: State, blocked: Obstruction, changed: Sequence[PlacedRobot] = ()
 ) -> tuple[str, ...]:
     """Pairs beside the blocked one that want all that they have, and joints at a limit at that moment.
 
@@ -65,7 +65,7 @@ def tools_held(moves: Iterable[ToolMove]) -> tuple[str, ...]:
     )
 
 
-def _pairs(state: State, blocked: Blocked) -> list[str]:
+def _pairs(state: State, blocked: Obstruction) -> list[str]:
     told = dict[tuple[str, str], str]()
     for approach in state.near:
         names = approach.pair.a.name_in(approach.case), approach.pair.b.name_in(approach.case)
