@@ -23,11 +23,6 @@ from clearance.kernels.motion.certify import (
     ROUNDED_DOWN,
     WIDER,
     CertificateGoal,
-    IntervalMiddle,
-    begin_arcs,
-    go_to_middle,
-    loosened_motion_bound_in,
-    new_middle,
 )
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
 from clearance.kernels.motion.clock_rectangles import (
@@ -50,6 +45,13 @@ from clearance.kernels.motion.clock_tree import (
     motion_of_node,
     n_leaves_of,
     row_in_middle,
+)
+from clearance.kernels.motion.interval_middle import (
+    IntervalMiddle,
+    begin_arcs,
+    go_to_middle,
+    loosened_motion_bound_in,
+    new_middle,
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
