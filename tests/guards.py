@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from tests.marks import SHARED_CASES
+from tests.shared_cases import SHARED_CASES
 
 STARTS = {
     "subprocess.Popen",

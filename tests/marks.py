@@ -12,8 +12,9 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 
+from tests.shared_cases import SHARED_CASES
+
 TESTS = Path(__file__).parent
-SHARED_CASES = TESTS.parents[1] / "shared" / "cases"
 PEERS = {
     "coal",
     "fcl",

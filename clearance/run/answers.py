@@ -11,12 +11,10 @@ from dataclasses import replace
 from functools import partial
 from itertools import accumulate
 
-import numpy as np
-
 from clearance.late_dataclass import dataclass
 from clearance.run.commanded_case import commanded_case
+from clearance.run.notices import notices_of
 from clearance.run.question import Question
-from clearance.simulate import inside
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
@@ -41,9 +39,8 @@ from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, ste
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
-from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.notice import Notice
 from clearance.world.pairs import names_of
-from clearance.world.phase import Phase
 from clearance.world.reach import require_within_reach
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
@@ -92,14 +89,20 @@ def answered(question: Question, resources: Resources) -> Record:
         NothingToMeasure: no pair is left. BadDimension: a body far beyond any place that a robot works at.
         BadInput: what only answering finds, as a profile that has no plane.
     """
-    plan = _plan(question)
+    plan = measurement_plan(question)
     if resources.rows.folder is not None:
         pairs = plan.sections.pairs
         resources.rows.ask(fingerprint(question.case, plan.own, pairs, question.of_rows))
     return _record(plan, _answers(plan, resources))
 
 
-def _plan(question: Question) -> MeasurementPlan:
+def measurement_plan(question: Question) -> MeasurementPlan:
+    """What is measured for a question, and when.
+
+    Raises:
+        NothingToMeasure: no pair is left. BadDimension: a body far beyond any place that a robot works at.
+        UnknownLink, UnknownObstacle: in a rule. BadInput: a rule of no pair, or of times that clocks do not have.
+    """
     case = question.case
     require_clocks(case)
     own = _motions(question)
@@ -135,7 +138,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         all_judged,
         samples,
         _contacts(plan, found),
-        _notices(plan, all_judged.certificate, found),
+        notices_of(question, plan.sections, all_judged.certificate, found),
         _profiles(plan),
         _peer(question.case, samples, found, resources) if question.cross_check else None,
         budget,
@@ -226,61 +229,6 @@ def _contacts(plan: MeasurementPlan, found: Sequence[SectionAnswer]) -> ContactS
 
 def _blocks(answer: SectionAnswer) -> Iterator[slice]:
     return blocks(len(answer.found.clearance))
-
-
-def _notices(
-    plan: MeasurementPlan, certificate: Certificate | None, found: Sequence[SectionAnswer]
-) -> tuple[Notice, ...]:
-    """All that a reader of the verdict must know: of the case, and of how it was measured."""
-    question = plan.question
-    measured = inside.notices(plan.sections) if question.method == "exact" else ()
-    proven = () if certificate is None else certificate.notices
-    empty = [_nothing_measured(phase) for phase in plan.sections.empty]
-    untied = [*_not_cross_checked(plan)] if question.cross_check else []
-    untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
-    return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
-
-
-def _nothing_measured(phase: Phase) -> Notice:
-    start, end = phase.span
-    text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
-    return Notice(Severity.WARNING, "pairs", text)
-
-
-def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:
-    """Contact of pairs that no one time has: none of what is said of contact is worked out."""
-    if any((one.found.clearance <= 0.0).any() for one in found if not one.section.tied):
-        text = "contact of bodies whose clocks are not tied has no depth, volume or way out here"
-        yield Notice(Severity.WARNING, "contact", text)
-
-
-def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
-    """Contact with clouds: how deep a ball is says nothing of the thing that was scanned."""
-    names: dict[str, None] = {}
-    for one in found:
-        pairs = one.section.pairs
-        for i in np.unique(one.found.pair[one.found.clearance <= 0.0]).tolist():
-            if i >= 0 and pairs[i].has_cloud(case):
-                clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
-                names |= {body.name_in(case): None for body in clouds}
-    if names:
-        text = f"contact with {listed([*names], 6)} has no depth, volume or way out here: clouds of points"
-        yield Notice(Severity.WARNING, "contact", text)
-
-
-def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
-    case = plan.question.case
-    clouds = {pair for pair in plan.sections.pairs if pair.has_cloud(case)}
-    if clouds:
-        text = (
-            f"{len(clouds)} pairs with clouds of points are not cross-checked: FCL measures faces, and balls "
-            "only by an iteration"
-        )
-        yield Notice(Severity.WARNING, "cross-check", text)
-    untied = {pair for one in plan.sections.sections if not one.tied for pair in one.pairs}
-    if untied:
-        text = f"{len(untied)} pairs whose clocks are not tied are not cross-checked: FCL is asked about one time"
-        yield Notice(Severity.WARNING, "cross-check", text)
 
 
 def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:

@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.kernels.motion.sweep import NOT_LESS, sweep
+from clearance.kernels.motion.sweep import sweep
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
+from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.parts import blocks, in_order, parts

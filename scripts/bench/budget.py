@@ -19,7 +19,7 @@ from inputs import SCENES
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.query.distance import distance
-from clearance.run.answers import _plan
+from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.measure import Measurement, measure
@@ -176,7 +176,7 @@ def sections_of(
     """The case of a scene with a budget, its sections and what is measured of each."""
     case = cl.load_case(SCENES / name / "case.yaml")
     case = replace(case, tolerance=budget(case))
-    for section in _plan(Question(case)).sections.sections:
+    for section in measurement_plan(Question(case)).sections.sections:
         yield case, section, measure(section.in_motion)
 
 

@@ -37,7 +37,7 @@ from inputs import SCENES, SHARED
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.kernels.budget.sweep import BudgetRows
-from clearance.run.answers import _plan
+from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.sections import Section
@@ -81,7 +81,7 @@ def sections_in(paths: list[Path]) -> Iterator[Loaded]:
     for path in paths:
         case = cl.load_case(path)
         case = replace(case, tolerance=typical(case))
-        for section in _plan(Question(case)).sections.sections:
+        for section in measurement_plan(Question(case)).sections.sections:
             found = measure(section.in_motion)
             if section.tied and np.nanmax(found.clearance) > 0.0:
                 yield Loaded(path.parent.name, case, section, found, Apart())

@@ -8,7 +8,7 @@ import numpy as np
 
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
-from clearance.run.answers import _plan
+from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.measure import measure
 from clearance.world.body import Body, Obstacle
@@ -148,7 +148,7 @@ def _table(rng: np.random.Generator, n_steps: int) -> PoseTable:
 
 def sections_of(case: Case):
     """The sections of a case."""
-    return _plan(Question(case)).sections.sections
+    return measurement_plan(Question(case)).sections.sections
 
 
 def proven_sections(case: Case, gap: float | None = None):

@@ -34,6 +34,19 @@ def errors():
     ]
 
 
+def assert_taken(errors, case, old, new):
+    text = case.replace(old, new)
+    assert text != case and errors(text) == []
+    assert validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+
+
+def assert_refused(errors, case, old, new):
+    text = case.replace(old, new)
+    assert text != case and errors(text)
+    with pytest.raises(BadInput):
+        validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+
+
 CASES = [
     path
     for path in sorted(ROOT.glob("scenes/**/*.yaml"))
@@ -59,9 +72,7 @@ def test_our_cases_follow_it(errors, path):
     ],
 )
 def test_what_it_takes_is_taken(errors, old, new):
-    text = CASE.replace(old, new)
-    assert text != CASE and errors(text) == []
-    assert validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+    assert_taken(errors, CASE, old, new)
 
 
 @pytest.mark.parametrize(
@@ -89,10 +100,7 @@ def test_what_it_takes_is_taken(errors, old, new):
     ],
 )
 def test_what_it_marks_is_refused(errors, old, new):
-    text = CASE.replace(old, new)
-    assert text != CASE and errors(text)
-    with pytest.raises(BadInput):
-        validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+    assert_refused(errors, CASE, old, new)
 
 
 @pytest.mark.parametrize(
@@ -110,9 +118,7 @@ def test_what_it_marks_is_refused(errors, old, new):
     ],
 )  # fmt: skip
 def test_what_it_takes_of_several_robots_is_taken(errors, old, new):
-    text = CELL.replace(old, new)
-    assert text != CELL and errors(text) == []
-    assert validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+    assert_taken(errors, CELL, old, new)
 
 
 @pytest.mark.parametrize(
@@ -138,10 +144,7 @@ def test_what_it_takes_of_several_robots_is_taken(errors, old, new):
     ],
 )  # fmt: skip
 def test_what_it_marks_of_several_robots_is_refused(errors, old, new):
-    text = CELL.replace(old, new)
-    assert text != CELL and errors(text)
-    with pytest.raises(BadInput):
-        validated(schema.Case, YAML(typ="safe").load(text), "case.yaml")
+    assert_refused(errors, CELL, old, new)
 
 
 def test_a_case_in_which_nothing_moves_is_marked_and_refused(errors):

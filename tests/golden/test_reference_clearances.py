@@ -1,30 +1,21 @@
 """The four real cases beside the repository, every step against their exact reference clearances."""
 
 import csv
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import clearance as cl
+from tests.shared_cases import SHARED_NAMES, shared_case
 
-CASES = Path(__file__).parents[3] / "shared" / "cases"
-NAMES = (
-    "fetch_cage_planned",
-    "kuka_iiwa_valve_wall",
-    "lbr_puzzle_grinder",
-    "panda_bookshelf_thin_planned",
-)
 ROUNDING = 1e-12  # [m] a faceted round shape may never be reported farther away than this
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=SHARED_NAMES)
 def run_and_reference(request):
-    folder = CASES / request.param
-    if not folder.exists():
-        pytest.skip("the shared cases are not beside this checkout")
-    run = cl.check(cl.load_case(folder / "case.yaml"))
-    with (folder / "reference.csv").open(encoding="utf-8") as file:
+    path = shared_case(request.param)
+    run = cl.check(cl.load_case(path))
+    with path.with_name("reference.csv").open(encoding="utf-8") as file:
         return run, list(csv.DictReader(file))
 
 

@@ -12,8 +12,7 @@ import pytest
 
 from clearance.load.case_file import load_case
 from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
-
-CASES = Path(__file__).resolve().parents[2].parent / "shared" / "cases"
+from tests.shared_cases import SHARED_CASES as CASES
 
 pytestmark = [
     pytest.mark.shared,

@@ -10,7 +10,7 @@ from clearance.compile.jit import kernel
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.motion.certify import IntervalMiddle
+from clearance.kernels.motion.interval_middle import IntervalMiddle
 from clearance.kernels.motion.interval_motion_bound import (
     fill_motion_radii,
     interval_motion_bound_of,

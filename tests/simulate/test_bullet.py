@@ -21,8 +21,8 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.trajectory import Trajectory
+from tests.shared_cases import SHARED_NAMES, shared_case
 
-CASES = Path(__file__).parents[3] / "shared" / "cases"
 ENGINE_PRECISION = (
     1e-6  # the engine is built in float32: 6e-8 a joint, about ten joints, poses to 2 m
 )
@@ -92,18 +92,9 @@ def test_our_kinematics_are_the_engines_on_robots_it_brings(name):
     assert_same_kinematics(placed_robot(packaged_urdf(name), packages=(packaged_urdf(""),)))
 
 
-@pytest.mark.skipif(not CASES.is_dir(), reason="the shared cases are not here")
-@pytest.mark.parametrize(
-    "name",
-    [
-        "fetch_cage_planned",
-        "kuka_iiwa_valve_wall",
-        "lbr_puzzle_grinder",
-        "panda_bookshelf_thin_planned",  # its second finger mimics the first
-    ],
-)
+@pytest.mark.parametrize("name", SHARED_NAMES)  # one finger of the panda mimics the other
 def test_our_kinematics_are_the_engines_on_the_shared_robots(name):
-    assert_same_kinematics(load_case(CASES / name / "case.yaml").robots[0])
+    assert_same_kinematics(load_case(shared_case(name)).robots[0])
 
 
 @pytest.mark.parametrize("axis", ["1 0 0", "0 -1 0", "1 2 -2"])

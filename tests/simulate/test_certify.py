@@ -12,12 +12,11 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.shared_cases import shared_case
 from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
 
 SCENES = Path(__file__).parents[2] / "scenes"
 pytestmark = pytest.mark.shared
-
-SHARED = Path(__file__).parents[3] / "shared" / "cases"
 
 
 def finer(case, first, n_parts):
@@ -33,16 +32,17 @@ def finer(case, first, n_parts):
 
 def cases():
     yield from (SCENES / name / "case.yaml" for name in ("box_pipe", "hot_cell", "iiwa_pipe_rack"))
-    yield from (
-        SHARED / name / "case.yaml" for name in ("fetch_cage_planned", "lbr_puzzle_grinder")
-    )
+    yield from ("fetch_cage_planned", "lbr_puzzle_grinder")
 
 
-@pytest.fixture(scope="module", params=cases(), ids=lambda path: path.parent.name)
+def name_of(case):
+    return case if isinstance(case, str) else case.parent.name
+
+
+@pytest.fixture(scope="module", params=cases(), ids=name_of)
 def certified(request):
-    if not request.param.exists():
-        pytest.skip("the shared cases are not beside this checkout")
-    return cl.check(cl.load_case(request.param), certify=True)
+    path = shared_case(request.param) if isinstance(request.param, str) else request.param
+    return cl.check(cl.load_case(path), certify=True)
 
 
 def test_the_bound_is_never_above_a_thousand_samples(certified):

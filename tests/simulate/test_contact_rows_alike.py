@@ -18,10 +18,10 @@ from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.shared_cases import shared_case
 from tests.simulate.test_contact_modes import channel
 
 ROOT = Path(__file__).parents[2]
-FETCH = ROOT.parent / "shared" / "cases" / "fetch_cage_planned" / "case.yaml"
 
 
 def measured(case, motion, steps, need="steps"):
@@ -73,9 +73,8 @@ def test_every_row_before_in_and_after_contact_is_that_of_its_step_alone(need):
         assert np.array_equal(alone.points[0], whole.points[step])
 
 
-@pytest.mark.skipif(not FETCH.exists(), reason="the shared cases are not beside this checkout")
 def test_rows_of_a_real_robot_are_those_of_sweeps_that_start_there():
-    case = cl.load_case(FETCH)
+    case = cl.load_case(shared_case("fetch_cage_planned"))
     front = next(i for i, obstacle in enumerate(case.obstacles) if obstacle.name == "side_frontA")
     pose = case.obstacles[front].world_from_body.copy()
     pose[:3, 3] += [-0.03, -0.01, 0.03]

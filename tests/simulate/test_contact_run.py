@@ -22,9 +22,9 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.browser import chromium, executable
 from tests.report.records import moved, record, with_contacts
+from tests.shared_cases import shared_case
 
 ROOT = Path(__file__).parents[2]
-CASES = ROOT.parent / "shared" / "cases"
 
 
 @pytest.fixture(scope="module")
@@ -161,9 +161,7 @@ def touching_case(world):
 @pytest.fixture(scope="module")
 def pushed(tmp_path_factory):
     """The Fetch in its cage, with the obstacle that it comes nearest to pushed 2 cm into it."""
-    folder = CASES / "fetch_cage_planned"
-    if not folder.is_dir():
-        pytest.skip("the shared cases are not beside this checkout")
+    folder = shared_case("fetch_cage_planned").parent
     with (folder / "reference.csv").open(encoding="utf-8") as file:
         nearest = min(csv.DictReader(file), key=lambda row: float(row["clearance"]))
     points = [[float(nearest[f"{body}_{k}"]) for k in "xyz"] for body in ("link", "obstacle")]

@@ -3,28 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import clearance as cl
-
-SHARED = Path(__file__).parents[3] / "shared" / "cases"
-CASES = (
-    "fetch_cage_planned",
-    "kuka_iiwa_valve_wall",
-    "lbr_puzzle_grinder",
-    "panda_bookshelf_thin_planned",
-)
+from tests.shared_cases import SHARED_NAMES, shared_case
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(scope="module", params=SHARED_NAMES)
 def runs(request):
-    path = SHARED / request.param / "case.yaml"
-    if not path.exists():
-        pytest.skip("the shared cases are not beside this checkout")
-    case = cl.load_case(path)
+    case = cl.load_case(shared_case(request.param))
     needs = ("steps", "pairs", "limit", "minimum")
     return {
         need: cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=1))
@@ -83,10 +72,7 @@ def test_the_minimum_leaves_most_pairs_unasked(runs):
 
 
 def test_the_minimum_tests_fewer_polygons_than_the_first_tenth_of_the_steps_where_one_place_is_nearest():
-    path = SHARED / "panda_bookshelf_thin_planned" / "case.yaml"
-    if not path.exists():
-        pytest.skip("the shared cases are not beside this checkout")
-    case = cl.load_case(path)
+    case = cl.load_case(shared_case("panda_bookshelf_thin_planned"))
     least = cl.check(case, need="minimum", certify=False, resources=cl.Resources(jobs=1)).record
     n_steps = len(least.clearances)
     begun = replace(case, robots=tuple(cut_to(placed, n_steps // 10) for placed in case.robots))

@@ -10,7 +10,7 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.budget.levers import bow_of
-from clearance.kernels.motion.certify import IntervalMiddle, go_to_middle
+from clearance.kernels.motion.interval_middle import IntervalMiddle, go_to_middle
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
 
 

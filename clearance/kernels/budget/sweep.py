@@ -30,8 +30,9 @@ from clearance.kernels.budget.sweep_state import (
     start_before,
     thin_of,
 )
-from clearance.kernels.motion.certify import DEPTH, WIDER, begin_arcs
+from clearance.kernels.motion.certify import DEPTH, WIDER
 from clearance.kernels.motion.certify_pair import allowed_gap
+from clearance.kernels.motion.interval_middle import begin_arcs
 
 FEW = 16
 """Moments that are looked at as exactly as can be."""

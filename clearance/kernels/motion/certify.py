@@ -27,21 +27,27 @@ from clearance.compile.kernel_table import (
     table_like,
 )
 from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of, surface_like
 from clearance.kernels.motion.certify_pair import allowed_gap, hold
+from clearance.kernels.motion.interval_middle import (
+    IntervalMiddle,
+    begin_arcs,
+    go_to_middle,
+    motion_bound_at,
+    motion_bound_in,
+    new_middle,
+    note_motion_bound,
+)
 from clearance.kernels.motion.joint_motion_bound import (
-    AT_REST,
-    MotionBound,
     PairMotion,
     loosened,
-    motion_bound_of,
     motion_bound_of_box,
     orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
-from clearance.kernels.motion.kinematics import BALL, Links, orient, place_by_link
+from clearance.kernels.motion.joint_path import NO_BALLS, JointPath
+from clearance.kernels.motion.kinematics import BALL, Links
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -123,15 +129,6 @@ class PairInterval(NamedTuple):
     share: float
 
 
-class IntervalMiddle(NamedTuple):
-    """The state in the middle of an interval or of a part of it."""
-
-    positions: np.ndarray  # (links,)
-    swing: np.ndarray  # (links,)
-    bend: np.ndarray  # (links,)
-    poses: np.ndarray  # (links, 4, 4)
-
-
 class CertifyState(NamedTuple):
     """What is carried from interval to interval, and scratch.
 
@@ -153,77 +150,6 @@ class CertifyState(NamedTuple):
     witness_faces: np.ndarray
     waiting: np.ndarray
     scratch: Scratch
-
-
-@inline
-def begin_arcs(links, balls, step):
-    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after."""
-    for ball in range(len(balls.links)):
-        link, arc = balls.links[ball], balls.arcs[step, ball]
-        orient(balls.parent_from_joint[ball], arc, links.parent_from_joint[link])
-        for k in range(3):
-            links.axes[link, k] = arc[4 + k]
-
-
-@inline
-def go_to_middle(links, path, step, low, high, middle):
-    """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
-    for link in range(path.positions.shape[1]):
-        part = part_of(path, step, link, low, high)
-        middle.positions[link] = part.middle
-        middle.swing[link] = part.swing
-        middle.bend[link] = part.bend
-    for ball in range(len(path.balls.links)):
-        link = path.balls.links[ball]
-        arc = part_of_arc(path.balls, step, ball, low, high)
-        middle.positions[link], middle.swing[link] = arc.middle, arc.swing
-    place_by_link(links, middle.positions, middle.poses)
-
-
-@inline
-def new_middle(n_links):
-    return IntervalMiddle(
-        np.empty(n_links), np.empty(n_links), np.empty(n_links), np.empty((n_links, 4, 4))
-    )
-
-
-@inline
-def motion_bound_in(surface, world, body, middle):
-    """The motion bound of a body about `middle`, without the rounding of orientations."""
-    link = world.frames[body]
-    if link < 0:
-        return AT_REST
-    root = surface.roots[world.solids[body]]
-    pose = rigid(middle.poses[link])
-    return motion_bound_of(
-        surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
-    )
-
-
-@inline
-def loosened_motion_bound_in(surface, world, balls, body, middle):
-    """The same with the rounding of orientations; ball joints must have the arcs of the interval."""
-    bound = motion_bound_in(surface, world, body, middle)
-    if len(balls.links) == 0 or world.frames[body] < 0:
-        return bound
-    box = box_of(surface, surface.roots[world.solids[body]])
-    rounding = orientation_rounding(box, world.links, world.frames[body], balls, middle)
-    return loosened(bound, rounding)
-
-
-@inline
-def note_motion_bound(bound, numbers):
-    """Keeps a motion bound as eight numbers."""
-    v, w = bound.velocity, bound.spin
-    numbers[0], numbers[1], numbers[2] = v.x, v.y, v.z
-    numbers[3], numbers[4], numbers[5] = w.x, w.y, w.z
-    numbers[6], numbers[7] = bound.rest, bound.turn
-
-
-@inline
-def motion_bound_at(motion_bounds, body):
-    d = motion_bounds[body]
-    return MotionBound(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
 
 
 @inline

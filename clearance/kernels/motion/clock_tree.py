@@ -3,7 +3,7 @@
 A leaf is a step, or the interval between two steps; a node is a span of leaves. Of each body a node knows the pose
 in its middle leaf and how far any point of the body gets from there over the whole span. All is made once, so
 that a search over the times of two clocks (`unsynchronised`) looks up what both bodies of a pair may do.
-Not for: parts of an interval (`certify`'s middle of a part).
+Not for: parts of an interval (`interval_middle`).
 """
 
 import math
@@ -16,7 +16,7 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import displacement
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place_box
-from clearance.kernels.motion.certify import (
+from clearance.kernels.motion.interval_middle import (
     begin_arcs,
     go_to_middle,
     loosened_motion_bound_in,

@@ -13,16 +13,11 @@ from clearance.compile.jit import DISABLED, kernel, lie_on_heap
 from clearance.compile.kernel_table import lend
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
+from clearance.kernels.motion.row_search import RowLook, nearest_by_boxes, nearest_of
 from clearance.kernels.motion.schedule import all_due
-from clearance.kernels.motion.sweep import (
-    RowLook,
-    carried,
-    nearest_by_boxes,
-    nearest_of,
-    nothing_known,
-)
 from clearance.kernels.motion.sweep_goal import Goal
 from clearance.kernels.motion.sweep_rows import write_step
+from clearance.kernels.motion.sweep_state import carried, new_sweep_state
 from clearance.kernels.motion.world import box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
 
@@ -64,7 +59,7 @@ if not DISABLED:
 def hold_scene(surface, world, pair_rows, n_columns):
     """A scene of which nothing is known yet; `n_columns` of joint positions."""
     goal = Goal(np.full(len(world.pairs), np.inf), False, False)
-    state = nothing_known(world, n_columns, goal.within.copy())
+    state = new_sweep_state(world, n_columns, goal.within.copy())
     return HeldScene(surface, world, goal, pair_rows, state, np.zeros(2, dtype=np.int64))
 
 
@@ -79,7 +74,7 @@ def nearest_at_positions(held, positions, rows, tally, table):
         tally[i] = 0
     for row in range(len(positions)):
         if held.at[LOOK] == 0 or held.at[LOOK] >= AFRESH:
-            held.state = nothing_known(held.world, n_columns, held.goal.within.copy())
+            held.state = new_sweep_state(held.world, n_columns, held.goal.within.copy())
             held.at[LOOK] = 0
         _look(
             held.surface, held.world, held.goal, held.pair_rows, held.state, held.at, positions[row], row, rows,

@@ -2,8 +2,8 @@
 
 For each interval of clock a: over all its times, all times of clock b within the band, and all pairs of a body of
 either clock. Rectangles of both times (`clock_rectangles`) are looked at with the motion bounds of both clocks'
-spans (`clock_tree`): a pair whose boxes stay apart, or that holds (`certify_pair.hold`) about the middle, is done
-there; with what is left the rectangle is halved in the time of the body that moves more.
+spans (`clock_tree`): a pair whose boxes stay apart, or that holds about the middle, is done there
+(`rectangle_pair`); with what is left the rectangle is halved in the time of the body that moves more.
 Not for: the steps (`unsynchronised_steps`), motion by one clock (`certify`).
 """
 
@@ -14,26 +14,11 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import lend
-from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.motion.body_boxes import bound_between
-from clearance.kernels.motion.certify import (
-    ROUNDED_DOWN,
-    WIDER,
-    CertificateGoal,
-    IntervalMiddle,
-    begin_arcs,
-    go_to_middle,
-    loosened_motion_bound_in,
-    new_middle,
-)
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
+from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER
+from clearance.kernels.motion.certify_pair import allowed_gap
 from clearance.kernels.motion.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
-    RectangleStack,
     clipped,
     halves_of,
     is_whole,
@@ -44,20 +29,10 @@ from clearance.kernels.motion.clock_rectangles import (
     put_rectangle,
     take_rectangle,
 )
-from clearance.kernels.motion.clock_tree import (
-    is_leaf_of_clock,
-    middle_leaf,
-    motion_of_node,
-    n_leaves_of,
-    row_in_middle,
-)
-from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
-from clearance.kernels.motion.placed import GROWTH
-from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
-from clearance.kernels.search.scratch import Scratch, new_scratch
-
-OUTWARD = 1.0 + 1e-12
-"""Covers the rounding of a sum of a few lengths."""
+from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.motion.interval_middle import begin_arcs, go_to_middle, new_middle
+from clearance.kernels.motion.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
+from clearance.kernels.search.scratch import new_scratch
 
 
 class TwoClockBounds(NamedTuple):
@@ -90,56 +65,6 @@ class StepsOfClock(NamedTuple):
     pair: np.ndarray
 
 
-class RectangleState(NamedTuple):
-    """What a search over rectangles knows, and scratch.
-
-    Attributes:
-        gaps: (m,) [m] allowed in each interval. n_looked_at: (m,) rectangles that were.
-        lower_bounds: (nodes,) [m] proven for all that was closed at a node of clock a.
-        witness_faces: (p, 2) the faces that were nearest, or -1.
-        part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
-    """
-
-    waiting: RectangleStack
-    gaps: np.ndarray
-    n_looked_at: np.ndarray
-    lower_bounds: np.ndarray
-    witness_faces: np.ndarray
-    part_a: IntervalMiddle
-    part_b: IntervalMiddle
-    at: np.ndarray
-    scratch: Scratch
-
-
-class RectangleGoal(NamedTuple):
-    """What is asked of a rectangle.
-
-    Attributes:
-        least: [m] the least distance seen in its intervals of clock a, the greatest of these.
-        target: [m] what is to be proven.
-        gap: [m] allowed below `least`.
-        is_fine: True if neither side is of several intervals.
-        counts: True if a distance in the middle is one of an only interval of clock a, at times in the band.
-    """
-
-    least: float
-    target: float
-    gap: float
-    is_fine: bool
-    counts: bool
-
-
-class PairLook(NamedTuple):
-    """What a look at a pair in a rectangle comes to: a bound and the least distance [m], True if that is enough,
-    and how far either body moves from the middle [m]."""
-
-    lower_bound: float
-    least: float
-    is_done: bool
-    moved_a: float
-    moved_b: float
-
-
 @inline
 def _bring(clocks, tree, node, low, high, at, part):
     """Puts `part` in the middle of a part of an interval, if it is one and `part` is not there yet."""
@@ -149,91 +74,6 @@ def _bring(clocks, tree, node, low, high, at, part):
     begin_arcs(clocks.world.links, clocks.path.balls, leaf)
     go_to_middle(clocks.world.links, clocks.path, leaf, low, high, part)
     at[0], at[1], at[2] = leaf, low, high
-
-
-@inline
-def _side_of(surface, clocks, tree, body, node, whole, part):
-    """(where a body is in the middle of a side of a rectangle, its motion bound, [m] how far it moves)."""
-    world, column = clocks.world, clocks.columns[body]
-    if whole:
-        pose = rigid(tree.poses[row_in_middle(tree, node, column)])
-        return pose, motion_of_node(tree, node, column), tree.moved[node, column]
-    balls = clocks.path.balls
-    begin_arcs(
-        world.links, balls, tree.start + tree.first[node]
-    )  # the other side may have had them
-    motion = loosened_motion_bound_in(surface, world, balls, body, part)
-    box = box_of(surface, surface.roots[world.solids[body]])
-    return rigid(part.poses[world.frames[body]]), motion, GROWTH * motion_bound_of_box(box, motion)
-
-
-@inline
-def _bound_by_boxes(clocks, rectangle, pair, target):
-    """[m] a lower bound on the distance of a pair over a rectangle of whole nodes; one of `target` will do."""
-    tree_a, tree_b, pairs = clocks.tree_a, clocks.tree_b, clocks.world.pairs
-    column_a, column_b = clocks.columns[pairs[pair, 0]], clocks.columns[pairs[pair, 1]]
-    row_a = row_in_middle(tree_a, rectangle.node_a, column_a)
-    row_b = row_in_middle(tree_b, rectangle.node_b, column_b)
-    moved = tree_a.moved[rectangle.node_a, column_a] + tree_b.moved[rectangle.node_b, column_b]
-    moved += CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
-    return bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, target + moved) - moved
-
-
-@inline
-def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
-    """(a bound [m], True if it is enough or none can be) of a pair over spans of several intervals.
-
-    Args:
-        moved: [m] how far both bodies move from where they are.
-    """
-    limit = (target + moved) * OUTWARD
-    a, b = bodies.frames.a, bodies.frames.b
-    if corners_apart(surface, faces, a, b) < limit:
-        return 0.0, True
-    planes = apart_by_planes(surface, bodies, faces, limit, scratch, table)
-    if planes > limit:
-        return planes - moved, True
-    return 0.0, corners_apart(surface, faces, a, b) < limit
-
-
-@inline
-def _look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally, table):
-    """What holds of a pair over a rectangle, as a `PairLook`.
-
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
-    """
-    r, world = rectangle, clocks.world
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    whole_a, whole_b = is_whole(r.low_a, r.high_a), is_whole(r.low_b, r.high_b)
-    if whole_a and whole_b:
-        bound = _bound_by_boxes(clocks, r, pair, goal.target)
-        if bound >= goal.target:
-            tally[1] += 1
-            return PairLook(bound, goal.least, True, 0.0, 0.0)
-    pose_a, motion_a, moved_a = _side_of(
-        surface, clocks, clocks.tree_a, body_a, r.node_a, whole_a, state.part_a
-    )
-    pose_b, motion_b, moved_b = _side_of(
-        surface, clocks, clocks.tree_b, body_b, r.node_b, whole_b, state.part_b
-    )
-    bodies = PosedPair(
-        lent, world.solids[body_a], lent, world.solids[body_b], frames_of(pose_a, pose_b)
-    )
-    faces = state.witness_faces[pair]
-    one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
-    if not goal.is_fine and (moved_b > moved_a or not one_a):  # else it may be halved for ever
-        bound, settled = _settled_coarsely(
-            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch, table
-        )
-        if settled:
-            return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
-    tally[2] += 1
-    motion = PairMotion(motion_a, motion_b, True)
-    aim = CertificateGoal(goal.gap, aim.fail, aim.most_parts)
-    held = hold(bodies, faces, motion, goal.least, aim, state.scratch, tally[1:], table)
-    faces[0], faces[1] = held.face_a, held.face_b
-    is_done = held.completed and (goal.counts or held.lower_bound >= goal.target)
-    return PairLook(held.lower_bound, held.least, is_done, moved_a, moved_b)
 
 
 @inline
@@ -281,7 +121,7 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, tally, ta
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
             return 0, True
         pair = listed[place]
-        seen = _look_at_pair(lent, surface, clocks, r, pair, goal, aim, state, tally, table)
+        seen = look_at_pair(lent, surface, clocks, r, pair, goal, aim, state, tally, table)
         if seen.is_done:
             bound = seen.lower_bound
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)

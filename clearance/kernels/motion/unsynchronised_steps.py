@@ -31,7 +31,7 @@ from clearance.kernels.motion.clock_rectangles import (
     take_rectangle,
 )
 from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
-from clearance.kernels.motion.sweep import NOT_LESS
+from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.search.body_pair import (
     NO_FACE,

@@ -1,0 +1,216 @@
+"""The search of one step: the nearest pair of some bodies, or that of each pair that is near enough.
+
+Pairs whose carried bound exceeds the best are not measured. Not for: which steps and bodies are looked at
+(`sweep`), one pair (`search.body_pair`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.compile.kernel_table import borrow
+from clearance.kernels.features.face_pair import Hit, nothing_yet
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.motion.answer_cache import (
+    answer_of,
+    note_answer,
+    still_holds,
+    was_contact,
+)
+from clearance.kernels.motion.pair_order import sort_first, sort_one
+from clearance.kernels.motion.schedule import forget_between, note_between, note_look
+from clearance.kernels.motion.sweep_rows import write_pair
+from clearance.kernels.motion.sweep_state import (
+    NOT_LESS,
+    bounded_again,
+    carried,
+    moved_by,
+    spare,
+)
+from clearance.kernels.motion.world import pair_frames
+from clearance.kernels.search.body_pair import TO_THE_END, PairQuestion, measure_pair
+from clearance.kernels.search.front import KEPT_DOWN, PairFront, forget
+
+LOOK_AHEAD = 2.0
+"""Mean displacements between two looks: within so many of them beyond the best a pair is still measured, so that
+its bound lasts."""
+
+LITTLE = 0.03
+"""Of the best: where bodies move more in a step, nothing is measured beyond it."""
+
+
+class RowLook(NamedTuple):
+    """What one row asks for.
+
+    Attributes:
+        bodies: those that are looked at. row: its place in the results. step: its number.
+        first: the pair that is asked before all others, or -1.
+        lowest: [m] a bound on the distance of all pairs of all other bodies.
+        effort: of `PairQuestion`.
+    """
+
+    bodies: np.ndarray
+    row: int
+    step: int
+    first: int
+    lowest: float
+    effort: int
+
+
+class RowNearest(NamedTuple):
+    """What a row comes to.
+
+    Attributes:
+        hit, pair: the nearest points and their pair, or -1. gap: [m] what is farther is not asked.
+        lowest: [m] a bound on the distance of all pairs.
+    """
+
+    hit: Hit
+    pair: int
+    gap: float
+    lowest: float
+
+
+@inline(force=True)
+def nearest_by_boxes(surface, world, bodies, state, winner):
+    """The pair to ask first where the last winner has moved farther than it was apart."""
+    order = state.order
+    nearest = np.inf
+    for body in bodies:
+        place, end = order.starts[body], order.ends[body]
+        while place < end:
+            pair = order.pairs[place]
+            if carried(world, pair, state) >= nearest:
+                break
+            lower_bound = bounded_again(surface, world, pair, state, nearest)
+            if lower_bound < nearest:
+                nearest = lower_bound
+                winner = pair
+            place += 1
+        sort_first(state.lower_bounds, order, body, place)
+        for place in range(end, order.starts[body + 1]):
+            pair = order.pairs[place]
+            if carried(world, pair, state) < nearest:
+                lower_bound = bounded_again(surface, world, pair, state, nearest)
+                if lower_bound < nearest:
+                    nearest = lower_bound
+                    winner = pair
+    return winner
+
+
+@inline(one_caller=True)
+def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally, table):
+    """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on.
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
+    placed, answers, witness_faces = state.placed, state.answers, state.witness_faces
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_by(world, pair, placed)
+    if still_holds(answers, pair, moves, gap):
+        return answer_of(answers, pair)
+    ahead = moved / max(1, placed.looks[body_a])
+    limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
+    if lower_bound <= 0.0:
+        forget(state.fronts, pair)  # where bodies may meet, nearest first from the roots is best
+    apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+    touches = was_contact(answers, pair)
+    measured = measure_pair(
+        table,
+        PosedPair(
+            lent,
+            world.solids[body_a],
+            lent,
+            world.solids[body_b],
+            pair_frames(world, pair, placed.poses),
+        ),
+        PairQuestion(
+            limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, touches
+        ),
+        PairFront(state.fronts, pair, moved),
+        state.scratch,
+    )
+    note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
+    state.lower_bounds[pair] = (measured.lower_bound + moved) * KEPT_DOWN
+    witness_faces[pair, 0], witness_faces[pair, 1] = measured.face_a, measured.face_b
+    tally[0] -= 1
+    tally[1] += 1
+    tally[2] += measured.tally.nodes
+    tally[3] += measured.tally.faces
+    return measured.hit, measured.lower_bound
+
+
+@inline(one_caller=True)
+def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table):
+    """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer.
+
+    Many arguments: it is inlined into its one caller, whose locals they are.
+    """
+    gap = state.within[pair] if goal.each else best.gap
+    lower_bound = carried(world, pair, state)
+    if lower_bound <= 0.0 or gap < np.inf:
+        lower_bound = bounded_again(surface, world, pair, state, gap)
+    if lower_bound <= gap:
+        hit, lower_bound = _measured_pair(
+            world, pair, lower_bound, gap, look.effort, lent, state, tally, table
+        )
+        if hit.face_a != 2**62:
+            seen = np.sqrt(hit.gap_sq)
+            if hit.gap_sq < best.hit.gap_sq or (hit.gap_sq == best.hit.gap_sq and pair < best.pair):
+                best = RowNearest(hit, pair, best.gap if goal.each else min(gap, seen), best.lowest)
+            if goal.each:
+                write_pair(look.row, look.step, pair, hit, pair_rows)
+                if goal.lasting:
+                    state.within[pair] = min(gap, seen * NOT_LESS)
+    return best, lower_bound
+
+
+@inline(one_caller=True)
+def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
+    """The nearest pair of some bodies at a row, as a `RowNearest`; `lent` is the surface of all bodies."""
+    surface = borrow(lent)
+    order, first = state.order, look.first
+    best = RowNearest(nothing_yet(np.inf), -1, state.within[0], look.lowest)
+    lowest = look.lowest
+    order.pairs[len(world.pairs)] = first
+    tally[0] += len(world.pairs)
+    forget_between(world.groups, look.bodies, state.due)
+    for turn in range(-1 if first >= 0 else 0, len(look.bodies)):
+        body = len(world.frames) if turn < 0 else look.bodies[turn]  # the list of one, asked first
+        nearest = between = np.inf
+        place, end = order.starts[body], order.starts[body + 1]
+        in_order, stop = order.ends[body], order.ends[body]
+        while place < end:
+            pair = order.pairs[place]
+            place += 1
+            lower_bound = carried(world, pair, state)
+            is_beyond = not goal.each and lower_bound > best.gap
+            if turn >= 0 and pair == first:
+                lower_bound = spare(world, first, state, goal)
+            elif best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
+                pass  # no nearer, and not the least pair
+            elif is_beyond:
+                lowest = min(lowest, lower_bound)
+                if place <= in_order:  # and so are those after it
+                    stop, place = place, in_order
+            else:
+                best, lower_bound = _with_pair(
+                    surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table
+                )
+                lowest = min(lowest, lower_bound)
+                lower_bound = spare(world, pair, state, goal)
+            if place <= in_order:
+                nearest = min(nearest, lower_bound)
+            else:
+                between = min(between, lower_bound)
+        if turn >= 0:
+            note_look(body, look.row, nearest, state.due)
+            note_between(world.groups[body], between, state.due)
+        if goal.each:
+            continue
+        if turn < 0:
+            sort_one(state.lower_bounds, order, world.pairs[first, 0], first)
+        else:
+            sort_first(state.lower_bounds, order, body, stop)
+    return RowNearest(best.hit, best.pair, best.gap, lowest)

@@ -1,0 +1,75 @@
+"""What a reader of the verdict must know: what was not measured, not cross-checked, or has no depth.
+
+Not for: notices of the case itself (`world.plausibility`), nor what becomes of them (`report.verdict`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from clearance.run.question import Question
+from clearance.simulate import inside
+from clearance.simulate.certificate import Certificate
+from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.sections import SectionPlan
+from clearance.world.case import Case
+from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.phase import Phase
+
+
+def notices_of(
+    question: Question,
+    plan: SectionPlan,
+    certificate: Certificate | None,
+    found: Sequence[SectionAnswer],
+) -> tuple[Notice, ...]:
+    """All notices, those of the case and of how it was measured; the gravest first."""
+    measured = inside.notices(plan) if question.method == "exact" else ()
+    proven = () if certificate is None else certificate.notices
+    empty = [_nothing_measured(phase) for phase in plan.empty]
+    untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []
+    untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
+    return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
+
+
+def _nothing_measured(phase: Phase) -> Notice:
+    start, end = phase.span
+    text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
+    return Notice(Severity.WARNING, "pairs", text)
+
+
+def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:
+    """Contact of pairs that no one time has: none of what is said of contact is worked out."""
+    if any((one.found.clearance <= 0.0).any() for one in found if not one.section.tied):
+        text = "contact of bodies whose clocks are not tied has no depth, volume or way out here"
+        yield Notice(Severity.WARNING, "contact", text)
+
+
+def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
+    """Contact with clouds: how deep a ball is says nothing of the thing that was scanned."""
+    names: dict[str, None] = {}
+    for one in found:
+        pairs = one.section.pairs
+        for i in np.unique(one.found.pair[one.found.clearance <= 0.0]).tolist():
+            if i >= 0 and pairs[i].has_cloud(case):
+                clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
+                names |= {body.name_in(case): None for body in clouds}
+    if names:
+        text = f"contact with {listed([*names], 6)} has no depth, volume or way out here: clouds of points"
+        yield Notice(Severity.WARNING, "contact", text)
+
+
+def _not_cross_checked(case: Case, plan: SectionPlan) -> Iterator[Notice]:
+    clouds = {pair for pair in plan.pairs if pair.has_cloud(case)}
+    if clouds:
+        text = (
+            f"{len(clouds)} pairs with clouds of points are not cross-checked: FCL measures faces, and balls "
+            "only by an iteration"
+        )
+        yield Notice(Severity.WARNING, "cross-check", text)
+    untied = {pair for one in plan.sections if not one.tied for pair in one.pairs}
+    if untied:
+        text = f"{len(untied)} pairs whose clocks are not tied are not cross-checked: FCL is asked about one time"
+        yield Notice(Severity.WARNING, "cross-check", text)
