@@ -6,8 +6,6 @@ import functools
 import gc
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import numba
 import pytest
@@ -19,29 +17,19 @@ from tests.marks import marks_of
 MARKS = ("cold", "browser", "peer", "slow", "shared")
 LONG = {"cold", "browser", "slow"}
 
-TURNS = pytest.StashKey[TemporaryDirectory]()
-
 examples.register()
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_configure_node(node: Any) -> None:
-    """Tells a process that tests beside others where they take turns to compile."""
-    stash = node.config.stash
-    if TURNS not in stash:
-        stash[TURNS] = TemporaryDirectory(prefix="clearance-turns-")
-        node.config.add_cleanup(stash[TURNS].cleanup)
-    node.workerinput["turns"] = stash[TURNS].name
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Beside others, compiles a share of the kernels before all of them are asked for."""
     told = getattr(session.config, "workerinput", None)
-    if told is None or numba.config.DISABLE_JIT:
+    temporary = session.config.option.basetemp
+    if told is None or temporary is None or numba.config.DISABLE_JIT:
         return
     from clearance.compile.numba_private import Kernel
 
-    Kernel.compile = kernel_shares.in_turns(Kernel.compile, Path(told["turns"]))
+    turns = kernel_shares.turns_beside(Path(temporary))
+    Kernel.compile = kernel_shares.in_turns(Kernel.compile, turns)
     kernel_shares.compile_share(int(told["workerid"].removeprefix("gw")), told["workercount"])
 
 

@@ -50,6 +50,16 @@ def is_kept(domain: str) -> bool:
     return getattr(import_module(f"clearance.kernels.{module}"), name).kept.holds_any()
 
 
+def turns_beside(temporary: Path) -> Path:
+    """Where the processes of one session take turns, each given its own temporary folder in that of the session.
+
+    pytest takes the session's away, with those of sessions that were killed, when some later ones have begun.
+    """
+    folder = temporary.with_name("turns")
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
 def in_turns(compile_it: Callable, folder: Path) -> Callable:
     """`Kernel.compile` that at each time one process calls for a kernel; the others find it in the cache then.
 

@@ -71,3 +71,9 @@ def test_kernels_that_a_test_makes_have_no_turns(tmp_path):
     made = kernel_of("tests")
     assert kernel_shares.in_turns(lambda *asked: asked, tmp_path)(made, 1) == (made, 1)
     assert not list(tmp_path.iterdir())
+
+
+def test_the_processes_of_a_session_take_turns_in_one_folder_that_goes_with_the_session(tmp_path):
+    """Nothing lies outside the session's own folder, so nothing stays where it is killed."""
+    first, second = (kernel_shares.turns_beside(tmp_path / name) for name in ("gw0", "gw1"))
+    assert first == second and first.is_dir() and first.parent == tmp_path
