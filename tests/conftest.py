@@ -12,6 +12,7 @@ import pytest
 
 from tests import examples, kernel_shares
 from tests.guards import guarded, refused
+from tests.kernel_shares import spread
 from tests.marks import marks_of
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
@@ -73,9 +74,16 @@ def _marks_of(*functions: Callable) -> list[str]:
 
 
 def _put_long_files_first(items: list[pytest.Item]) -> None:
-    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end."""
+    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end.
+
+    Those of one room lie far from each other. Two workers in one room need the same kernels, and with an empty cache
+    the one would stand still while the other compiles.
+    """
     long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
-    items.sort(key=lambda item: item.path not in long)
+    files = list(dict.fromkeys(item.path for item in items))
+    order = [*spread([f for f in files if f in long]), *spread([f for f in files if f not in long])]
+    places = {path: i for i, path in enumerate(order)}
+    items.sort(key=lambda item: places[item.path])
 
 
 def pytest_collection_finish() -> None:

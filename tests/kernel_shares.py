@@ -34,6 +34,15 @@ def share_of_list(items: Sequence[Item], i: int, n: int) -> Sequence[Item]:
     return items[i * len(items) // n : (i + 1) * len(items) // n]
 
 
+def spread(files: Sequence[Path]) -> list[Path]:
+    """The files in an order in which those of one folder lie evenly over the whole, each folder's first one early."""
+    folders: dict[Path, list[Path]] = {}
+    for file in files:
+        folders.setdefault(file.parent, []).append(file)
+    places = {f: i / len(own) for own in folders.values() for i, f in enumerate(own)}
+    return sorted(files, key=places.__getitem__)
+
+
 def compile_share(i: int, n: int) -> None:
     """Compiles what process `i` of `n` begins with, as far as it is not kept."""
     missing = [domain for domain in share_of_list(list(MAIN_KERNELS), i, n) if not is_kept(domain)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -17,6 +18,12 @@ def test_the_shares_hold_all_domains_once():
     for n in (1, 2, 4, 9):
         shares = [kernel_shares.share_of_list(list(DOMAINS), i, n) for i in range(n)]
         assert [domain for share in shares for domain in share] == list(DOMAINS)
+
+
+def test_files_of_one_folder_lie_apart_and_keep_their_order():
+    names = ("a/1", "a/2", "a/3", "a/4", "b/1", "b/2", "c/1")
+    order = kernel_shares.spread([Path(name) for name in names])
+    assert [file.as_posix() for file in order] == ["a/1", "b/1", "c/1", "a/2", "a/3", "b/2", "a/4"]
 
 
 @pytest.mark.slow
