@@ -76,8 +76,8 @@ def _marks_of(*functions: Callable) -> list[str]:
 def _put_long_files_first(items: list[pytest.Item]) -> None:
     """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end.
 
-    Those of one room lie far from each other. Two workers in one room need the same kernels, and with an empty cache
-    the one would stand still while the other compiles.
+    Those of one room lie far from each other. Two workers in one room need the same kernels, and with an empty
+    cache the one would stand still while the other compiles.
     """
     long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
     files = list(dict.fromkeys(item.path for item in items))

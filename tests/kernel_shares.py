@@ -35,7 +35,7 @@ def share_of_list(items: Sequence[Item], i: int, n: int) -> Sequence[Item]:
 
 
 def spread(files: Sequence[Path]) -> list[Path]:
-    """The files in an order in which those of one folder lie evenly over the whole, each folder's first one early."""
+    """The files, those of each folder spread evenly over the whole; each folder's first one comes early."""
     folders: dict[Path, list[Path]] = {}
     for file in files:
         folders.setdefault(file.parent, []).append(file)

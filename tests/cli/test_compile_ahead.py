@@ -30,7 +30,7 @@ from clearance.compile.kernel_table import apart
 def like():
     return (1.0,)
 """
-"""Imports no more than it needs: where a kernel is kept depends on all sources that it imports, and each process reads them."""
+"""Imports no more than it needs: a process reads all sources that a kernel imports to know where it is kept."""
 IN_THEIR_PLACES = """
 from clearance.cli import compile_ahead  # after its kernels these take their places
 import small_kernels
