@@ -6,42 +6,31 @@ import functools
 import gc
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import numba
 import pytest
 
 from tests import examples, kernel_shares
 from tests.guards import guarded, refused
+from tests.kernel_shares import spread
 from tests.marks import marks_of
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
 LONG = {"cold", "browser", "slow"}
 
-TURNS = pytest.StashKey[TemporaryDirectory]()
-
 examples.register()
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_configure_node(node: Any) -> None:
-    """Tells a process that tests beside others where they take turns to compile."""
-    stash = node.config.stash
-    if TURNS not in stash:
-        stash[TURNS] = TemporaryDirectory(prefix="clearance-turns-")
-        node.config.add_cleanup(stash[TURNS].cleanup)
-    node.workerinput["turns"] = stash[TURNS].name
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Beside others, compiles a share of the kernels before all of them are asked for."""
     told = getattr(session.config, "workerinput", None)
-    if told is None or numba.config.DISABLE_JIT:
+    temporary = session.config.option.basetemp
+    if told is None or temporary is None or numba.config.DISABLE_JIT:
         return
     from clearance.compile.numba_private import Kernel
 
-    Kernel.compile = kernel_shares.in_turns(Kernel.compile, Path(told["turns"]))
+    turns = kernel_shares.turns_beside(Path(temporary))
+    Kernel.compile = kernel_shares.in_turns(Kernel.compile, turns)
     kernel_shares.compile_share(int(told["workerid"].removeprefix("gw")), told["workercount"])
 
 
@@ -85,9 +74,16 @@ def _marks_of(*functions: Callable) -> list[str]:
 
 
 def _put_long_files_first(items: list[pytest.Item]) -> None:
-    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end."""
+    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end.
+
+    Those of one room lie far from each other. Two workers in one room need the same kernels, and with an empty
+    cache the one would stand still while the other compiles.
+    """
     long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
-    items.sort(key=lambda item: item.path not in long)
+    files = list(dict.fromkeys(item.path for item in items))
+    order = [*spread([f for f in files if f in long]), *spread([f for f in files if f not in long])]
+    places = {path: i for i, path in enumerate(order)}
+    items.sort(key=lambda item: places[item.path])
 
 
 def pytest_collection_finish() -> None:

@@ -34,6 +34,15 @@ def share_of_list(items: Sequence[Item], i: int, n: int) -> Sequence[Item]:
     return items[i * len(items) // n : (i + 1) * len(items) // n]
 
 
+def spread(files: Sequence[Path]) -> list[Path]:
+    """The files, those of each folder spread evenly over the whole; each folder's first one comes early."""
+    folders: dict[Path, list[Path]] = {}
+    for file in files:
+        folders.setdefault(file.parent, []).append(file)
+    places = {f: i / len(own) for own in folders.values() for i, f in enumerate(own)}
+    return sorted(files, key=places.__getitem__)
+
+
 def compile_share(i: int, n: int) -> None:
     """Compiles what process `i` of `n` begins with, as far as it is not kept."""
     missing = [domain for domain in share_of_list(list(MAIN_KERNELS), i, n) if not is_kept(domain)]
@@ -48,6 +57,16 @@ def is_kept(domain: str) -> bool:
     """True if the main kernel of a domain lies compiled in the cache."""
     module, _, name = MAIN_KERNELS[domain].rpartition(".")
     return getattr(import_module(f"clearance.kernels.{module}"), name).kept.holds_any()
+
+
+def turns_beside(temporary: Path) -> Path:
+    """Where the processes of one session take turns, each given its own temporary folder in that of the session.
+
+    pytest takes the session's away, with those of sessions that were killed, when some later ones have begun.
+    """
+    folder = temporary.with_name("turns")
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 def in_turns(compile_it: Callable, folder: Path) -> Callable:

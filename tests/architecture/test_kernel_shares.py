@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -17,6 +18,12 @@ def test_the_shares_hold_all_domains_once():
     for n in (1, 2, 4, 9):
         shares = [kernel_shares.share_of_list(list(DOMAINS), i, n) for i in range(n)]
         assert [domain for share in shares for domain in share] == list(DOMAINS)
+
+
+def test_files_of_one_folder_lie_apart_and_keep_their_order():
+    names = ("a/1", "a/2", "a/3", "a/4", "b/1", "b/2", "c/1")
+    order = kernel_shares.spread([Path(name) for name in names])
+    assert [file.as_posix() for file in order] == ["a/1", "b/1", "c/1", "a/2", "a/3", "b/2", "a/4"]
 
 
 @pytest.mark.slow
@@ -71,3 +78,9 @@ def test_kernels_that_a_test_makes_have_no_turns(tmp_path):
     made = kernel_of("tests")
     assert kernel_shares.in_turns(lambda *asked: asked, tmp_path)(made, 1) == (made, 1)
     assert not list(tmp_path.iterdir())
+
+
+def test_the_processes_of_a_session_take_turns_in_one_folder_that_goes_with_the_session(tmp_path):
+    """Nothing lies outside the session's own folder, so nothing stays where it is killed."""
+    first, second = (kernel_shares.turns_beside(tmp_path / name) for name in ("gw0", "gw1"))
+    assert first == second and first.is_dir() and first.parent == tmp_path

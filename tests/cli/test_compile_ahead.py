@@ -25,13 +25,17 @@ ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
 
 SMALL_KERNELS = """
-from clearance.cli import compile_ahead
 from clearance.compile.kernel_table import apart
-
-compile_ahead.ALL = compile_ahead.FIRST
 
 def like():
     return (1.0,)
+"""
+"""Imports no more than it needs: a process reads all sources that a kernel imports to know where it is kept."""
+IN_THEIR_PLACES = """
+from clearance.cli import compile_ahead  # after its kernels these take their places
+import small_kernels
+
+compile_ahead.ALL = compile_ahead.FIRST
 """
 A_SMALL_KERNEL = """
 @apart({place}, like)
@@ -42,14 +46,14 @@ PLACES = (*compile_ahead.FIRST, *kernel_table.TOGETHER, kernel_table.WINDING_NUM
 
 FROM_A_SECOND_PROCESS = """
 import json, subprocess
-import small_kernels
+import in_their_places, small_kernels
 from clearance.cli import compile_ahead
 from clearance.compile import kernel_table
 
 def with_small_kernels(command, really=subprocess.Popen, **settings):
     *python, script = command
     assert script.endswith("; main()")
-    return really([*python, script.replace("; main()", "; import small_kernels; main()")], **settings)
+    return really([*python, script.replace("; main()", "; import in_their_places; main()")], **settings)
 
 subprocess.Popen = with_small_kernels
 told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
@@ -64,7 +68,7 @@ print(json.dumps(told))
 
 FROM_ONE_THAT_ENDS = """
 import json, subprocess, sys
-import small_kernels
+import in_their_places, small_kernels
 from clearance.compile import kernel_table
 process = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
@@ -74,7 +78,7 @@ print(json.dumps(sum(small_kernels.kernel_4.stats.cache_misses.values())))
 
 FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
 import json, subprocess, sys
-import small_kernels
+import in_their_places, small_kernels
 from clearance.compile import kernel_table
 process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
@@ -86,10 +90,10 @@ print(json.dumps([sum(small_kernels.kernel_4.stats.cache_misses.values()), runs]
 
 WHAT_GOES_TOGETHER = '''
 import json, subprocess, sys
-import small_kernels
+import in_their_places, small_kernels
 from clearance.compile import kernel_table
 from clearance.compile.kernel_table import COMMON_POINT, MEETING, OVERLAP
-do = f"""import sys; sys.path[:] = {sys.path!r}; import small_kernels
+do = f"""import sys; sys.path[:] = {sys.path!r}; import in_their_places
 from clearance.compile import kernel_table
 sys.stdin.readline()
 kernel_table.compile_kernel(kernel_table.MEETING)"""
@@ -168,6 +172,7 @@ def told_by(script, folder, ends=0):
     (here / "numba.py").write_text("open('trapped', 'w').close()\n")
     small = [A_SMALL_KERNEL.format(place=place) for place in PLACES]
     (folder / "small_kernels.py").write_text(SMALL_KERNELS + "".join(small))
+    (folder / "in_their_places.py").write_text(IN_THEIR_PLACES)
     (folder / "script.py").write_text(f"import numba  # so that the compiler counts\n{script}")
     settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run(

@@ -53,24 +53,24 @@ def changed(**changes: object) -> str:
 
 
 @pytest.mark.parametrize(
-    ("text", "fault", "told"),
+    ("damaged", "fault", "told"),
     [
-        ("", BadSyntax, "not JSON"),
-        (findings_text(found())[:-40], BadSyntax, "not JSON"),
-        ("[" * 100_000, BadSyntax, "not JSON"),
-        (findings_text(found()).replace("0.06", "NaN"), BadSyntax, "NaN"),
-        (findings_text(found()).replace("0.06", "1e400"), BadSyntax, "1e400 is beyond doubles"),
-        (findings_text(found()).replace("0.06", '"inf"'), BadInput, "warn"),
-        ("[]", BadInput, "format None"),
-        (changed(format=FORMAT + 1), BadInput, f"format {FORMAT + 1}"),
-        (changed(findings=[{"id": 1}]), BadInput, "findings[0]"),
-        (changed(measured={}), BadInput, "measured"),
-        (changed(case=7), BadInput, "case"),
+        (lambda text: "", BadSyntax, "not JSON"),
+        (lambda text: text[:-40], BadSyntax, "not JSON"),
+        (lambda text: "[" * 100_000, BadSyntax, "not JSON"),
+        (lambda text: text.replace("0.06", "NaN"), BadSyntax, "NaN"),
+        (lambda text: text.replace("0.06", "1e400"), BadSyntax, "1e400 is beyond doubles"),
+        (lambda text: text.replace("0.06", '"inf"'), BadInput, "warn"),
+        (lambda text: "[]", BadInput, "format None"),
+        (lambda text: changed(format=FORMAT + 1), BadInput, f"format {FORMAT + 1}"),
+        (lambda text: changed(findings=[{"id": 1}]), BadInput, "findings[0]"),
+        (lambda text: changed(measured={}), BadInput, "measured"),
+        (lambda text: changed(case=7), BadInput, "case"),
     ],
 )
-def test_what_is_no_such_file_is_refused_in_one_line(text, fault, told, tmp_path):
+def test_what_is_no_such_file_is_refused_in_one_line(damaged, fault, told, tmp_path):
     path = tmp_path / "findings.json"
-    path.write_text(text)
+    path.write_text(damaged(findings_text(found())))
     with pytest.raises(fault) as error:
         read_findings(path)
     assert told in str(error.value) and str(path) in str(error.value)

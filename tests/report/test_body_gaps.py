@@ -1,6 +1,7 @@
 """Gaps that people may be caught in: which are told, with which source, and that no verdict follows."""
 
 import dataclasses
+import functools
 
 import pytest
 
@@ -10,16 +11,20 @@ from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from clearance.report.page import page_of
 from clearance.report.summary import summary_of
 from clearance.report.verdict import verdict_of
+from clearance.simulate.record import Record
 from clearance.simulate.replay import replay_of
 from tests.load.making import CASE, write_case
 from tests.report.test_verdict import made
 
-SWING = dataclasses.replace(made(), body_gaps=True)
+
+@functools.cache
+def swing() -> Record:
+    return dataclasses.replace(made(), body_gaps=True)
 
 
 def test_a_gap_may_catch_what_needs_more(tmp_path):
-    near = [one for one in SWING.pair_minima if one.clearance < 0.5]
-    told = body_gaps_of(SWING)
+    near = [one for one in swing().pair_minima if one.clearance < 0.5]
+    told = body_gaps_of(swing())
     assert len(told) == len(near)
     for one, minimum in zip(told, near, strict=True):
         assert one["gap"] == minimum.clearance
@@ -40,11 +45,11 @@ def test_pairs_that_both_stand_are_left_out(tmp_path):
 
 
 def test_it_is_told_with_its_source_and_decides_nothing():
-    assert verdict_of(SWING) == verdict_of(made())
-    assert list(gap_lines(SWING))[-1].endswith(
+    assert verdict_of(swing()) == verdict_of(made())
+    assert list(gap_lines(swing()))[-1].endswith(
         "widths of ISO 13854 as AUVA (app.auva.at) gives them; no verdict depends on it"
     )
-    page = page_of(summary_of(SWING), replay_of(SWING))
+    page = page_of(summary_of(swing()), replay_of(swing()))
     assert (
         "<h2>Gaps that people may be caught in</h2>" in page and "Information, no verdict" in page
     )

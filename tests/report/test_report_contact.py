@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
 
 import numpy as np
@@ -14,22 +15,26 @@ from clearance.report.page import page_of
 from clearance.report.summary import summary_of
 from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
 from clearance.simulate import replay_contact
+from clearance.simulate.record import Record
 from clearance.simulate.replay import load_replay, replay_of
 from tests.report.browser import chromium, executable
 from tests.report.records import record, with_contacts
 
-RUN = with_contacts(record())
-DEEPEST = RUN.deepest
+
+@functools.cache
+def run() -> Record:
+    """The swing, with what its overlaps are."""
+    return with_contacts(record())
 
 
 def test_the_summary_tells_the_deepest_contact_and_each_pair():
-    told = summary_of(RUN)["contact"]
-    assert told["deepest"]["step"] == DEEPEST.step
-    assert told["deepest"]["penetration"] == DEEPEST.found.penetration
-    assert told["deepest"]["direction"] == DEEPEST.found.direction.tolist()
+    told = summary_of(run())["contact"]
+    assert told["deepest"]["step"] == run().deepest.step
+    assert told["deepest"]["penetration"] == run().deepest.found.penetration
+    assert told["deepest"]["direction"] == run().deepest.found.direction.tolist()
     depths = [pair["penetration"] for pair in told["pairs"]]
-    assert depths == sorted(depths, reverse=True) and depths[0] == DEEPEST.found.penetration
-    assert sum(pair["n_steps"] for pair in told["pairs"]) == len(RUN.contacts)
+    assert depths == sorted(depths, reverse=True) and depths[0] == run().deepest.found.penetration
+    assert sum(pair["n_steps"] for pair in told["pairs"]) == len(run().contacts)
     json.dumps(told, allow_nan=False)
 
 
@@ -46,8 +51,8 @@ def test_contact_that_was_not_worked_out_is_said():
 
 
 def test_the_page_says_the_deepest_contact():
-    page = page_of(summary_of(RUN), replay_of(RUN))
-    assert f"{depth_mm(DEEPEST.found.penetration)} mm along" in page
+    page = page_of(summary_of(run()), replay_of(run()))
+    assert f"{depth_mm(run().deepest.found.penetration)} mm along" in page
 
 
 def test_a_bound_is_worded_as_one():
@@ -71,8 +76,8 @@ def test_a_depth_is_never_shown_too_small(depth):
 
 
 def test_the_replay_comes_back_with_its_contacts(tmp_path):
-    replay = replay_of(RUN)
-    assert len(replay.contacts) == len(RUN.contacts) > 3
+    replay = replay_of(run())
+    assert len(replay.contacts) == len(run().contacts) > 3
     replay.save(tmp_path / "replay.npz")
     back = load_replay(tmp_path / "replay.npz")
     assert back.contacts == replay.contacts
@@ -82,19 +87,19 @@ def test_the_replay_comes_back_with_its_contacts(tmp_path):
 
 def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
     monkeypatch.setattr(replay_contact, "MOST_CONTACTS", 5)
-    replay = replay_of(RUN)
+    replay = replay_of(run())
     assert 2 <= len(replay.contacts) <= 5
-    assert max(one.penetration for one in replay.contacts) == DEEPEST.found.penetration
+    assert max(one.penetration for one in replay.contacts) == run().deepest.found.penetration
 
 
 def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
-    write(RUN, tmp_path / "out")
+    write(run(), tmp_path / "out")
     with (tmp_path / "out" / "contacts.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [(int(row["step"]), row["link"]) for row in rows] == [
-        (c.step, c.link) for c in RUN.contacts
+        (c.step, c.link) for c in run().contacts
     ]
-    for row, contact in zip(rows, RUN.contacts, strict=True):
+    for row, contact in zip(rows, run().contacts, strict=True):
         found = contact.found
         assert float(row["penetration"]) == found.penetration
         assert float(row["volume_at_least"]) == found.volume_at_least
@@ -108,20 +113,20 @@ def red(pixels):
 
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
-    write(RUN, tmp_path / "out")
+    write(run(), tmp_path / "out")
     with chromium() as page:
         page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
         page.run("document.getElementById('readout').style.display = 'none'")
         counts = {}
-        for step in (0, DEEPEST.step):
+        for step in (0, run().deepest.step):
             page.run(f"window.clearance.showFrame({step})")
             page.run("document.getElementById('camera-gap').click()")
             page.settle()
             counts[step] = int(red(page.pixels("#pane")).sum())
         state = page.run("window.clearance.state()")
         assert page.errors == []
-    assert counts[0] == 0 and counts[DEEPEST.step] > 400
-    here = [row.found for row in RUN.contacts if row.step == DEEPEST.step]
+    assert counts[0] == 0 and counts[run().deepest.step] > 400
+    here = [row.found for row in run().contacts if row.step == run().deepest.step]
     assert len(state["contacts"]) == len(here)
     for drawn, found in zip(state["contacts"], here, strict=True):
         assert drawn["foot"] == pytest.approx(found.centroid, abs=1e-6)
