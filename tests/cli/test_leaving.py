@@ -21,8 +21,9 @@ TIMES = 10
 LEAVING = """
 import json, os, sys
 import clearance.cli.check, clearance.cli.commands, clearance.cli.compile_ahead, clearance.cli.places
-import clearance.load.case_file, clearance.load.urdf, clearance.report.folder, clearance.run
-import lxml.etree, pyarrow.csv, ruamel.yaml
+import clearance.compile.machine_code, clearance.load.case_file, clearance.load.message_times, clearance.load.urdf
+import clearance.query.pair_query, clearance.report.folder, clearance.report.output, clearance.run
+import encodings.utf_8_sig, lxml.etree, markupsafe, pyarrow.csv, ruamel.yaml
 from clearance import cli
 from clearance.load import case_file
 ends = {}
