@@ -12,16 +12,15 @@ from typing import Protocol
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from clearance.batch.cases import SomeOrAll
+from clearance.batch.cases import SomeCases, SomeOrAll
 from clearance.batch.digest_table import NONE
-from clearance.batch.item import Item
 from clearance.batch.outcome import Outcome
 from clearance.batch.rows import VERDICT, error_row
 from clearance.batch.store import Store
 from clearance.late_dataclass import dataclass
 
-PART = 2048
-"""Rows that are held at a time."""
+PART = 512
+"""Rows that are read at a time."""
 
 FAULT = 70
 """The exit code where this program is at fault, as of `clearance check`."""
@@ -63,29 +62,28 @@ class StoredRows:
         for start in range(0, len(self.items), PART):
             yield self._part(self.items[start : start + PART], columns)
 
-    def _part(self, items: Sequence[Item], columns: Sequence[str]) -> pa.Table:
+    def _part(self, items: SomeCases, columns: Sequence[str]) -> pa.Table:
         """Some columns of a few cases."""
         asked = [name for name in columns if name != "case"]
-        rows = [self.outcome.row(item.number) for item in items]
+        rows = [self.outcome.row(number) for number in items.numbers]
         known = [row for row in rows if row != NONE]
         table = self.store.rows(known, asked)
         if len(known) < len(rows):
-            errors = [
-                self._error(item) for item, row in zip(items, rows, strict=True) if row == NONE
-            ]
+            pairs = zip(items.numbers, rows, strict=True)
+            errors = [self._error(number) for number, row in pairs if row == NONE]
             schema = pa.schema([TABLE.field(name) for name in asked])
             both = pa.concat_tables([table, pa.Table.from_pylist(errors, schema=schema)])
             of_known, of_error = iter(range(len(known))), iter(range(len(known), len(rows)))
             order = [next(of_error if row == NONE else of_known) for row in rows]
             table = both.take(pa.array(order, type=pa.int64()))
         if "case" in columns:
-            names = pa.array([item.name for item in items], type=pa.string())
+            names = pa.array(items.names(), type=pa.string())
             found = dict(zip(asked, table.columns, strict=True)) | {"case": names}
             return pa.table([found[name] for name in columns], names=[*columns])
         return table.select(columns)
 
-    def _error(self, item: Item) -> dict[str, object]:
-        fault = self.outcome.faults[item.number]
+    def _error(self, number: int) -> dict[str, object]:
+        fault = self.outcome.faults[number]
         of_input = BAD_INPUT if self.strict else VIOLATED
         return error_row(fault.text, FAULT if fault.trace else of_input)
 

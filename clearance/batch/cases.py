@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple, overload
 
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.options import Options
+from clearance.batch.options import CaseOptions
 
 
 class Texts:
@@ -45,7 +45,7 @@ class _Shared(NamedTuple):
     cell: str | None
     reading: str
     robot: str | None
-    options: Options
+    options: CaseOptions
     folder: str
 
 
@@ -128,6 +128,10 @@ class Cases(Sequence[Item]):
         own = [shared.cell == file for shared in self._shared]
         return self.among(i for i, kind in enumerate(self._kinds) if own[kind])
 
+    def names(self) -> Iterator[str]:
+        """The name of each."""
+        return map(self._names.__getitem__, range(len(self)))
+
     def name(self, number: int) -> str:
         """The name of a case."""
         return self._names[number]
@@ -168,6 +172,10 @@ class SomeCases(Sequence[Item]):
     def numbers(self) -> Sequence[int]:
         """Theirs."""
         return self._numbers
+
+    def names(self) -> Iterator[str]:
+        """The name of each."""
+        return map(self._cases.name, self._numbers)
 
     def among(self, places: Iterable[int]) -> SomeCases:
         """Those at some places of these."""

@@ -6,7 +6,7 @@ another by its marks alone, nor the reverse. Not for: whether a hash can be beli
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import pyarrow as pa
 
@@ -55,16 +55,17 @@ class KnownHashes:
         return pa.table(columns)
 
     @staticmethod
-    def of(table: pa.Table) -> KnownHashes:
+    def of(batches: Iterable[pa.RecordBatch]) -> KnownHashes:
         """Those of a table.
 
         Raises:
             KeyError, ValueError: it is of another form.
         """
         made = KnownHashes()
-        for batch in table.select([*_COLUMNS]).to_batches():
-            columns = zip(batch.columns, _COLUMNS.values(), strict=True)
-            paths, marks, hashes = (_bytes(column, width) for column, width in columns)
+        for batch in batches:
+            paths, marks, hashes = (
+                _bytes(batch.column(name), width) for name, width in _COLUMNS.items()
+            )
             for start in range(0, len(paths), _COLUMNS["path"]):
                 made._paths.enter(paths[start : start + _COLUMNS["path"]])
             made._marks += marks

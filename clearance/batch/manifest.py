@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import UTC, date, datetime
-from pathlib import Path, PurePath
+from pathlib import Path
 
 from clearance.batch.cases import Cases
 from clearance.batch.digest_table import DigestTable, digest_of_text
@@ -70,12 +70,12 @@ def _given(arguments: Sequence[str], changes: Changes) -> Iterator[Item]:
     plain: list[str] = []
     for argument in arguments:
         for path in _matching(argument, Path()):
-            if _is_manifest(path):
-                yield from _of_manifest(path, changes)
+            if _is_manifest(Path(path)):
+                yield from _of_manifest(Path(path), changes)
             else:
-                plain.append(os.fspath(path))
+                plain.append(path)
     options = _options(Manifest.model_construct(), changes)
-    yield from _of_cases(map(Path, plain), _common_folder(plain), "", options)
+    yield from _of_cases(plain, _common_folder(plain), "", options)
 
 
 def _once(items: Iterable[Item]) -> Iterator[Item]:
@@ -146,7 +146,7 @@ def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
                 yield Item(0, before + _name(one, folder), cell, asked, options)
 
 
-def _of_cases(paths: Iterable[Path], folder: Path, before: str, options: CaseOptions) -> Iterator[Item]:
+def _of_cases(paths: Iterable[str], folder: Path, before: str, options: CaseOptions) -> Iterator[Item]:
     for path in paths:
         yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
 
@@ -172,36 +172,38 @@ def _reading(given: Reading | None) -> str:
     )
 
 
-def _all_matching(patterns: Sequence[str], folder: Path) -> Iterator[Path]:
+def _all_matching(patterns: Sequence[str], folder: Path) -> Iterator[str]:
     for pattern in patterns:
         yield from _matching(pattern, folder)
 
 
-def _matching(pattern: str, folder: Path) -> Iterator[Path]:
+def _matching(pattern: str, folder: Path) -> Iterator[str]:
     """The files of a pattern, by name; of a plain path that path, whether it is there or not.
 
     Raises:
         MissingFile: nothing matches.
     """
-    place = folder / pattern
-    if place.exists() or not glob.has_magic(pattern):
-        yield place
+    place = os.path.join(folder, pattern)
+    if os.path.exists(place) or not glob.has_magic(pattern):
+        yield os.path.normpath(place)
         return
     found = sorted(glob.glob(pattern, root_dir=str(folder), recursive=True))
     if not found:
         raise MissingFile(f"no file matches {pattern!r}", valid="a pattern of files that are there")
-    for one in found:
-        yield folder / one
+    for (
+        one
+    ) in found:  # a `Path` for each would stay behind in part: Python keeps a table of their names
+        yield os.path.normpath(os.path.join(folder, one))
 
 
-def _name(path: Path, folder: Path) -> str:
+def _name(path: str, folder: Path) -> str:
     """A file's path from a folder, without its suffix."""
-    file, inside = os.fspath(path), os.path.join(folder, "")
-    if file.startswith(inside) and os.pardir not in path.parts:
-        relative = file[len(inside) :]  # of many files the other way takes a tenth of a second run
-    else:
-        relative = os.path.relpath(path, folder or os.curdir)
-    return checked_name(PurePath(relative).with_suffix("").as_posix())
+    inside = os.path.join(folder, "")
+    relative = path[len(inside) :] if path.startswith(inside) else os.path.relpath(path, folder)
+    begin, _, name = relative.replace(os.sep, "/").rpartition("/")
+    dot = name.rfind(".")
+    stem = name[:dot] if 0 < dot < len(name) - 1 else name
+    return checked_name(f"{begin}/{stem}" if begin else stem)
 
 
 def _common_folder(paths: Sequence[str]) -> Path:

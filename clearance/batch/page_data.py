@@ -10,9 +10,10 @@ import base64
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
 
 from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
@@ -61,7 +62,7 @@ def page_data(answer: BatchAnswer, place: Path) -> Members:
     yield "reasons", rows.listed(lambda found: [lines or [] for lines in found], "reasons")
     yield "beside", rows.listed(lambda *both: [*map(_beside, *both)], "warnings", "waived")
     yield "levels", rows.listed(_levels, "fail", "warn")
-    yield "curves", _base64(_curves(*some) for some in rows.some("curve", "warn"))
+    yield "curves", _base64(map(_curves, rows.parts("curve", "warn")))
     yield "n_curve", [_json(CURVE)]
     yield "pages", rows.listed(_Pages(place).folders, "case", "key")
 
@@ -72,16 +73,15 @@ class _Columns:
     def __init__(self, answer: BatchAnswer) -> None:
         self._rows = answer.rows
 
-    def some(self, *columns: str) -> Iterator[list[list[Any]]]:
-        """Some columns as lists, of some thousand rows after others."""
-        for part in self._rows.parts(columns):
-            yield [part[name].to_pylist() for name in columns]
+    def parts(self, *columns: str) -> Iterator[pa.Table]:
+        """Some columns of all rows, some rows after others."""
+        return self._rows.parts(columns)
 
     def listed(self, made: Callable[..., list], *columns: str) -> Iterator[str]:
         """What is made of some columns, as one JSON array."""
         before = "["
-        for some in self.some(*columns):
-            told = _json(made(*some))[1:-1]
+        for part in self.parts(*columns):
+            told = _json(made(*(part[name].to_pylist() for name in columns)))[1:-1]
             if told:
                 yield before + told
                 before = ", "
@@ -169,11 +169,15 @@ def _levels(fails: Sequence[float | None], warns: Sequence[float | None]) -> lis
     ]
 
 
-def _curves(curves: Sequence[list[float] | None], warns: Sequence[float | None]) -> bytes:
-    """Curves, `CURVE` bytes each: 1 + the height, 0 where there is none."""
-    heights = np.zeros((len(curves), CURVE), dtype=np.uint8)
-    for row, curve, warn in zip(heights, curves, warns, strict=True):
-        if curve:
-            values = np.array(curve)[np.arange(CURVE) * len(curve) // CURVE]
-            row[:] = 1 + np.clip(values / _top(warn), 0.0, 1.0) * (ABOVE - 1)
+def _curves(part: pa.Table) -> bytes:
+    """The curves of some rows, `CURVE` bytes each: 1 + the height, 0 where there is none."""
+    column = part["curve"].combine_chunks()
+    n_each = pc.fill_null(pc.list_value_length(column), 0).to_numpy()
+    values = pc.list_flatten(column).to_numpy().astype(np.float64)
+    heights = np.zeros((len(n_each), CURVE), dtype=np.uint8)
+    drawn = n_each > 0
+    begins = (np.cumsum(n_each) - n_each)[drawn, np.newaxis]
+    found = values[begins + np.arange(CURVE) * n_each[drawn, np.newaxis] // CURVE]
+    tops = np.array([*map(_top, part["warn"].to_pylist())])[drawn, np.newaxis]
+    heights[drawn] = 1 + np.clip(found / tops, 0.0, 1.0) * (ABOVE - 1)
     return heights.tobytes()

@@ -83,7 +83,7 @@ class _Look:
         files = self._of_folder.get(folder)
         if files is None:
             files = self._of_folder[folder] = InputFiles(Path(folder))
-        return self._hashed((files.shown(path), str(path)) for path in _paths(given))
+        return self._hashed((files.shown(path), path) for path in _paths(given))
 
     def _as_before(self, inputs: str, today: str) -> Files | None:
         """The files that a case was made from, if each is as it was, and so are the day, the variables and the
@@ -123,9 +123,11 @@ def _is_so(shown: str, value: str, today: str) -> bool:
     return value == (today if shown == DAY else value_digest(variable_of(shown)))
 
 
-def _paths(given: GivenTrajectory) -> list[Path]:
+def _paths(given: GivenTrajectory) -> list[str]:
     """The files of a trajectory: several where it is a bag."""
     try:
-        return files_of(Path(given.path))
+        if os.path.isdir(given.path):
+            return [*map(str, files_of(Path(given.path)))]
     except OSError:
-        return [Path(given.path)]
+        pass
+    return [given.path]

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import field
+from itertools import accumulate
 from pathlib import Path
 
 import pyarrow as pa
@@ -24,12 +25,15 @@ from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
 from clearance.late_dataclass import dataclass
-from clearance.report.folder import write_file
+from clearance.report.folder import write_file, written_file
 
 MARK = "store.json"
 FORMAT = 1
 _SEGMENTS, _HASHES, _LOCK = "segments", "files.parquet", ".lock"
 _INDEX = ("key", "file", "inputs")
+
+HASHES = 4096
+"""Known hashes of files that are read or written at a time."""
 
 MOST_TEXTS = 1000
 """Lists of input files that are kept as text."""
@@ -48,6 +52,7 @@ class Store:
     n_damaged: int = 0
     generation: int = 0
     _index: RowIndex = field(default_factory=RowIndex)
+    _last: tuple[tuple[str, ...], dict[int, pa.Table]] = ((), {})
     _texts: dict[tuple[int, int], str] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -105,18 +110,25 @@ class Store:
     def rows(self, numbers: Sequence[int], columns: Sequence[str]) -> pa.Table:
         """Some columns of rows, in their order."""
         places = [self._index.place(number) for number in numbers]
-        begins: dict[int, int] = {}
-        parts: list[pa.Table] = []
-        n_rows = 0
-        for segment, _ in places:
-            if segment not in begins:
-                begins[segment] = n_rows
-                parts.append(rows_in(self._kept(segment), columns))
-                n_rows += parts[-1].num_rows
+        parts = self._tables(dict.fromkeys(segment for segment, _ in places), tuple(columns))
+        begins = dict(zip(parts, accumulate(map(len, parts.values()), initial=0), strict=False))
         if not parts:
             return pa.schema([STORED.field(name) for name in columns]).empty_table()
         order = [begins[segment] + row for segment, row in places]
-        return pa.concat_tables(parts).take(pa.array(order, type=pa.int64())).select(columns)
+        return (
+            pa.concat_tables(parts.values()).take(pa.array(order, type=pa.int64())).select(columns)
+        )
+
+    def _tables(self, segments: Iterable[int], columns: tuple[str, ...]) -> dict[int, pa.Table]:
+        """Some columns of segments; the last is kept, since what is asked for next begins where this ends."""
+        asked, before = self._last
+        known = before if asked == columns else {}
+        found = {
+            one: known[one] if one in known else rows_in(self._kept(one), columns)
+            for one in segments
+        }
+        self._last = columns, dict([*found.items()][-1:])
+        return found
 
     def _kept(self, segment: int) -> bytes:
         return (self.place / _SEGMENTS / self._index.segments[segment]).read_bytes()
@@ -124,16 +136,16 @@ class Store:
     def hashes(self) -> KnownHashes:
         """What is known of input files; nothing where that is damaged."""
         try:
-            return KnownHashes.of(pq.read_table(self.place / _HASHES, partitioning=None))
+            with pq.ParquetFile(self.place / _HASHES) as file:
+                return KnownHashes.of(file.iter_batches(HASHES, use_threads=False))
         except (OSError, KeyError, ValueError, pa.ArrowException):
             return KnownHashes()
 
     def keep_hashes(self, known: KnownHashes) -> None:
         """Keeps what is known of input files; where there is no room, a later run hashes them again."""
         with suppress(OSError, Unwritable), self.locked():
-            sink = pa.BufferOutputStream()
-            pq.write_table(known.table(), sink, compression="zstd")
-            write_file(self.place / _HASHES, sink.getvalue().to_pybytes())
+            with written_file(self.place / _HASHES) as file:
+                pq.write_table(known.table(), file, row_group_size=HASHES, use_dictionary=False)
 
     @contextmanager
     def locked(self) -> Iterator[None]:

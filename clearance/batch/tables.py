@@ -12,11 +12,14 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from clearance.batch.answer import BatchAnswer
-from clearance.batch.case_rows import PART, TABLE, WrittenRows
+from clearance.batch.case_rows import TABLE, WrittenRows
 from clearance.batch.rows import FINDING
 from clearance.report.folder import written_file
 
 CASES, FINDINGS = "cases.parquet", "findings.parquet"
+
+GROUP = 1024
+"""Rows that a table is written by."""
 
 _STALE = b"stale waivers"
 """Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
@@ -65,7 +68,7 @@ def _table(path: Path, schema: pa.Schema) -> Iterator[_Table]:
 
 
 class _Table:
-    """Rows that go into a file by groups of `PART` or somewhat more."""
+    """Rows that go into a file by groups of `GROUP` or somewhat more."""
 
     def __init__(self, writer: pq.ParquetWriter, schema: pa.Schema) -> None:
         self._writer, self._schema = writer, schema
@@ -76,7 +79,7 @@ class _Table:
         """Adds rows after those before."""
         self._waiting.append(rows)
         self._n_waiting += rows.num_rows
-        if self._n_waiting >= PART:
+        if self._n_waiting >= GROUP:
             self._write()
 
     def end(self) -> None:
