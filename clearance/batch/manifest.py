@@ -146,7 +146,9 @@ def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
                 yield Item(0, before + _name(one, folder), cell, asked, options)
 
 
-def _of_cases(paths: Iterable[str], folder: Path, before: str, options: CaseOptions) -> Iterator[Item]:
+def _of_cases(
+    paths: Iterable[str], folder: Path, before: str, options: CaseOptions
+) -> Iterator[Item]:
     for path in paths:
         yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
 
