@@ -1,34 +1,36 @@
-"""What a batch comes to: one table of all cases in their order, and the exit code.
+"""What a batch comes to: the rows of all cases in their order, what is counted of them, and the exit code.
 
 It is made of the rows alone, so that it has the same bytes however often the batch was interrupted, and by
-whomever its cases were measured. Not for: the files that are written of it (`output`).
+whomever its cases were measured. No more than some thousand rows are held at a time. Not for: the files that are
+written of it (`output`).
 """
 
 from __future__ import annotations
 
+import heapq
 from collections import Counter
-from itertools import chain
+from dataclasses import field
+from functools import cached_property
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.compute as pc
 
-from clearance.batch.rows import ERROR, VERDICT, error_row
-from clearance.batch.run import Outcome
-from clearance.batch.shared_waivers import stale_waivers, stale_waivers_of_cells
+from clearance.batch.case_rows import VIOLATED, CaseRows, StoredRows
+from clearance.batch.cases import Cases
+from clearance.batch.outcome import Outcome
+from clearance.batch.rows import ERROR
+from clearance.batch.shared_waivers import any_of_cells, stale_waivers, stale_waivers_of_cells
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
 from clearance.late_dataclass import dataclass
-
-FAULT = 70
-"""The exit code where this program is at fault, as of `clearance check`."""
-
-VIOLATED, BAD_INPUT = 1, 2
 
 STALE = "stale waiver"
 
 STATUSES = ("clear", "near", STALE, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
+
+MOST_WORST = 10
+"""Failing cases that a summary has in full."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,27 +38,36 @@ class BatchAnswer:
     """All cases of a batch.
 
     Attributes:
-        cases: one row a case, in order: `case`, its name, `key`, then the columns of `rows.VERDICT`. Where a case
-            has no answer, its status is "error", its text says why, and most columns are null.
-        findings: one row a finding, in order of the cases, the worst of a case first: `case`, then the columns of
-            `rows.FINDING`.
+        rows: of the cases, in order. Where a case has no answer, its status is "error", its text says why, and
+            most columns are null.
         stale: what is wrong with waivers that the cases share, one line each.
     """
 
-    cases: pa.Table
-    findings: pa.Table
+    rows: CaseRows
     stale: tuple[str, ...] = ()
+
+    @cached_property
+    def _summary(self) -> _Summary:
+        made = _Summary()
+        for part in self.rows.parts(_Summary.COLUMNS):
+            made.add(part)
+        return made
+
+    @property
+    def n_cases(self) -> int:
+        """How many there are."""
+        return len(self.rows)
 
     @property
     def counts(self) -> dict[str, int]:
         """How many cases have each status that occurs, the better before the worse."""
-        found = Counter(self.cases["status"].to_pylist())
+        found = self._summary.statuses
         return {status: found[status] for status in STATUSES if found[status]}
 
     @property
     def exit_code(self) -> int:
         """The greatest of all cases, and 1 for a waiver that should go."""
-        return max([*self.cases["exit_code"].to_pylist(), VIOLATED if self.stale else 0])
+        return max(self._summary.exit_code, VIOLATED if self.stale else 0)
 
     @property
     def status(self) -> str:
@@ -67,28 +78,94 @@ class BatchAnswer:
     @property
     def bases(self) -> dict[str, int]:
         """What verdicts rest on: how many on the motion, how many on the samples only."""
-        found = Counter(basis for basis in self.cases["basis"].to_pylist() if basis)
+        found = self._summary.bases
         return {basis: found[basis] for basis in ("motion", "samples") if found[basis]}
 
-    def n_with(self, column: str) -> int:
-        """How many cases have lines in a column: `waived` or `warnings`."""
-        return sum(bool(lines) for lines in self.cases[column].to_pylist())
+    @property
+    def n_waived(self) -> int:
+        """How many cases have something that a waiver lets pass."""
+        return self._summary.n_waived
+
+    @property
+    def n_warned(self) -> int:
+        """How many cases have warnings."""
+        return self._summary.n_warned
+
+    @property
+    def n_failing(self) -> int:
+        """How many cases do not pass."""
+        return self._summary.n_failing
 
     @property
     def least(self) -> dict[str, Any] | None:
-        """The row of the first case of least clearance; None where none is measured."""
-        known = [one for one in self.cases["clearance"].to_pylist() if one is not None]
-        if not known:
-            return None
-        i = self.cases["clearance"].to_pylist().index(min(known))
-        return self.cases.slice(i, 1).to_pylist()[0]
+        """The first case of least clearance, as columns of its row; None where none is measured."""
+        return self._summary.least
 
-    def worst_first(self) -> list[int]:
-        """The rows that do not pass, the worst first: by exit code, then by clearance."""
-        codes = self.cases["exit_code"].to_pylist()
-        clearances = self.cases["clearance"].to_pylist()
-        failing = [i for i, code in enumerate(codes) if code]
-        return sorted(failing, key=lambda i: (-codes[i], clearances[i] or 0.0, i))
+    @property
+    def worst(self) -> list[dict[str, Any]]:
+        """The first of the cases that do not pass, the worst first: by exit code, then by clearance."""
+        return [row for _, row in self._summary.worst]
+
+
+@dataclass(eq=False)
+class _Summary:
+    """What is counted of rows as they pass."""
+
+    statuses: Counter[str] = field(default_factory=Counter)
+    bases: Counter[str] = field(default_factory=Counter)
+    exit_code: int = 0
+    n_waived: int = 0
+    n_warned: int = 0
+    n_failing: int = 0
+    least: dict[str, Any] | None = None
+    worst: list[tuple[tuple[int, float, int], dict[str, Any]]] = field(default_factory=list)
+    _n: int = 0
+
+    COLUMNS = (
+        "case",
+        "status",
+        "exit_code",
+        "text",
+        "basis",
+        "clearance",
+        "time",
+        "body_a",
+        "body_b",
+        "reasons",
+        "warnings",
+        "waived",
+    )
+
+    def add(self, part: pa.Table) -> None:
+        """Takes some rows in, which come after those before."""
+        columns = {name: part[name].to_pylist() for name in ("exit_code", "clearance")}
+        self.statuses.update(part["status"].to_pylist())
+        self.bases.update(basis for basis in part["basis"].to_pylist() if basis)
+        self.n_waived += sum(map(bool, part["waived"].to_pylist()))
+        self.n_warned += sum(map(bool, part["warnings"].to_pylist()))
+        self._add_least(part, columns["clearance"])
+        self._add_worst(part, **columns)
+        self._n += part.num_rows
+
+    def _add_least(self, part: pa.Table, clearance: list[float | None]) -> None:
+        known = [one for one in clearance if one is not None]
+        if known and (self.least is None or min(known) < self.least["clearance"]):
+            self.least = _row(part, clearance.index(min(known)))
+
+    def _add_worst(
+        self, part: pa.Table, exit_code: list[int], clearance: list[float | None]
+    ) -> None:
+        failing = [i for i, code in enumerate(exit_code) if code]
+        self.n_failing += len(failing)
+        self.exit_code = max([self.exit_code, *(exit_code[i] for i in failing)])
+        standing = [(-exit_code[i], clearance[i] or 0.0, self._n + i) for i in failing]
+        least = heapq.nsmallest(MOST_WORST, standing)
+        found = [*self.worst, *((one, _row(part, one[2] - self._n)) for one in least)]
+        self.worst = sorted(found, key=lambda pair: pair[0])[:MOST_WORST]
+
+
+def _row(part: pa.Table, i: int) -> dict[str, Any]:
+    return part.slice(i, 1).to_pylist()[0]
 
 
 def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchAnswer:
@@ -97,37 +174,21 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
     Args:
         strict: a case that cannot be read or answered is bad input of the batch.
     """
-    known = [item.number for item in outcome.items if item.number in outcome.keys]
-    failed = [item.number for item in outcome.items if item.number in outcome.faults]
-    own = pa.schema([("key", pa.string()), *VERDICT])
-    rows = store.rows([outcome.keys[number] for number in known]).select(own.names)
-    of_input = BAD_INPUT if strict else VIOLATED
-    faults = [outcome.faults[number] for number in failed]
-    errors = [error_row(one.text, FAULT if one.trace else of_input) for one in faults]
-    table = pa.concat_tables([rows, pa.Table.from_pylist(errors, schema=own)])
-    place = {number: i for i, number in enumerate([*known, *failed])}
-    items = [item for item in outcome.items if item.number in place]
-    table = table.take(pa.array([place[item.number] for item in items], type=pa.int64()))
-    names = pa.array([item.name for item in items], type=pa.string())
-    findings = _findings(table, names)
-    cases = table.drop_columns(["findings"]).add_column(0, "case", names)
-    return BatchAnswer(cases, findings, _stale(outcome, cases) if outcome.is_answered else ())
+    rows = StoredRows(outcome, store, outcome.tried, strict)
+    return BatchAnswer(rows, _stale(outcome, rows) if outcome.is_answered else ())
 
 
-def _stale(outcome: Outcome, cases: pa.Table) -> tuple[str, ...]:
-    needed = [own or () for own in cases["waivers"].to_pylist()]
-    told = stale_waivers_of_cells(outcome.items, needed)
+def _stale(outcome: Outcome, rows: StoredRows) -> tuple[str, ...]:
+    """What is wrong with waivers that cases share; rows are read only where there are some."""
+    items = outcome.items
+    assert isinstance(items, Cases)  # a part has no answer
+    if not outcome.waivers and not any_of_cells(items):
+        return ()
+    needed = (
+        tuple(own or ()) for part in rows.parts(["waivers"]) for own in part["waivers"].to_pylist()
+    )
+    among, told = stale_waivers_of_cells(items, needed)
     if not outcome.waivers:
         return tuple(told)
-    among, day = set(chain.from_iterable(needed)), outcome.items[0].options.day
-    return (*told, *stale_waivers(outcome.items, outcome.waivers, among, day))
-
-
-def _findings(table: pa.Table, names: pa.Array) -> pa.Table:
-    """The findings of all cases, a row each."""
-    column = table["findings"].combine_chunks()
-    if isinstance(column, pa.ChunkedArray):
-        column = pa.concat_arrays(column.chunks)
-    whose = pc.list_parent_indices(column)
-    flat = pa.Table.from_struct_array(pc.list_flatten(column))
-    return flat.add_column(0, "case", names.take(whose))
+    day = items[0].options.day
+    return (*told, *stale_waivers(items, outcome.waivers, among, day))

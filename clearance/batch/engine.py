@@ -32,12 +32,13 @@ class Queue:
     """
 
     def __init__(self, items: Sequence[Item], batch: str) -> None:
-        self._waiting = deque(items)
+        self._items, self._taken = items, 0
+        self._returned: deque[Item] = deque()
         self._alone: set[int] = set()
         self._batch = batch
 
     def __len__(self) -> int:
-        return len(self._waiting)
+        return len(self._returned) + len(self._items) - self._taken
 
     def task(self, n_hands: int = 1) -> Task | None:
         """The next cases, all of one cell; None where none waits.
@@ -45,20 +46,26 @@ class Queue:
         Args:
             n_hands: tasks that are out at a time. Each is a share of what waits, so all end at about one time.
         """
-        if not self._waiting:
+        if not len(self):
             return None
         share = min(MOST, max(LEAST, -(-len(self) // n_hands)))
-        first = self._waiting.popleft()
+        first = self._take()
         items = [first]
-        while len(items) < share and self._goes_with(first):
-            items.append(self._waiting.popleft())
+        while len(items) < share and len(self) and self._goes_with(first):
+            items.append(self._take())
         return Task(tuple(items), SECONDS, program(), self._batch)
+
+    def _take(self) -> Item:
+        if self._returned:
+            return self._returned.popleft()
+        self._taken += 1
+        return self._items[self._taken - 1]
 
     def _goes_with(self, first: Item) -> bool:
         """True if the next case can be in one task with another."""
-        if not self._waiting or first.number in self._alone:
-            return False
-        return self._waiting[0].file == first.file and self._waiting[0].number not in self._alone
+        after = self._returned[0] if self._returned else self._items[self._taken]
+        alone = first.number in self._alone or after.number in self._alone
+        return after.file == first.file and not alone
 
     def give_back(self, items: Sequence[Item], *, alone: bool = False) -> None:
         """Puts cases before all others.
@@ -66,7 +73,7 @@ class Queue:
         Args:
             alone: each is a task of its own from now on.
         """
-        self._waiting.extendleft(reversed(items))
+        self._returned.extendleft(reversed(items))
         if alone:
             self._alone.update(item.number for item in items)
 

@@ -7,7 +7,7 @@ decides nothing: the next batch tries each of them again. Not for: rows (`store`
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,29 +19,30 @@ from clearance.report.folder import write_file
 FILE_NAME = "faults.json"
 
 
-def keep_faults(place: Path, items: Sequence[Item], faults: Mapping[int, Fault]) -> None:
+def keep_faults(place: Path, items: Iterable[Item], faults: Mapping[int, Fault]) -> None:
     """Writes what is wrong with some cases, instead of what was known of them; what is known of others stays.
 
     Raises:
         Unwritable: it cannot be written.
     """
-    before, tried = _read(place), {item.name for item in items}
-    known = {name: told for name, told in before.items() if name not in tried}
+    before = _read(place)
+    known = before.copy()
     for item in items:
+        known.pop(item.name, None)
         fault = faults.get(item.number)
         if fault is not None:
-            files = _files(item, FileHashes({}))
+            files = _files(item, FileHashes())
             known[item.name] = {"text": fault.text, "trace": fault.trace, "files": files}
     if known != before:
         content = json.dumps(known, indent=0, sort_keys=True) + "\n"
         write_file(place / FILE_NAME, content.encode())
 
 
-def faults_in(place: Path, items: Sequence[Item], hashes: FileHashes) -> dict[int, Fault]:
+def faults_in(place: Path, items: Iterable[Item], hashes: FileHashes) -> dict[int, Fault]:
     """The faults of some cases by number, of those whose own files are what they were."""
     known = _read(place)
-    found = {}
-    for item in items:
+    found: dict[int, Fault] = {}
+    for item in items if known else ():
         told = known.get(item.name)
         if told is not None and told["files"] == _files(item, hashes):
             found[item.number] = Fault(item.number, told["text"], told["trace"])

@@ -16,10 +16,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
+from clearance.batch.known_hashes import KnownHashes
 from clearance.load.input_files import regular_file
 
 RACY = 2_000_000_000
 """[ns] The coarsest clock of a file system that is in use (FAT) counts two seconds."""
+
+
+MOST_NOW = 4000
+"""Files of which it is kept what they are now."""
 
 
 class FileStamp(NamedTuple):
@@ -38,6 +43,11 @@ class FileStamp(NamedTuple):
     sha256: str
 
     @property
+    def marks(self) -> tuple[int, int, int, int, int]:
+        """What tells it from what it was."""
+        return self.device, self.inode, self.n_bytes, self.changed, self.status_changed
+
+    @property
     def is_settled(self) -> bool:
         """True if a later change of the file cannot go unseen."""
         return max(self.changed, self.status_changed) + RACY < self.read
@@ -50,33 +60,35 @@ class FileHashes:
         known: of an earlier run.
     """
 
-    def __init__(self, known: dict[str, FileStamp]) -> None:
-        self._known = known
+    def __init__(self, known: KnownHashes | None = None) -> None:
+        self._known = KnownHashes() if known is None else known
         self._now: dict[str, str | None] = {}
         self.is_new = False
 
     @property
-    def known(self) -> dict[str, FileStamp]:
+    def known(self) -> KnownHashes:
         """All that can be believed later on."""
         return self._known
 
     def of(self, path: str) -> str | None:
-        """The sha256 of a file; None if it cannot be read. Each is looked at once."""
+        """The sha256 of a file; None if it cannot be read. What was looked at lately is not looked at again."""
         if path not in self._now:
+            if len(self._now) >= MOST_NOW:
+                self._now.clear()
             self._now[path] = self._found(path)
         return self._now[path]
 
     def learn(self, read: Iterable[tuple[str, FileStamp]]) -> None:
         """Takes over what others have read."""
         for path, seen in read:
-            if seen.is_settled and self._known.get(path) != seen:
-                self._known[path], self.is_new = seen, True
+            if seen.is_settled and self._known.learn(path, seen.marks, seen.sha256):
+                self.is_new = True
 
     def _found(self, path: str) -> str | None:
-        known = self._known.get(path)
         try:
-            if known is not None and known[:5] == _marks(os.stat(path)):
-                return known.sha256
+            known = self._known.find(path, _marks(os.stat(path)))
+            if known is not None:
+                return known
             read = time.time_ns()
             with regular_file(Path(path)) as file:
                 digest = hashlib.file_digest(file, "sha256").hexdigest()

@@ -7,12 +7,13 @@ end, and what is left out is counted in a property. Not for: one case in detail 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from itertools import accumulate, takewhile
+from collections.abc import Iterable, Iterator
+from itertools import accumulate, islice, takewhile
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
-from clearance.batch.answer import FAULT, BatchAnswer
+from clearance.batch.answer import BatchAnswer
+from clearance.batch.case_rows import FAULT
 from clearance.batch.rows import ERROR
 
 MOST_BYTES = 29_000_000
@@ -26,39 +27,51 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _COLUMNS = ("case", "status", "exit_code", "text", "reasons", "waived")
 
 
-def junit_of(answer: BatchAnswer, name: str) -> bytes:
-    """The file's content.
+def junit_of(answer: BatchAnswer, name: str) -> Iterator[str]:
+    """The file's content, part by part.
 
     Args:
         name: of the suite.
     """
-    rows = answer.cases.select(_COLUMNS).to_pylist()
-    stale = [_stale(text) for text in answer.stale]
-    failing = [*stale, *(_case(row) for row in rows if row["exit_code"])]
-    passing = [_case(row) for row in rows if not row["exit_code"]]
-    if _length([*failing, *passing]) <= MOST_BYTES:
-        shown = [*stale, *map(_case, rows)]
-    else:
-        shown = list(_that_fit([*failing, *passing]))
-    n_errors = sum(row["status"] == ERROR for row in rows)
-    n_failed = sum(bool(row["exit_code"]) for row in rows) - n_errors + len(stale)
-    told = f'tests="{len(shown)}" failures="{n_failed}" errors="{n_errors}" skipped="0"'
-    lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<testsuites {told}>"]
-    lines.append(f"<testsuite name={_quoted(name)} {told}>")
-    left_out = f'<property name="left_out" value="{len(stale) + len(rows) - len(shown)}"/>'
+    n_all = len(answer.stale) + answer.n_cases
+    n_shown = _n_that_fit(_in_order(answer))
+    is_cut = n_shown < n_all
+    if is_cut:
+        n_shown = _n_that_fit(_failing_first(answer))
+    n_errors = answer.counts.get(ERROR, 0)
+    n_failed = answer.n_failing - n_errors + len(answer.stale)
+    told = f'tests="{n_shown}" failures="{n_failed}" errors="{n_errors}" skipped="0"'
     code = f'<property name="exit_code" value="{answer.exit_code}"/>'
-    lines.append(f"<properties>{code}{left_out}</properties>")
-    return "\n".join([*lines, *shown, "</testsuite>", "</testsuites>", ""]).encode()
+    left_out = f'<property name="left_out" value="{n_all - n_shown}"/>'
+    yield f'<?xml version="1.0" encoding="utf-8"?>\n<testsuites {told}>\n'
+    yield f"<testsuite name={_quoted(name)} {told}>\n"
+    yield f"<properties>{code}{left_out}</properties>\n"
+    shown = _failing_first(answer) if is_cut else _in_order(answer)
+    for case in islice(shown, n_shown):
+        yield f"{case}\n"
+    yield "</testsuite>\n</testsuites>\n"
 
 
-def _length(cases: list[str]) -> int:
-    return sum(len(case.encode()) + 1 for case in cases) + 1000
-
-
-def _that_fit(cases: list[str]) -> Iterator[str]:
+def _n_that_fit(cases: Iterable[str]) -> int:
+    """How many of some cases, from the first on, go into a file."""
     ends = accumulate(len(case.encode()) + 1 for case in cases)
-    fit = takewhile(lambda pair: pair[1] + 1000 <= MOST_BYTES, zip(cases, ends, strict=True))
-    return (case for case, _ in fit)
+    return sum(1 for _ in takewhile(lambda end: end + 1000 <= MOST_BYTES, ends))
+
+
+def _in_order(answer: BatchAnswer) -> Iterator[str]:
+    yield from map(_stale, answer.stale)
+    yield from map(_case, _rows(answer))
+
+
+def _failing_first(answer: BatchAnswer) -> Iterator[str]:
+    yield from map(_stale, answer.stale)
+    yield from (_case(row) for row in _rows(answer) if row["exit_code"])
+    yield from (_case(row) for row in _rows(answer) if not row["exit_code"])
+
+
+def _rows(answer: BatchAnswer) -> Iterator[dict[str, Any]]:
+    for part in answer.rows.parts(_COLUMNS):
+        yield from part.to_pylist()
 
 
 def _case(row: dict[str, Any]) -> str:

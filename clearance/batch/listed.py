@@ -6,41 +6,50 @@ Not for: what became of them (`store`).
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, fields
 from datetime import date
 from pathlib import Path
 
+from clearance.batch.cases import Cases
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.errors import BadInput, MissingFile, nearest_name
 from clearance.load.tolerance_file import tolerance_digest
-from clearance.report.folder import write_file
+from clearance.report.folder import written_file
 from clearance.world.waiver import Waiver
 
 FILE_NAME = "batch.json"
 
+_CASES = '"cases": ['
+"""Where the cases begin; no text within holds it, since its quotes would be escaped."""
 
-def write_list(place: Path, items: Sequence[Item]) -> None:
+
+def write_list(place: Path, cases: Cases) -> None:
     """Writes the list of a batch; what all cases have in common is there once.
 
     Raises:
         Unwritable: it cannot be written.
     """
-    options = list(dict.fromkeys(item.options for item in items))
+    options = cases.options
     number = {one: i for i, one in enumerate(options)}
-    rows = [_told(item) | {"options": number[item.options]} for item in items]
     waivers = list(dict.fromkeys(waiver for one in options for waiver in one.waivers))
     index = {waiver: i for i, waiver in enumerate(waivers)}
     content = {
         "waivers": [_waiver_told(waiver) for waiver in waivers],
         "options": [_options_told(one, index) for one in options],
-        "cases": rows,
+        "cases": [],
     }
-    write_file(place / FILE_NAME, (json.dumps(content, indent=0) + "\n").encode())
+    head, _, tail = json.dumps(content, indent=0).rpartition("]")
+    with written_file(place / FILE_NAME) as file:
+        file.write(head.encode())
+        for item in cases:
+            row = _told(item) | {"options": number[item.options]}
+            file.write(((",\n" if item.number else "\n") + _object(row)).encode())
+        file.write(f"\n]{tail}\n".encode())
 
 
-def read_list(place: Path) -> list[Item]:
+def read_list(place: Path) -> Cases:
     """The cases of the last batch.
 
     Raises:
@@ -48,10 +57,11 @@ def read_list(place: Path) -> list[Item]:
     """
     path = place / FILE_NAME
     try:
-        told = json.loads(path.read_text(encoding="utf-8"))
+        head, begin, rows = path.read_text(encoding="utf-8").partition(_CASES)
+        told = json.loads(f"{head}{begin}]}}")
         waivers = [_waiver(one) for one in told["waivers"]]
         options = [_options(one, waivers) for one in told["options"]]
-        return [_item(i, row, options) for i, row in enumerate(told["cases"])]
+        return Cases.of(_item(i, row, options) for i, row in enumerate(_rows(rows)))
     except FileNotFoundError:
         raise MissingFile(
             "no batch was begun here", where=str(place), valid="`clearance batch … --out` first"
@@ -60,6 +70,29 @@ def read_list(place: Path) -> list[Item]:
         raise BadInput(
             "the list of cases is damaged", where=str(path), valid="`clearance batch` once more"
         ) from None
+
+
+def _object(told: dict[str, object]) -> str:
+    """A JSON object as `json.dumps(told, indent=0)` writes it, in a third of the time."""
+    members = (
+        f"{json.dumps(name)}: {_object(one) if isinstance(one, dict) else json.dumps(one)}"
+        for name, one in told.items()
+    )
+    return "{\n" + ",\n".join(members) + "\n}"
+
+
+def _rows(text: str) -> Iterator[dict]:
+    """The cases of a list, one after another, from where the first begins.
+
+    Raises:
+        ValueError: it is damaged.
+    """
+    decoder, at = json.JSONDecoder(), 0
+    while (begin := text.find("{", at, at + 3)) >= 0:
+        row, at = decoder.raw_decode(text, begin)
+        yield row
+    if text[at:].split() != ["]", "}"]:
+        raise ValueError(f"{text[at:]:.9} goes on no list")
 
 
 def item_called(items: Sequence[Item], name: str) -> Item:

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import glob
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import UTC, date, datetime
-from pathlib import Path, PurePath
+from pathlib import Path
 
+from clearance.batch.cases import Cases
+from clearance.batch.digest_table import DigestTable, digest_of_text
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
@@ -23,6 +25,9 @@ from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_
 from clearance.load.tolerance_file import tolerance_digest
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
+
+_WIDTH = 16
+"""Bytes of a digest by which one case or name is told from another."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,7 @@ class Changes:
     tolerance: Path | None = None
 
 
-def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
+def items_of(arguments: Sequence[str], changes: Changes) -> Cases:
     """All cases, in the order in which they are given, those of a pattern by name.
 
     Args:
@@ -54,37 +59,53 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
     """
     if changes.certify_gap == 0.0:
         raise BadInput("certify: a gap of 0 m", valid="a length above 0")
-    found: dict[tuple[object, ...], Item] = {}
-    plain: list[Path] = []
+    items = _with_tolerance(_once(_given(arguments, changes)), changes.tolerance)
+    cases = Cases.of(_waived(items, changes.waivers) if changes.waivers else items)
+    _require_own_names(cases)
+    return cases
+
+
+def _given(arguments: Sequence[str], changes: Changes) -> Iterator[Item]:
+    """The cases of all manifests, then those that are files of their own."""
+    plain: list[str] = []
     for argument in arguments:
         for path in _matching(argument, Path()):
-            if _is_manifest(path):
-                for item in _of_manifest(path, changes):
-                    found.setdefault(_identity(item), item)
+            if _is_manifest(Path(path)):
+                yield from _of_manifest(Path(path), changes)
             else:
                 plain.append(path)
-    for item in _of_cases(
-        plain, _common_folder(plain), "", _options(Manifest.model_construct(), changes)
-    ):
-        found.setdefault(_identity(item), item)
-    items = [replace(item, number=i) for i, item in enumerate(found.values())]
-    _require_own_names(items)
-    items = _with_tolerance(items, changes.tolerance)
-    return [*_waived(items, changes.waivers)] if changes.waivers else items
+    options = _options(Manifest.model_construct(), changes)
+    yield from _of_cases(plain, _common_folder(plain), "", options)
 
 
-def _with_tolerance(items: list[Item], path: Path | None) -> list[Item]:
+def _once(items: Iterable[Item]) -> Iterator[Item]:
+    """The items without those of which the same was measured already."""
+    seen, asked = DigestTable(_WIDTH), dict[CaseOptions, int]()
+    for item in items:
+        n_before = len(seen)
+        number = asked.setdefault(item.options, len(asked))
+        told = repr((item.file, item.trajectory, number))
+        seen.enter(digest_of_text(told, _WIDTH))
+        if len(seen) > n_before:
+            yield item
+
+
+def _with_tolerance(items: Iterable[Item], path: Path | None) -> Iterator[Item]:
     """The items with the tolerances of a file, if one is given, in place of their cases'."""
     if path is None:
-        return items
+        yield from items
+        return
     place, key = os.path.abspath(path), tolerance_digest(path)
-    return [
-        replace(item, options=replace(item.options, tolerance=place, tolerance_key=key))
-        for item in items
-    ]
+    known: dict[CaseOptions, CaseOptions] = {}
+    for item in items:
+        made = known.get(item.options)
+        if made is None:
+            made = replace(item.options, tolerance=place, tolerance_key=key)
+            known[item.options] = made
+        yield replace(item, options=made)
 
 
-def _waived(items: Sequence[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
+def _waived(items: Iterable[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
     """The items with the waivers that may be of them: a change of one is no change of what it is not of."""
     shared = as_shared(waivers)
     known: dict[tuple[CaseOptions, tuple[int, ...]], CaseOptions] = {}
@@ -98,11 +119,6 @@ def _waived(items: Sequence[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
             made = item.options.waived_by(tuple(shared[i] for i in own))
             known[item.options, own] = made
         yield replace(item, options=known[item.options, own])
-
-
-def _identity(item: Item) -> tuple[object, ...]:
-    """What is measured; the same files with other options, or read otherwise, are another case."""
-    return item.file, item.trajectory, item.options
 
 
 def _is_manifest(path: Path) -> bool:
@@ -131,7 +147,7 @@ def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
 
 
 def _of_cases(
-    paths: Sequence[Path], folder: Path, before: str, options: CaseOptions
+    paths: Iterable[str], folder: Path, before: str, options: CaseOptions
 ) -> Iterator[Item]:
     for path in paths:
         yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
@@ -158,55 +174,62 @@ def _reading(given: Reading | None) -> str:
     )
 
 
-def _all_matching(patterns: Sequence[str], folder: Path) -> list[Path]:
-    paths = [path for pattern in patterns for path in _matching(pattern, folder)]
-    return list(dict.fromkeys(paths))
+def _all_matching(patterns: Sequence[str], folder: Path) -> Iterator[str]:
+    for pattern in patterns:
+        yield from _matching(pattern, folder)
 
 
-def _matching(pattern: str, folder: Path) -> list[Path]:
+def _matching(pattern: str, folder: Path) -> Iterator[str]:
     """The files of a pattern, by name; of a plain path that path, whether it is there or not.
 
     Raises:
         MissingFile: nothing matches.
     """
-    place = folder / pattern
-    if place.exists() or not glob.has_magic(pattern):
-        return [place]
+    place = os.path.join(folder, pattern)
+    if os.path.exists(place) or not glob.has_magic(pattern):
+        yield os.path.normpath(place)
+        return
     found = sorted(glob.glob(pattern, root_dir=str(folder), recursive=True))
     if not found:
         raise MissingFile(f"no file matches {pattern!r}", valid="a pattern of files that are there")
-    return [folder / one for one in found]
+    for (
+        one
+    ) in found:  # a `Path` for each would stay behind in part: Python keeps a table of their names
+        yield os.path.normpath(os.path.join(folder, one))
 
 
-def _name(path: Path, folder: Path) -> str:
+def _name(path: str, folder: Path) -> str:
     """A file's path from a folder, without its suffix."""
-    file, inside = os.fspath(path), os.path.join(folder, "")
-    if file.startswith(inside) and os.pardir not in path.parts:
-        relative = file[len(inside) :]  # of many files the other way takes a tenth of a second run
-    else:
-        relative = os.path.relpath(path, folder or os.curdir)
-    return checked_name(PurePath(relative).with_suffix("").as_posix())
+    inside = os.path.join(folder, "")
+    relative = path[len(inside) :] if path.startswith(inside) else os.path.relpath(path, folder)
+    begin, _, name = relative.replace(os.sep, "/").rpartition("/")
+    dot = name.rfind(".")
+    stem = name[:dot] if 0 < dot < len(name) - 1 else name
+    return checked_name(f"{begin}/{stem}" if begin else stem)
 
 
-def _common_folder(paths: Sequence[Path]) -> Path:
+def _common_folder(paths: Sequence[str]) -> Path:
     """The folder that all files are in."""
     if not paths:
         return Path()
-    return Path(os.path.commonpath([path.absolute().parent for path in paths]))
+    return Path(
+        os.path.commonpath({os.path.dirname(os.path.join(Path.cwd(), path)) for path in paths})
+    )
 
 
-def _require_own_names(items: Sequence[Item]) -> None:
-    seen: dict[str, Item] = {}
-    for item in items:
-        other = seen.setdefault(item.name, item)
-        if other is not item:
+def _require_own_names(cases: Cases) -> None:
+    seen = DigestTable(_WIDTH)
+    for item in cases:
+        number = seen.enter(digest_of_text(item.name, _WIDTH))
+        if number != item.number:
+            other = cases[number]
             files = dict.fromkeys([_file(other), _file(item)])
             told = " and ".join(files) if len(files) > 1 else f"{_file(item)}, asked in two ways"
             raise DuplicateName(
                 f"two cases would be called {item.name!r}: {told}",
                 valid="a name: in each manifest, which goes before the names of its cases",
             )
-    if not items:
+    if not cases:
         raise BadInput("no case is given", valid="a manifest, case files, or a pattern of them")
 
 

@@ -1,31 +1,25 @@
 """The files that a store holds of its last batch: tables, JUnit and the page, each written in one step.
 
 While a batch is not finished the answer of an older one does not stand there: its tables are gone, which the rows
-give again, and JUnit and page say what is missing.
+give again, and JUnit and page say what is missing. Page and JUnit are made of the tables.
 
-Not for: what is in them (`answer`, `junit`, `page`).
+Not for: what is in them (`answer`, `tables`, `junit`, `page`).
 """
 
 from __future__ import annotations
 
-import json
-
-import pyarrow as pa
-import pyarrow.parquet as pq
+from collections.abc import Iterable
+from pathlib import Path
 
 from clearance.batch.answer import BatchAnswer
 from clearance.batch.store import Store
+from clearance.batch.tables import CASES, FINDINGS, write_tables, written_answer
 from clearance.errors import unwritable
-from clearance.report.folder import write_file
+from clearance.report.folder import write_file, written_file
 from clearance.report.wording import count
 
-CASES, FINDINGS = "cases.parquet", "findings.parquet"
 PAGE, JUNIT = "batch.html", "junit.xml"
 ANSWER = (CASES, FINDINGS, PAGE, JUNIT)
-
-
-_STALE = b"stale waivers"
-"""Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
 
 UNFINISHED = "this batch is not finished"
 
@@ -51,27 +45,21 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
         write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
 
 
-def write_answer(answer: BatchAnswer, store: Store) -> None:
-    """Writes the answer into the store's folder.
+def write_answer(answer: BatchAnswer, store: Store) -> BatchAnswer:
+    """Writes the answer into the store's folder; it, as its tables hold it.
 
     Raises:
         Unwritable: there is no way or no room.
     """
     from clearance.batch.junit import junit_of
-    from clearance.batch.page import page_of
 
     with store.locked():
-        marked = answer.cases.replace_schema_metadata({_STALE: json.dumps(answer.stale)})
-        write_file(store.place / CASES, _parquet(marked))
-        write_file(store.place / FINDINGS, _parquet(answer.findings))
-        write_file(store.place / JUNIT, junit_of(answer, store.place.name))
-        write_file(store.place / PAGE, page_of(answer, store.place).encode())
-
-
-def _parquet(table: pa.Table) -> bytes:
-    sink = pa.BufferOutputStream()
-    pq.write_table(table.combine_chunks(), sink, compression="zstd", row_group_size=2**16)
-    return sink.getvalue().to_pybytes()
+        write_tables(answer, store.place)
+        written = written_answer(store.place)
+        assert written is not None
+        _write_texts(store.place / JUNIT, junit_of(written, store.place.name))
+        _write_page(written, store)
+    return written
 
 
 def rewrite_page(store: Store) -> None:
@@ -80,12 +68,19 @@ def rewrite_page(store: Store) -> None:
     Raises:
         Unwritable: there is no way or no room.
     """
+    with store.locked():
+        written = written_answer(store.place)
+        if written is not None:
+            _write_page(written, store)
+
+
+def _write_page(answer: BatchAnswer, store: Store) -> None:
     from clearance.batch.page import page_of
 
-    with store.locked():
-        tables = [store.place / name for name in (CASES, FINDINGS)]
-        if all(path.is_file() for path in tables):
-            cases, findings = (pq.read_table(path, partitioning=None) for path in tables)
-            stale = (cases.schema.metadata or {}).get(_STALE, b"[]")
-            answer = BatchAnswer(cases, findings, tuple(json.loads(stale)))
-            write_file(store.place / PAGE, page_of(answer, store.place).encode())
+    _write_texts(store.place / PAGE, page_of(answer, store.place))
+
+
+def _write_texts(path: Path, texts: Iterable[str]) -> None:
+    with written_file(path) as file:
+        for text in texts:
+            file.write(text.encode())

@@ -8,14 +8,18 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from array import array
+from collections.abc import Iterable
 from dataclasses import field
 from pathlib import Path
 
+from clearance.batch.cases import SomeCases
+from clearance.batch.digest_table import NONE
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
-from clearance.batch.store import Store
+from clearance.batch.outcome import Outcome
+from clearance.batch.store import MOST_TEXTS, Store
 from clearance.late_dataclass import dataclass
 from clearance.load.bag_files import files_of
 from clearance.load.input_files import InputFiles
@@ -26,35 +30,25 @@ Files = tuple[tuple[str, str], ...]
 """Path as shown and sha256."""
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What is known and what is to be done.
-
-    Attributes:
-        keys: of the items that the store has answered, by number. todo: the others, those of a cell together.
-    """
-
-    keys: dict[int, str]
-    todo: list[Item]
-
-
 def planned(
-    items: Sequence[Item], store: Store, hashes: FileHashes, *, fresh: bool = False
-) -> Plan:
-    """What of some items is to be done.
+    outcome: Outcome, store: Store, hashes: FileHashes, *, fresh: bool = False
+) -> SomeCases:
+    """Notes what the store has answered; the other cases, those of a cell together.
 
     Args:
-        fresh: all of it.
+        fresh: all are to be done.
     """
-    keys: dict[int, str] = {}
     look = _Look(store, hashes)
-    if not fresh:
-        for item in items:
-            key = look.key(item)
-            if key is not None:
-                keys[item.number] = key
-    todo = [item for item in items if item.number not in keys]
-    return Plan(keys, sorted(todo, key=lambda item: (item.file, item.number)))
+    todo, files = array("I"), list[str]()
+    for place, item in enumerate(outcome.items):
+        row = NONE if fresh else look.row(item)
+        if row == NONE:
+            todo.append(place)
+            files.append(item.file)
+        else:
+            outcome.note(item.number, row)
+    order = sorted(range(len(todo)), key=files.__getitem__)
+    return outcome.items.among(todo[i] for i in order)
 
 
 @dataclass(eq=False)
@@ -67,18 +61,18 @@ class _Look:
     _of_folder: dict[str, InputFiles] = field(default_factory=dict)
     _led_to: dict[str, str] = field(default_factory=dict)
 
-    def key(self, item: Item) -> str | None:
-        """The key of an item that the store has; None where it has none, or a file is another."""
+    def row(self, item: Item) -> int:
+        """The number of an item's row; `NONE` where the store has none, or a file is another."""
         own = self._own(item)
         if own is None:
-            return None
-        for inputs in self.store.inputs.get(item.file, ()):
+            return NONE
+        for inputs in self.store.inputs(item.file):
             shared = self._as_before(inputs, item.options.today)
             if shared is not None:
-                key = key_of(item, (*shared, *own))
-                if key in self.store:
-                    return key
-        return None
+                row = self.store.find(key_of(item, (*shared, *own)))
+                if row != NONE:
+                    return row
+        return NONE
 
     def _own(self, item: Item) -> Files | None:
         """The files of the trajectory that a cell is given."""
@@ -89,13 +83,15 @@ class _Look:
         files = self._of_folder.get(folder)
         if files is None:
             files = self._of_folder[folder] = InputFiles(Path(folder))
-        return self._hashed((files.shown(path), str(path)) for path in _paths(given))
+        return self._hashed((files.shown(path), path) for path in _paths(given))
 
     def _as_before(self, inputs: str, today: str) -> Files | None:
         """The files that a case was made from, if each is as it was, and so are the day, the variables and the
         searches that it depends on.
         """
         if inputs not in self._shared:
+            if len(self._shared) > MOST_TEXTS:
+                self._shared.clear()
             told = json.loads(inputs)
             searches = [row for row in told if row[0].startswith(LOOKUP)]
             rest = [row for row in told if not row[0].startswith(LOOKUP)]
@@ -127,9 +123,11 @@ def _is_so(shown: str, value: str, today: str) -> bool:
     return value == (today if shown == DAY else value_digest(variable_of(shown)))
 
 
-def _paths(given: GivenTrajectory) -> list[Path]:
+def _paths(given: GivenTrajectory) -> list[str]:
     """The files of a trajectory: several where it is a bag."""
     try:
-        return files_of(Path(given.path))
+        if os.path.isdir(given.path):
+            return [*map(str, files_of(Path(given.path)))]
     except OSError:
-        return [Path(given.path)]
+        pass
+    return [given.path]

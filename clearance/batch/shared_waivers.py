@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from datetime import date
 
+from clearance.batch.cases import Cases
 from clearance.batch.item import Item
 from clearance.errors import nearest_name
 from clearance.load.case_file import waivers_of_cell
@@ -21,22 +22,31 @@ def as_shared(waivers: Iterable[Waiver]) -> tuple[Waiver, ...]:
     return tuple(replace(waiver, shared=True) for waiver in waivers)
 
 
-def stale_waivers_of_cells(items: Sequence[Item], needed: Sequence[Collection[str]]) -> list[str]:
-    """Why the waivers that cells name fail a batch of which all cases are answered, as `stale_waivers` tells.
+def any_of_cells(items: Cases) -> bool:
+    """True if a cell names waivers, which its motions share."""
+    return any(waivers_of_cell(file) for file in items.cells)
+
+
+def stale_waivers_of_cells(
+    items: Cases, needed: Iterable[Collection[str]]
+) -> tuple[set[str], list[str]]:
+    """The shared waivers that some case needs, as texts, and why those that cells name fail a batch of which all
+    cases are answered, as `stale_waivers` tells.
 
     Args:
         needed: of each item, the shared waivers that it needs, as texts.
     """
-    of_cell: dict[str, list[int]] = {}
-    for i, item in enumerate(items):
-        if item.trajectory is not None:
-            of_cell.setdefault(item.file, []).append(i)
+    among: dict[str | None, set[str]] = {}
+    for item, own in zip(items, needed, strict=True):
+        cell = None if item.trajectory is None else item.file
+        among.setdefault(cell, set()).update(own)
     told: list[str] = []
-    for file, own in of_cell.items():
+    for file in items.cells:
         given = as_shared(waivers_of_cell(file))
-        among = {waiver for i in own for waiver in needed[i]}
-        told += stale_waivers([items[i] for i in own], given, among, items[own[0]].options.day)
-    return list(dict.fromkeys(told))
+        if given:
+            own_items = items.of_cell(file)
+            told += stale_waivers(own_items, given, among[file], own_items[0].options.day)
+    return set().union(*among.values()), list(dict.fromkeys(told))
 
 
 def stale_waivers(

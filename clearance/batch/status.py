@@ -9,11 +9,11 @@ from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.faults import faults_in
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.listed import read_list
-from clearance.batch.output import CASES
+from clearance.batch.outcome import Outcome
 from clearance.batch.plan import planned
 from clearance.batch.rows import ERROR
-from clearance.batch.run import Outcome
 from clearance.batch.store import Store
+from clearance.batch.tables import CASES
 from clearance.late_dataclass import dataclass
 
 
@@ -35,7 +35,7 @@ class BatchStatus:
     @property
     def n_missing(self) -> int:
         """Cases that are to be measured, for the first time or since a file is another."""
-        return self.n_cases - self.answered.cases.num_rows
+        return self.n_cases - self.answered.n_cases
 
     @property
     def n_unreadable(self) -> int:
@@ -45,7 +45,7 @@ class BatchStatus:
     @property
     def n_done(self) -> int:
         """Cases that have a row."""
-        return self.answered.cases.num_rows - self.n_unreadable
+        return self.answered.n_cases - self.n_unreadable
 
 
 def status_of(store: Store) -> BatchStatus:
@@ -55,8 +55,9 @@ def status_of(store: Store) -> BatchStatus:
         MissingFile: there was none.
     """
     items, hashes = read_list(store.place), FileHashes(store.hashes())
-    plan = planned(items, store, hashes)
-    faults = faults_in(store.place, plan.todo, hashes)
-    answered = answer_of(Outcome(items, plan.keys, faults), store)
+    outcome = Outcome(items)
+    todo = planned(outcome, store, hashes)
+    outcome.faults.update(faults_in(store.place, todo, hashes))
+    answered = answer_of(outcome, store)
     has_answer = (store.place / CASES).is_file()
     return BatchStatus(len(items), len(store), has_answer, answered)

@@ -10,25 +10,33 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import field
+from itertools import accumulate
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from clearance.batch.file_hashes import FileStamp
+from clearance.batch.known_hashes import KnownHashes
+from clearance.batch.row_index import RowIndex
 from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
 from clearance.late_dataclass import dataclass
-from clearance.report.folder import write_file
+from clearance.report.folder import write_file, written_file
 
 MARK = "store.json"
 FORMAT = 1
 _SEGMENTS, _HASHES, _LOCK = "segments", "files.parquet", ".lock"
 _INDEX = ("key", "file", "inputs")
+
+HASHES = 4096
+"""Known hashes of files that are read or written at a time."""
+
+MOST_TEXTS = 1000
+"""Lists of input files that are kept as text."""
 
 
 @dataclass(eq=False)
@@ -36,31 +44,51 @@ class Store:
     """The rows in a folder; made by `open_store`.
 
     Attributes:
-        inputs: of each case file all that was ever read with it, as `rows.inputs_text` writes it.
         n_damaged: segments that were not what their names say, and are gone.
         generation: of what is written from now on; of two rows of one key the later generation's counts.
     """
 
     place: Path
-    inputs: dict[str, dict[str, None]] = field(default_factory=dict)
     n_damaged: int = 0
     generation: int = 0
-    _at: dict[str, str] = field(default_factory=dict)
-    _read: set[str] = field(default_factory=set)
-
-    def __contains__(self, key: str) -> bool:
-        return key in self._at
+    _index: RowIndex = field(default_factory=RowIndex)
+    _last: tuple[tuple[str, ...], dict[int, pa.Table]] = ((), {})
+    _texts: dict[tuple[int, int], str] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        return len(self._at)
+        return len(self._index)
+
+    def find(self, key: str) -> int:
+        """The number of a key's row; `NONE` where there is none."""
+        return self._index.find(key)
+
+    def key(self, number: int) -> str:
+        """The key of a row."""
+        return self._index.key(number)
+
+    def inputs(self, file: str) -> Iterator[str]:
+        """All that a case file was ever read with, as `rows.inputs_text` writes it."""
+        for segment, row in self._index.inputs(file):
+            if (segment, row) not in self._texts:
+                self._read_inputs(segment)
+            yield self._texts[segment, row]
+
+    def _read_inputs(self, segment: int) -> None:
+        """Reads what the cases of a segment were made from; what is known of others is dropped if it is much."""
+        if len(self._texts) > MOST_TEXTS:
+            self._texts.clear()
+        table = rows_in(self._kept(segment), ("inputs",))
+        for row, text in enumerate(table["inputs"].to_pylist()):
+            self._texts[segment, row] = text
 
     def look(self) -> None:
         """Takes in the segments that have come since, whoever has written them."""
+        known = frozenset(self._index.segments)
         for name in self._names():
-            if name not in self._read:
+            if name not in known:
                 content = self._content(name)
                 if content is not None:
-                    self._enter(name, rows_in(content, _INDEX))
+                    self._enter(name, content)
 
     def put(self, content: bytes) -> None:
         """Keeps a segment.
@@ -77,45 +105,47 @@ class Store:
                 where=str(self.place),
                 valid="what was measured before is kept; the same command goes on once there is room",
             ) from None
-        self._enter(name, rows_in(content, _INDEX))
+        self._enter(name, content)
 
-    def rows(self, keys: Sequence[str]) -> pa.Table:
-        """The rows of keys, in their order; each key must be there."""
-        names = sorted({self._at[key] for key in keys})
-        wanted = frozenset(keys)
-        parts: list[pa.Table] = []
-        found: dict[str, int] = {}
-        n_rows = 0
-        for name in names:
-            table = rows_in((self.place / _SEGMENTS / name).read_bytes())
-            for i, key in enumerate(table["key"].to_pylist()):
-                if key in wanted and self._at[key] == name:
-                    found.setdefault(key, n_rows + i)
-            parts.append(table)
-            n_rows += table.num_rows
+    def rows(self, numbers: Sequence[int], columns: Sequence[str]) -> pa.Table:
+        """Some columns of rows, in their order."""
+        places = [self._index.place(number) for number in numbers]
+        parts = self._tables(dict.fromkeys(segment for segment, _ in places), tuple(columns))
+        begins = dict(zip(parts, accumulate(map(len, parts.values()), initial=0), strict=False))
         if not parts:
-            return STORED.empty_table()
-        order = pa.array([found[key] for key in keys], type=pa.int64())
-        return pa.concat_tables(parts).take(order)
+            return pa.schema([STORED.field(name) for name in columns]).empty_table()
+        order = [begins[segment] + row for segment, row in places]
+        return (
+            pa.concat_tables(parts.values()).take(pa.array(order, type=pa.int64())).select(columns)
+        )
 
-    def hashes(self) -> dict[str, FileStamp]:
+    def _tables(self, segments: Iterable[int], columns: tuple[str, ...]) -> dict[int, pa.Table]:
+        """Some columns of segments; the last is kept, since what is asked for next begins where this ends."""
+        asked, before = self._last
+        known = before if asked == columns else {}
+        found = {
+            one: known[one] if one in known else rows_in(self._kept(one), columns)
+            for one in segments
+        }
+        self._last = columns, dict([*found.items()][-1:])
+        return found
+
+    def _kept(self, segment: int) -> bytes:
+        return (self.place / _SEGMENTS / self._index.segments[segment]).read_bytes()
+
+    def hashes(self) -> KnownHashes:
         """What is known of input files; nothing where that is damaged."""
         try:
-            table = pq.read_table(self.place / _HASHES, partitioning=None)
-            columns = [table[name].to_pylist() for name in ("path", *FileStamp._fields)]
-        except (OSError, KeyError, pa.ArrowException):
-            return {}
-        return {path: FileStamp(*seen) for path, *seen in zip(*columns, strict=True)}
+            with pq.ParquetFile(self.place / _HASHES) as file:
+                return KnownHashes.of(file.iter_batches(HASHES, use_threads=False))
+        except (OSError, KeyError, ValueError, pa.ArrowException):
+            return KnownHashes()
 
-    def keep_hashes(self, known: Mapping[str, FileStamp]) -> None:
+    def keep_hashes(self, known: KnownHashes) -> None:
         """Keeps what is known of input files; where there is no room, a later run hashes them again."""
-        columns: dict[str, list] = {"path": list(known)}
-        for i, name in enumerate(FileStamp._fields):
-            columns[name] = [seen[i] for seen in known.values()]
         with suppress(OSError, Unwritable), self.locked():
-            sink = pa.BufferOutputStream()
-            pq.write_table(pa.table(columns), sink, compression="zstd")
-            write_file(self.place / _HASHES, sink.getvalue().to_pybytes())
+            with written_file(self.place / _HASHES) as file:
+                pq.write_table(known.table(), file, row_group_size=HASHES, use_dictionary=False)
 
     @contextmanager
     def locked(self) -> Iterator[None]:
@@ -145,15 +175,10 @@ class Store:
             path.unlink()
         return None
 
-    def _enter(self, name: str, index: pa.Table) -> None:
-        self._read.add(name)
-        later = generation_of(name) or 0
-        columns = (index[column].to_pylist() for column in _INDEX)
-        for key, file, inputs in zip(*columns, strict=True):
-            known = self._at.get(key)
-            if known is None or later > (generation_of(known) or 0):
-                self._at[key] = name
-            self.inputs.setdefault(file, {})[inputs] = None
+    def _enter(self, name: str, content: bytes) -> None:
+        table = rows_in(content, _INDEX)
+        columns = [table[column].to_pylist() for column in _INDEX]
+        self._index.enter(name, generation_of(name) or 0, *columns)
 
 
 def open_store(place: Path, *, make: bool = True, fresh: bool = False) -> Store:

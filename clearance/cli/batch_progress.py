@@ -6,7 +6,7 @@ Silent where stderr is no terminal: then only the answer is printed. Not for: th
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -33,8 +33,12 @@ class SilentWatch:
 
 
 @contextmanager
-def shown_progress(quiet: bool) -> Iterator[Watch]:
-    """Who is told how far a batch is: a line in the terminal, or nobody."""
+def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
+    """Who is told how far a batch is: a line in the terminal, or nobody.
+
+    Args:
+        name: of a case by its number.
+    """
     if quiet or not sys.stderr.isatty():
         yield SilentWatch()
         return
@@ -55,31 +59,30 @@ def shown_progress(quiet: bool) -> Iterator[Watch]:
         TextColumn("{task.fields[worst]}"),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        yield TerminalWatch(bar)
+        yield TerminalWatch(bar, name)
 
 
 class TerminalWatch:
     """Draws one line, and prints failures above it."""
 
-    def __init__(self, bar: Progress) -> None:
+    def __init__(self, bar: Progress, name: Callable[[int], str]) -> None:
         self._bar = bar
         self._task = bar.add_task("", total=None, rate="", worst="")
-        self._names: dict[int, str] = {}
+        self._name = name
         self._least: ItemResult | None = None
         self._n_told = 0
 
     def begin(self, items: Sequence, n_cached: int) -> None:
         """Begins to count what is to be measured."""
-        self._names = {item.number: item.name for item in items}
         self._bar.update(self._task, total=len(items))
 
     def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Counts, and prints what fails."""
         for fault in faults:
-            self._print(f"error     {self._names[fault.number]}: {fault.text}")
+            self._print(f"error     {self._name(fault.number)}: {fault.text}")
         for one in measured:
             if one.exit_code:
-                self._print(f"{one.status:<9} {self._names[one.number]}: {one.reason}")
+                self._print(f"{one.status:<9} {self._name(one.number)}: {one.reason}")
             self._take(one)
         self._bar.update(self._task, advance=len(measured) + len(faults))
         speed = self._bar.tasks[0].speed
@@ -95,7 +98,7 @@ class TerminalWatch:
         one = self._least
         if one is None or one.clearance is None:
             return ""
-        return f"worst {one.status} {mm(one.clearance)} mm, {shown(self._names[one.number])}"
+        return f"worst {one.status} {mm(one.clearance)} mm, {shown(self._name(one.number))}"
 
     def _print(self, line: str) -> None:
         self._n_told += 1

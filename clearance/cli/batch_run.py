@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from clearance.batch.answer import answer_of
+from clearance.batch.cases import Cases
 from clearance.batch.engine import Engine, LocalEngine
 from clearance.batch.faults import keep_faults
-from clearance.batch.item import Item
 from clearance.batch.listed import write_list
+from clearance.batch.outcome import Outcome
 from clearance.batch.output import withdraw_answer, write_answer
-from clearance.batch.run import Opener, Outcome, run_batch, shard_of
+from clearance.batch.run import Opener, run_batch, shard_of
 from clearance.batch.store import Store
 from clearance.cli import ExitCode
 from clearance.cli.batch_progress import shown_progress
@@ -42,7 +43,7 @@ class BatchRequest:
     waivers: tuple[Waiver, ...] = ()
 
 
-def run_asked(items: Sequence[Item], store: Store, asked: BatchRequest) -> int:
+def run_asked(items: Cases, store: Store, asked: BatchRequest) -> int:
     """Measures, writes the answer and prints it; the exit code.
 
     Raises:
@@ -54,20 +55,20 @@ def run_asked(items: Sequence[Item], store: Store, asked: BatchRequest) -> int:
     with store.locked():
         write_list(store.place, items)
     withdraw_answer(store, len(items))
-    own = list(items) if asked.shard is None else shard_of(items, asked.shard)
+    own = items if asked.shard is None else shard_of(items, asked.shard)
     outcome = Outcome(own, waivers=asked.waivers, whole=asked.shard is None)
     try:
         try:
-            with shown_progress(asked.quiet) as watch:
+            with shown_progress(asked.quiet, items.name) as watch:
                 opened, fresh = _opener(asked, say), asked.fresh
                 run_batch(outcome, store, opened, watch, fresh=fresh, rehash=asked.rehash)
         finally:
             _keep_faults(store, outcome)
         answer = answer_of(outcome, store, strict=asked.strict)
         if asked.shard is None:
-            write_answer(answer, store)
+            answer = write_answer(answer, store)
     except KeyboardInterrupt:
-        _say(f"interrupted: {len(outcome.keys):,} of {len(own):,} cases are kept")
+        _say(f"interrupted: {outcome.n_known:,} of {len(own):,} cases are kept")
         return ExitCode.INTERRUPTED
     if not asked.quiet:
         print_answer(answer, store, outcome.n_cached, asked.shard)
@@ -76,9 +77,8 @@ def run_asked(items: Sequence[Item], store: Store, asked: BatchRequest) -> int:
 
 def _keep_faults(store: Store, outcome: Outcome) -> None:
     """Keeps which cases could not be answered, for `status`; of those that were not tried nothing changes."""
-    tried = [i for i in outcome.items if i.number in outcome.keys or i.number in outcome.faults]
     with suppress(Unwritable), store.locked():  # where there is no room, they count as missing
-        keep_faults(store.place, tried, outcome.faults)
+        keep_faults(store.place, outcome.tried, outcome.faults)
 
 
 def _opener(asked: BatchRequest, say: Callable[[str], None]) -> Opener:

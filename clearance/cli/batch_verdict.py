@@ -11,9 +11,6 @@ from clearance.batch.store import Store
 from clearance.errors import shown
 from clearance.report.wording import count, mm
 
-MOST_LISTED = 10
-"""Failing cases in the terminal; all are on the page."""
-
 _BASES = {"motion": "proven for the motion", "samples": "looked at the samples only"}
 
 
@@ -21,7 +18,7 @@ def print_answer(
     answer: BatchAnswer, store: Store, n_cached: int, shard: tuple[int, int] | None
 ) -> None:
     """Prints the answer on stdout."""
-    n_cases = answer.cases.num_rows
+    n_cases = answer.n_cases
     part = "" if shard is None else f" (part {shard[0]} of {shard[1]})"
     click.echo(f"{_headline(answer)}{part}")
     _print_facts(answer)
@@ -42,7 +39,7 @@ def print_status(status: BatchStatus) -> None:
     click.echo(f"  missing     {status.n_missing:,}")
     tried = ", when last tried" if status.n_unreadable else ""
     click.echo(f"  unreadable  {status.n_unreadable:,}{tried}")
-    click.echo(f"  failed      {len(answer.worst_first()) - status.n_unreadable:,}")
+    click.echo(f"  failed      {answer.n_failing - status.n_unreadable:,}")
     click.echo(f"  kept        {count(status.n_rows, 'row')} in all")
     if not status.has_answer:
         click.echo(
@@ -54,9 +51,9 @@ def print_status(status: BatchStatus) -> None:
 
 def _headline(answer: BatchAnswer) -> str:
     worst = answer.status.upper() if answer.counts else "NOTHING"
-    if answer.exit_code == 0 and answer.n_with("waived"):
+    if answer.exit_code == 0 and answer.n_waived:
         worst += " with waivers"
-    return f"{worst}  {count(answer.cases.num_rows, 'case')}: {_counted(answer)}"
+    return f"{worst}  {count(answer.n_cases, 'case')}: {_counted(answer)}"
 
 
 def _counted(answer: BatchAnswer) -> str:
@@ -66,11 +63,11 @@ def _counted(answer: BatchAnswer) -> str:
 def _print_facts(answer: BatchAnswer) -> None:
     for text in answer.stale:
         click.echo(shown(f"  waivers     {text}"))
-    if n_waived := answer.n_with("waived"):
+    if n_waived := answer.n_waived:
         click.echo(
             f"  waived      {count(n_waived, 'case')} with what breaks a rule and a waiver lets pass"
         )
-    if n_warned := answer.n_with("warnings"):
+    if n_warned := answer.n_warned:
         click.echo(f"  warnings    {count(n_warned, 'case')}, see the page")
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
@@ -81,10 +78,9 @@ def _print_facts(answer: BatchAnswer) -> None:
 
 
 def _print_worst(answer: BatchAnswer) -> None:
-    rows = answer.worst_first()
-    for i in rows[:MOST_LISTED]:
-        row = answer.cases.slice(i, 1).to_pylist()[0]
+    for row in answer.worst:
         reason = row["reasons"][0] if row["reasons"] else row["text"]
         click.echo(shown(f"  {row['status']:<10}  {row['case']}: {reason}"))
-    if len(rows) > MOST_LISTED:
-        click.echo(f"              and {len(rows) - MOST_LISTED:,} more, see the page")
+    if answer.n_failing > len(answer.worst):
+        n_more = answer.n_failing - len(answer.worst)
+        click.echo(f"              and {n_more:,} more, see the page")

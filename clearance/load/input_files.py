@@ -119,7 +119,7 @@ class InputFiles:
 
         self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
 
-    def shown(self, path: Path) -> str:
+    def shown(self, path: Path | str) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         whole = os.path.abspath(path)
         brought = None if self._brought is None else _below(whole, str(self._brought))

@@ -15,8 +15,10 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from clearance.errors import unwritable
 
@@ -79,6 +81,17 @@ def write_file(path: Path, content: bytes) -> None:
     Raises:
         Unwritable: there is no way to write there; an older file is then as it was.
     """
+    with written_file(path) as file:
+        file.write(content)
+
+
+@contextmanager
+def written_file(path: Path) -> Iterator[BinaryIO]:
+    """A file to be written part by part, which is there once it is closed; whole or not at all.
+
+    Raises:
+        Unwritable: there is no way to write there; an older file is then as it was.
+    """
     with unwritable(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, partial = tempfile.mkstemp(
@@ -86,7 +99,7 @@ def write_file(path: Path, content: bytes) -> None:
         )
         try:
             with os.fdopen(handle, "wb") as file:
-                file.write(content)
+                yield file
             os.chmod(partial, 0o666 & ~_umask())
             os.replace(partial, path)
         except BaseException:

@@ -29,14 +29,15 @@ from rich.console import Console
 from rows import write_csv
 
 from clearance.batch.answer import answer_of
+from clearance.batch.cases import Cases
 from clearance.batch.dask_engine import DaskEngine, local_cluster
 from clearance.batch.engine import LocalEngine
-from clearance.batch.item import Item
 from clearance.batch.keys import program
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import Task, measure
+from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
-from clearance.batch.run import Outcome, run_batch
+from clearance.batch.run import run_batch
 from clearance.batch.store import open_store
 from clearance.load.case_file import load_case
 
@@ -103,7 +104,7 @@ def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     yield "the same, if two cores did nothing else", 2.0 * cpu_one / cpu_two, "x", ""
 
 
-def chunk_times(items: list[Item]) -> list[float]:
+def chunk_times(items: Cases) -> list[float]:
     """[s] of processor time a case in each task, the first two left out."""
     times = []
     for start in range(0, len(items), CHUNK):
@@ -114,7 +115,7 @@ def chunk_times(items: list[Item]) -> list[float]:
     return times[2:]
 
 
-def overhead(place: Path, items: list[Item]) -> float:
+def overhead(place: Path, items: Cases) -> float:
     """[s] a case of processor time in this process where two workers measure: all but measuring."""
     with local_cluster(2, print) as engine:
         _run(place / "warm", items[:64], engine)
@@ -123,7 +124,7 @@ def overhead(place: Path, items: list[Item]) -> float:
         return (time.process_time() - begun) / len(items)
 
 
-def cost(place: Path, items: list[Item], jobs: int) -> tuple[float, float]:
+def cost(place: Path, items: Cases, jobs: int) -> tuple[float, float]:
     """[s] a case by the wall, and of processor time of the command and all workers, after the first cases."""
     with local_cluster(jobs, print) as engine:
         _run(place / "warm", items[: 64 * jobs], engine)
@@ -212,7 +213,7 @@ def _resident() -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def _run(place: Path, items: list[Item], engine, watch=None) -> None:
+def _run(place: Path, items: Cases, engine, watch=None) -> None:
     shutil.rmtree(place, ignore_errors=True)
 
     @contextmanager

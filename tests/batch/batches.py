@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
+import pyarrow.parquet as pq
+
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.engine import LocalEngine
 from clearance.batch.manifest import Changes, items_of
+from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
-from clearance.batch.run import Outcome, run_batch
+from clearance.batch.run import run_batch
 from clearance.batch.store import open_store
 from tests.cart import URDF
 
@@ -79,5 +82,19 @@ def answer_bytes(place: Path) -> dict[str, bytes]:
 
 def statuses(answer: BatchAnswer) -> dict[str, str]:
     """The status of each case by name."""
-    names, found = (answer.cases[column].to_pylist() for column in ("case", "status"))
-    return dict(zip(names, found, strict=True))
+    return dict(zip(column(answer, "case"), column(answer, "status"), strict=True))
+
+
+def column(answer: BatchAnswer, name: str) -> list:
+    """A column of the cases."""
+    return [one for part in answer.rows.parts([name]) for one in part[name].to_pylist()]
+
+
+def cases(place: Path) -> list[dict]:
+    """The rows of the table of cases in a store."""
+    return pq.read_table(place / "cases.parquet").to_pylist()
+
+
+def findings(place: Path) -> list[dict]:
+    """The rows of the table of findings in a store."""
+    return pq.read_table(place / "findings.parquet").to_pylist()

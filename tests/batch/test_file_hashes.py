@@ -5,8 +5,10 @@ import os
 import pytest
 
 from clearance.batch.file_hashes import RACY, FileHashes, FileStamp, seen
+from clearance.batch.known_hashes import KnownHashes
 
 LONG_AGO = 10**9 * 10**9
+MADE_UP = "ab" * 32
 
 
 @pytest.fixture
@@ -18,48 +20,55 @@ def file(tmp_path):
 
 def marks(path, **changes):
     """What is known of a file that was read long after it was written, its hash made up."""
-    found = seen(path, "known", 0)
+    found = seen(path, MADE_UP, 0)
     late = max(found.changed, found.status_changed) + RACY + 1
     return found._replace(**{"read": late} | changes)
 
 
+def known(path, stamp):
+    """What was known before of one file."""
+    hashes = KnownHashes()
+    hashes.learn(path, stamp.marks, stamp.sha256)
+    return hashes
+
+
 def test_a_settled_file_is_not_read_again(file):
-    assert FileHashes({file: marks(file)}).of(file) == "known"
+    assert FileHashes(known(file, marks(file))).of(file) == MADE_UP
 
 
 @pytest.mark.parametrize("mark", ["device", "inode", "n_bytes", "changed", "status_changed"])
 def test_any_mark_that_is_another_makes_it_read_again(file, mark):
-    known = marks(file)
-    hashes = FileHashes({file: known._replace(**{mark: getattr(known, mark) - 1})})
-    assert hashes.of(file) not in (None, "known")
+    given = marks(file)
+    hashes = FileHashes(known(file, given._replace(**{mark: getattr(given, mark) - 1})))
+    assert hashes.of(file) not in (None, MADE_UP)
 
 
 def test_what_was_read_soon_after_its_last_change_is_not_kept(file):
-    hashes = FileHashes({})
+    hashes = FileHashes()
     assert hashes.of(file) is not None
-    assert hashes.known == {} and not hashes.is_new  # written a moment ago: racy
+    assert len(hashes.known) == 0 and not hashes.is_new  # written a moment ago: racy
 
 
 def test_what_changed_as_it_was_read_is_not_kept(file):
-    hashes = FileHashes({})
+    hashes = FileHashes()
     early = marks(file)._replace(read=LONG_AGO)
     hashes.learn([(file, early)])
-    assert hashes.known == {}
+    assert len(hashes.known) == 0
     hashes.learn([(file, marks(file))])
-    assert hashes.known == {file: marks(file)} and hashes.is_new
+    assert hashes.known.find(file, marks(file).marks) == MADE_UP and hashes.is_new
 
 
 def test_content_changed_with_its_time_set_back_is_seen(file):
-    known = marks(file)
+    given = marks(file)
     with open(file, "r+") as stream:
         stream.write("TIME")
-    os.utime(file, ns=(known.changed, known.changed))
-    assert os.stat(file).st_mtime_ns == known.changed and os.stat(file).st_size == known.n_bytes
-    assert FileHashes({file: known}).of(file) != "known"
+    os.utime(file, ns=(given.changed, given.changed))
+    assert os.stat(file).st_mtime_ns == given.changed and os.stat(file).st_size == given.n_bytes
+    assert FileHashes(known(file, given)).of(file) != MADE_UP
 
 
 def test_a_file_that_is_gone_has_no_hash(tmp_path):
-    assert FileHashes({}).of(str(tmp_path / "gone.csv")) is None
+    assert FileHashes().of(str(tmp_path / "gone.csv")) is None
     assert seen(str(tmp_path / "gone.csv"), "", 0) is None
 
 

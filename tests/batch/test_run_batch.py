@@ -24,6 +24,9 @@ from tests.batch.batches import (
     CELL,
     URDF,
     answer_bytes,
+    cases,
+    column,
+    findings,
     run_here,
     statuses,
     write_cell,
@@ -47,7 +50,7 @@ def test_each_case_has_the_verdict_of_its_check(manifest, tmp_path):
     expected = ["clear", "near", "violated", "clear", "contact"]
     assert list(statuses(found).values()) == expected and found.exit_code == 1
     cell = load_cell(manifest.parent / "cell.yaml")
-    for row in found.cases.to_pylist():
+    for row in cases(tmp_path / "out"):
         asked = TrajectoryFile(file=f"{row['case']}.csv")
         run = answer(Question(with_trajectory_file(cell, asked, row["case"]), need="limit"))
         assert (row["status"], row["clearance"]) == (run.verdict.status, run.worst["clearance"])
@@ -108,7 +111,7 @@ def test_bad_input_among_others_is_told_and_the_others_are_done(manifest, tmp_pa
     _, found = run_here(manifest, tmp_path / "out")
     assert statuses(found) == {"t000": "clear", "t001": "error", "t003": "error"}
     assert found.exit_code == 1
-    rows = {row["case"]: row for row in found.cases.to_pylist()}
+    rows = {row["case"]: row for row in cases(tmp_path / "out")}
     assert "t001.csv: line 3: 'x' in column 'rail' is not a number" in rows["t001"]["text"]
     assert "rial" in rows["t003"]["reasons"][0]
     told, strict = run_here(manifest, tmp_path / "out", strict=True)
@@ -160,7 +163,7 @@ def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
     assert len(open_store(tmp_path / "out")) == 2
     monkeypatch.setattr(room, "write_file", write)
     told, found = run_here(manifest, tmp_path / "out")
-    assert told.measured == ["t002", "t003", "t004"] and found.cases.num_rows == 5
+    assert told.measured == ["t002", "t003", "t004"] and found.n_cases == 5
 
 
 def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
@@ -217,14 +220,14 @@ def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
 
     told, found = run_with(0.001)
     assert len(told.measured) == 5
-    first = found.cases["proven"].to_pylist()
+    first = column(found, "proven")
     assert run_with(0.001)[0].measured == []
     told, found = run_with(0.01)
     assert len(told.measured) == 5
-    for was, now in zip(first, found.cases["proven"].to_pylist(), strict=True):
+    for was, now in zip(first, column(found, "proven"), strict=True):
         assert now == pytest.approx(was - 0.009, abs=2e-4)
     told, found = run_with(0.01, tolerance=None)
-    assert len(told.measured) == 5 and found.cases["proven"].to_pylist() == [None] * 5
+    assert len(told.measured) == 5 and column(found, "proven") == [None] * 5
 
 
 def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):
@@ -256,7 +259,7 @@ def test_where_a_case_has_waivers_the_day_decides(manifest, tmp_path):
 
     told, found = run_on("2027-03-31")
     assert len(told.measured) == 5 and statuses(found)["t002"] in ("clear", "near")
-    waived = [row["waived"] for row in found.findings.to_pylist() if row["case"] == "t002"]
+    waived = [row["waived"] for row in findings(tmp_path / "out") if row["case"] == "t002"]
     assert "seen (me)" in waived
     assert run_on("2027-03-31")[0].measured == []
     told, found = run_on("2027-04-01")
@@ -271,7 +274,7 @@ def test_a_cell_that_is_edited_while_the_batch_runs_is_not_taken_for_what_was_re
     measure(Task((first,), 60.0, program(), "a batch"))
     cell = manifest.parent / "cell.yaml"
     cell.write_text(CELL.replace("fail: 0.05", "fail: 0.29"))
-    hashes = FileHashes({})
+    hashes = FileHashes()
     hashes.learn(measure(Task((second,), 60.0, program(), "a batch")).read)
     assert hashes.of(str(cell)) == hashlib.sha256(cell.read_bytes()).hexdigest()
 
@@ -342,12 +345,12 @@ def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypa
 
 def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
     _, found = run_here(manifest, tmp_path / "out")
-    assert set(found.cases["incomplete"].to_pylist()) == {""}
+    assert set(column(found, "incomplete")) == {""}
     _, least = run_here(manifest, tmp_path / "least", changes=Changes(need="minimum"))
-    assert all("need 'minimum'" in why for why in least.cases["incomplete"].to_pylist())
+    assert all("need 'minimum'" in why for why in column(least, "incomplete"))
     monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
     _, cut = run_here(manifest, tmp_path / "cut")
-    assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}
+    assert set(column(cut, "incomplete")) == {"1 of 1 findings are not listed"}
 
 
 @pytest.mark.slow
@@ -355,8 +358,8 @@ def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
     manifest = write_cell(tmp_path / "in", [0.2])
     cell = tmp_path / "in" / "cell.yaml"
     cell.write_text(cell.read_text() + "tolerance: {base: {xyz: 0.3}}\n")
-    _, found = run_here(manifest, tmp_path / "store")
-    (row,) = found.cases.to_pylist()
+    run_here(manifest, tmp_path / "store")
+    (row,) = cases(tmp_path / "store")
     assert (row["status"], row["measured"], row["exit_code"]) == ("not proven", "near", 1)
     assert any("with the tolerances" in reason for reason in row["reasons"])
     page = (tmp_path / "store" / "batch.html").read_text()

@@ -127,7 +127,7 @@ def test_the_list_keeps_them(folder):
     given = load_waivers(folder / "waivers.yaml")
     items = items_of(["batch.yaml"], Changes(today=date.fromisoformat(DAY), waivers=given))
     found = read_list(folder / "store")
-    assert found == items
+    assert list(found) == list(items)
     assert [one.options.waivers for one in found] == [one.options.waivers for one in items]
     assert [len(one.options.waivers) for one in found] == [1, 2, 1]
 

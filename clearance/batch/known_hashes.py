@@ -1,0 +1,88 @@
+"""The sha256 of many input files with the marks that they had: some 70 bytes a file.
+
+A file is kept as a digest of its path, one of path and marks together, and its sha256. So no path is told from
+another by its marks alone, nor the reverse. Not for: whether a hash can be believed (`file_hashes`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import pyarrow as pa
+
+from clearance.batch.digest_table import NONE, DigestTable, digest_of_text
+
+_COLUMNS = {"path": 16, "marks": 16, "sha256": 32}
+"""Of the table that is kept, each with the bytes of an entry."""
+
+
+class KnownHashes:
+    """Hashes of files by path and marks; of each path the last marks that were told."""
+
+    def __init__(self) -> None:
+        self._paths = DigestTable(_COLUMNS["path"])
+        self._marks, self._hashes = bytearray(), bytearray()
+
+    def __len__(self) -> int:
+        return len(self._paths)
+
+    def find(self, path: str, marks: Sequence[int]) -> str | None:
+        """The sha256 of a file of these marks; None where it is not known."""
+        number = self._paths.find(digest_of_text(path, _COLUMNS["path"]))
+        if number == NONE or self._marks[16 * number : 16 * number + 16] != _digest(path, marks):
+            return None
+        return self._hashes[32 * number : 32 * number + 32].hex()
+
+    def learn(self, path: str, marks: Sequence[int], sha256: str) -> bool:
+        """Takes over what is known of a file; True if that is new."""
+        told, content = _digest(path, marks), bytes.fromhex(sha256)
+        number = self._paths.enter(digest_of_text(path, _COLUMNS["path"]))
+        at, of_hash = slice(16 * number, 16 * number + 16), slice(32 * number, 32 * number + 32)
+        if self._marks[at] == told and self._hashes[of_hash] == content:
+            return False
+        self._marks[at], self._hashes[of_hash] = told, content
+        return True
+
+    def table(self) -> pa.Table:
+        """All of them, as `of` takes them."""
+        parts = (self._paths.content, self._marks, self._hashes)
+        columns = {
+            name: pa.FixedSizeBinaryArray.from_buffers(
+                pa.binary(width), len(self), [None, pa.py_buffer(bytes(content))]
+            )
+            for (name, width), content in zip(_COLUMNS.items(), parts, strict=True)
+        }
+        return pa.table(columns)
+
+    @staticmethod
+    def of(batches: Iterable[pa.RecordBatch]) -> KnownHashes:
+        """Those of a table.
+
+        Raises:
+            KeyError, ValueError: it is of another form.
+        """
+        made = KnownHashes()
+        for batch in batches:
+            paths, marks, hashes = (
+                _bytes(batch.column(name), width) for name, width in _COLUMNS.items()
+            )
+            for start in range(0, len(paths), _COLUMNS["path"]):
+                made._paths.enter(paths[start : start + _COLUMNS["path"]])
+            made._marks += marks
+            made._hashes += hashes
+        if 16 * len(made) != len(made._marks):
+            raise ValueError("a path stands twice")
+        return made
+
+
+def _bytes(column: pa.Array, width: int) -> bytes:
+    """The entries of a column, one after another."""
+    if column.type != pa.binary(width) or column.null_count:
+        raise ValueError("another form")
+    content = column.buffers()[1]
+    start = width * column.offset
+    return content.slice(start, width * len(column)).to_pybytes()
+
+
+def _digest(path: str, marks: Sequence[int]) -> bytes:
+    return digest_of_text(f"{path}\0{tuple(marks)}", _COLUMNS["marks"])
