@@ -149,7 +149,7 @@ def _by_shift(case: Case, request: Request) -> Gain:
     if request.tool_path == "kept":
         return _by_base_alone(case, request, shift)
     search = Search(shift, request.margin)
-    first = search.state_at(np.zeros(shift.size_of_x))
+    first = search.first_state()
     at_least = least_shift(shift, first, request.margin)
     blocked = blocked_by(first, shift.gradient, shift.transfers)
     if blocked is None and at_least > shift.farthest:
@@ -169,7 +169,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     require_within_limits(before)
     way = tool_path_kept(shift, i_robot, request.tool)
     search = Search(way, request.margin)
-    first = search.state_at(np.zeros(shift.size_of_x))
+    first = search.first_state()
     at_least = least_base(way, first, request.margin)
     blocked = blocked_by(first, way.gradient, way.transfers)
     found = SearchResult(first, None, 1)
@@ -191,27 +191,38 @@ def _least_of_several(
 ) -> SearchResult:
     """The least of a search from where it is, and, where that may be beaten, from all sides."""
     best = search.from_state(first)
-    if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
-        return best
-    size = shift.size(best.state.x) if best.kept else None
-    for start in _starts(size, shift):
-        state = search.state_at(start)
+    for far in FARTHER:
+        if not best.kept:
+            best = _best_from_sides(search, shift, best, far)
+    if best.kept and shift.size(best.state.x) > NO_WORSE * at_least:
+        best = _best_from_sides(search, shift, best, INSIDE * shift.size(best.state.x))
+    return replace(best, n_measured=search.n_measured)
+
+
+def _best_from_sides(
+    search: Search, shift: Shift | ToolPathKept, best: SearchResult, far: float
+) -> SearchResult:
+    """The best, or a better one of searches from `far` [m] along each axis, either way.
+
+    Starts without contact come first; once a change is known, one in contact is left out.
+    """
+    states = [search.state_at(start) for start in _starts(far, shift)]
+    for state in sorted(states, key=lambda one: one.touches):
         if best.kept and state.touches:
-            continue
+            break
         found = search.from_state(state, shift.size(best.state.x) if best.kept else np.inf)
         if found.kept:
             best = found
     return best
 
 
-def _starts(size: float | None, shift: Shift | ToolPathKept) -> Iterator[np.ndarray]:
-    """(m,) variables to search from, after a change of a size [m] was found, or, with None, after none was."""
+def _starts(far: float, shift: Shift | ToolPathKept) -> Iterator[np.ndarray]:
+    """(m,) variables `far` [m] along each axis, either way, as far as they may be."""
     axes = np.eye(len(shift.box.low))
-    for far in FARTHER if size is None else (INSIDE * size,):
-        for side in (*axes, *-axes):
-            start = np.clip(far * side, *shift.box)
-            if start.any():
-                yield start
+    for side in (*axes, *-axes):
+        start = np.clip(far * side, *shift.box)
+        if start.any():
+            yield start
 
 
 def _by_path(case: Case, request: Request) -> Gain:
@@ -222,7 +233,7 @@ def _by_path(case: Case, request: Request) -> Gain:
     for n_intervals in INTERVALS:
         offsets = _offsets(case, changed, n_intervals, request)
         search = Search(offsets, request.margin)
-        first = search.state_at(np.zeros(len(offsets.first_reach)))
+        first = search.first_state()
         require_in_run(request.keep, first.record.timeline.times)
         at_least = least_offset(offsets, first, request.margin)
         blocked = blocked_by(first, offsets.gradient, offsets.transfers)

@@ -18,7 +18,7 @@ from clearance.gains.basis import Basis
 from clearance.gains.between_samples import values_between
 from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
-from clearance.gains.programme import Box, Inequalities, reachable
+from clearance.gains.programme import Box, Inequalities, reachable, within_reach
 from clearance.gains.shortfalls import Rows
 from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
@@ -27,7 +27,8 @@ from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import motion_of_frame
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.forest import link_poses_at
+from clearance.world.forest import WORLD, carried_by, forest_of, link_poses_at
+from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 
@@ -147,6 +148,15 @@ class JointOffsets:
         changed = replace(asked, positions=asked.positions + self.offsets(x), velocities=velocities)
         return replace(self.placed, trajectory=changed)
 
+    def moves(self, case: Case, pair: Pair) -> bool:
+        return any(self._carries(case, body) for body in pair) or self.transfers.has_of(case, pair)
+
+    def _carries(self, case: Case, body: BodyIndex) -> bool:
+        """True if a joint of the path moves a body."""
+        forest, frame = forest_of(case), body.frame_in(case)
+        links = [] if frame == WORLD else [*carried_by(forest, frame)]
+        return not {*forest.links.columns[links].tolist()}.isdisjoint(self.columns)
+
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.transfers.has(approach):
             size = self.n_joints * self.n_splines
@@ -241,7 +251,7 @@ def least_greatest(
     from scipy.optimize import linprog
     from scipy.sparse import block_array, csr_array, eye_array
 
-    size, rows = len(x), reachable(rows, x, box)
+    size, rows, kept = len(x), reachable(rows, x, box), within_reach(kept, *box)
     wanted = rows.missing + rows.gradients @ x
     ones, unit = csr_array(np.ones((sized.shape[0], 1))), eye_array(size)
     a = block_array(

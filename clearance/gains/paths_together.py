@@ -17,6 +17,7 @@ from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.transfers import CombinedTransfers
 from clearance.world.case import Case
+from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline
 
 
@@ -73,6 +74,9 @@ class PathsTogether:
         for part, own in zip(self.parts, self.of_each(x), strict=True):
             robots[part.i_robot] = part.placed_of(own)
         return replace(case, robots=tuple(robots))
+
+    def moves(self, case: Case, pair: Pair) -> bool:
+        return any(part.moves(case, pair) for part in self.parts)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         found = [part.gradient(approach, timeline) for part in self.parts]

@@ -70,6 +70,13 @@ class Inequalities(NamedTuple):
     b: np.ndarray
 
 
+def within_reach(kept: Inequalities, low: np.ndarray, high: np.ndarray) -> Inequalities:
+    """Those that some point between (m,) `low` and `high`, all finite, may break."""
+    most = kept.a.maximum(0.0) @ high + kept.a.minimum(0.0) @ low
+    some = most > kept.b
+    return Inequalities(kept.a[some], kept.b[some])
+
+
 def least_missing(
     rows: Rows, x: np.ndarray, box: Box, kept: Inequalities | None
 ) -> tuple[np.ndarray, float]:
@@ -88,11 +95,10 @@ def least_missing(
     if kept is not None:
         from scipy.sparse import csr_array, hstack, vstack
 
-        beside = hstack([kept.a, csr_array((len(kept.b), 1))])
-        above, most = (
-            vstack([csr_array(above), beside]),
-            np.concatenate([most, kept.b - kept.a @ x]),
-        )
+        left = Inequalities(kept.a, kept.b - kept.a @ x)
+        near = within_reach(left, box.low - x, box.high - x)
+        beside = hstack([near.a, csr_array((len(near.b), 1))])
+        above, most = vstack([csr_array(above), beside]), np.concatenate([most, near.b])
     bounds = [*zip(box.low - x, box.high - x, strict=True), (0.0, None)]
     found = linprog(cost, A_ub=above, b_ub=most, bounds=bounds, method="highs")
     if found.x is None:

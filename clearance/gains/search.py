@@ -27,6 +27,7 @@ from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
 from clearance.world.case import Case
+from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline
 
 MOST_STEPS = 40
@@ -46,6 +47,9 @@ FINE = 2e-7
 
 PATH_GAP = 1e-5
 """[m] How far below what occurs a second proof of a bent path may be, which says how much more is wanted."""
+
+SAME_PLACE = 0.01
+"""[-] Of the size of a change: where an earlier search was so near, another would go the same way."""
 
 SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
@@ -82,6 +86,9 @@ class Change(Protocol):
 
     def case_of(self, x: np.ndarray) -> Case:
         """The changed case."""
+
+    def moves(self, case: Case, pair: Pair) -> bool:
+        """False for a pair, of the plain case of a part of the run, that stays as near whatever is changed."""
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         """(k, m) what clearances grow by; None where nothing of it changes them.
@@ -138,6 +145,12 @@ class Search:
         self.change, self.margin, self.price = change, margin, change.price
         self.wanted = Requirement(margin, 2.0 * FINE, np.zeros(0))
         self.n_measured = 0
+        self.known: list[np.ndarray] = []
+        self.places: list[np.ndarray] = []
+
+    def first_state(self) -> State:
+        """The case as it is, measured, with what comes near though no change moves it."""
+        return replace(self.state_at(np.zeros(len(self.change.first_reach))), moved=None)
 
     def state_at(self, x: np.ndarray) -> State:
         """The case of some variables (m,), measured."""
@@ -146,8 +159,11 @@ class Search:
     def from_state(self, state: State, below: float = np.inf) -> SearchResult:
         """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
+        self.known, self.places = self.known + self.places, [state.x]
         for _ in range(MOST_PROOFS):
             state = self._improved(state)
+            if self._is_known(state.x):
+                break
             if state.worst > FINE or self.change.size(state.x) >= below:
                 break
             record = proven(state.case, self.margin)
@@ -173,7 +189,8 @@ class Search:
 
     def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
         self.n_measured += 1
-        found = measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+        beyond = self.change.swing(reach) + FINE
+        found = measured(self.change.case_of(x), x, self.wanted, beyond, self.change.moves)
         return replace(found, beside=self.change.beside(x, self.wanted.beyond))
 
     def _improved(self, state: State) -> State:
@@ -195,25 +212,49 @@ class Search:
                 return state
             tried = self._state(x, reach)
             done = self._merit(state.x, state.worst) - self._merit(x, tried.worst)
-            blind -= tried.touches and state.touches
-            if done < LEAST_SHARE * gain and (blind < 0 or not tried.touches):
+            in_contact = tried.touches and state.touches
+            blind -= in_contact
+            if done < LEAST_SHARE * gain and not (in_contact and blind >= 0):
                 reach = NARROWER * np.minimum(reach, np.abs(x - state.x).max())
                 if (reach < 1e-6 * self.change.first_reach).all():
                     return state
                 continue
             if done > GOOD_SHARE * gain:
-                reach = np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
-            state, rows = tried, tried.rows(self.change.gradient)
+                reach = self._next_reach(reach, x - state.x)
+            state = tried.seen_within(self.change.swing(reach) + FINE)
+            if self._is_known(state.x):
+                return state
+            self.places.append(state.x)
+            rows = state.rows(self.change.gradient)
             missing.append(state.worst)
         return state
 
+    def _next_reach(self, reach: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """(m,) how far the next step may go after one that did what was foretold: farther after one that went as far
+        as it could, else no farther than leads well past where it ended."""
+        first = self.change.first_reach
+        if (np.abs(step) >= (1.0 - SMALLER) * reach).any():
+            return np.minimum(WIDER * reach, 8.0 * first)
+        far = WIDER * float((np.abs(step) / first).max())
+        return np.minimum(reach, max(far, 1.0) * first)
+
+    def _is_known(self, x: np.ndarray) -> bool:
+        """True if an earlier search has passed here: this one would end where that did."""
+        near = SAME_PLACE * self.change.size(x)
+        return any(self.change.size(x - place) <= near for place in self.known)
+
     def _aim(self, state: State, rows: Rows, reach: np.ndarray) -> np.ndarray:
-        """Where the next step goes: the least change that keeps all rows, or misses them by least."""
-        box = self.change.box.about(state.x, reach)
-        x = self.change.least(rows, state.x, box)
+        """Where the next step goes: the least change that keeps all rows, or misses them by least.
+
+        Whether a path can keep them is asked first: HiGHS may take minutes to find that no least change is there.
+        """
+        box, x = self.change.box.about(state.x, reach), None
+        if not self.change.bends or (rows.missing <= 0.0).all():
+            x = self.change.least(rows, state.x, box)
         if x is None:
             nearest, left = least_missing(rows, state.x, box, self.change.kept)
-            relaxed = rows._replace(missing=rows.missing - left * (1.0 + 1e-6) - FINE)
+            more = left * (1.0 + 1e-6) + FINE if left > 0.01 * FINE else 0.0
+            relaxed = rows._replace(missing=rows.missing - more)
             x = self.change.least(relaxed, state.x, box)
             x = nearest if x is None else x
         return np.clip(x, box.low, box.high)

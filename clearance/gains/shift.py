@@ -26,7 +26,7 @@ from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of
 from clearance.world.forest import carried_by, forest_of
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 
@@ -80,6 +80,10 @@ class Shift:
 
     def case_of(self, x: np.ndarray) -> Case:
         return self.place(self.case, x)
+
+    def moves(self, case: Case, pair: Pair) -> bool:
+        apart = self.moved(case, pair.a) != self.moved(case, pair.b)
+        return apart or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.moved_frame is not None and self.transfers.has(approach):

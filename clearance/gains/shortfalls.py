@@ -16,7 +16,7 @@ from clearance.findings.standing import code_of
 from clearance.gains.moments import with_moments
 from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
-from clearance.simulate.approaches import Approach, approaches
+from clearance.simulate.approaches import Approach, OfPair, approaches
 from clearance.simulate.certificate import motion_codes
 from clearance.simulate.record import Record
 from clearance.simulate.status import STATUSES, Status
@@ -92,6 +92,7 @@ class State:
     Attributes:
         x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
         beside: what is kept beside clearances; None for nothing.
+        moved: the pairs that are looked at, those that the change may move; None for all.
     """
 
     x: np.ndarray
@@ -100,14 +101,14 @@ class State:
     beyond: float
     wanted: Requirement
     beside: Rows | None = None
+    moved: OfPair | None = None
 
     @cached_property
     def near(self) -> Sequence[Approach]:
         """All that comes near, at the steps."""
         extra = float(self._extra.max(initial=0.0))
-        return [
-            *approaches(self.record.rules, self.margin + self.wanted.beyond + extra + self.beyond)
-        ]
+        within = self.margin + self.wanted.beyond + extra + self.beyond
+        return [*approaches(self.record.rules, within, self.moved)]
 
     @property
     def touches(self) -> bool:
@@ -122,10 +123,25 @@ class State:
     @cached_property
     def worst(self) -> float:
         """[m] How far the worst pair, or what else is kept, is below what is wanted; 0 where none is."""
-        found = [float(self.missing(one).max(initial=0.0)) for one in self.near]
+        found = [0.0]
+        if not self._holds:
+            found += [float(self.missing(one).max(initial=0.0)) for one in self.near]
         if self.beside is not None:
             found.append(float(self.beside.missing.max(initial=0.0)))
-        return max(found, default=0.0)
+        return max(found)
+
+    @cached_property
+    def _holds(self) -> bool:
+        """True if the nearest pair of each step has what is wanted, so that no other need be looked at."""
+        wanted = self.wanted.margin + self.wanted.beyond + self._extra
+        return not any(
+            (rule.measurement.clearance < rule.limits.fail + wanted).any()
+            for rule in self.record.rules
+        )
+
+    def seen_within(self, beyond: float) -> State:
+        """The same with what comes near within `beyond` [m], where nothing has been looked at yet."""
+        return self if "near" in vars(self) else replace(self, beyond=beyond)
 
     def missing(self, approach: Approach) -> np.ndarray:
         """(k,) [m] how far an approach is below what is wanted; negative above it."""
@@ -153,11 +169,17 @@ class State:
         return Rows(np.concatenate(missing), np.concatenate(gradients))
 
 
-def measured(case: Case, x: np.ndarray, wanted: Requirement, beyond: float) -> State:
-    """A case with all that comes within `beyond` [m] of what is wanted, at its steps and the moments wanted."""
+def measured(
+    case: Case, x: np.ndarray, wanted: Requirement, beyond: float, moved: OfPair | None = None
+) -> State:
+    """A case with all that comes within `beyond` [m] of what is wanted, at its steps and the moments wanted.
+
+    Args:
+        moved: the pairs that are looked at; None for all.
+    """
     finer = with_moments(case, wanted.moments)
     record = answer(Question(finer, certify=False, contact="none")).record
-    return State(x, case, record, beyond, wanted)
+    return State(x, case, record, beyond, wanted, moved=moved)
 
 
 def proven(case: Case, margin: float, gap: float = CERTIFY_GAP) -> Record:

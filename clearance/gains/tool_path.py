@@ -28,7 +28,7 @@ from clearance.simulate.approaches import Approach
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.timeline import Timeline
 from clearance.world.trajectory import Trajectory
 
@@ -151,6 +151,10 @@ class ToolPathKept:
             by_unit[:, :3, 3] = self.shift.pivot.by_unit(world_from_tool[:, :3, 3], base)
             by_unit[:, 3:, 3] = self.shift.pivot.turn.direction / ARM
         return by_unit
+
+    def moves(self, case: Case, pair: Pair) -> bool:
+        stay = all(self._stays(case, body) for body in pair)
+        return not stay or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if all(self._stays(approach.case, body) for body in approach.pair):

@@ -6,7 +6,7 @@ direction . (v_b - v_a) in first order. Not for: what moves (`point_motion`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -69,8 +69,18 @@ class Approach:
         return self.of_bodies(*moved)
 
 
-def approaches(rules: Sequence[RuleAnswer], beyond: float) -> Iterator[Approach]:
-    """All pairs that are less than `beyond` [m] above the fail limit of what judges them, with the steps."""
+OfPair = Callable[[Case, Pair], bool]
+"""Whether a pair of the plain case of a part of the run is asked about."""
+
+
+def approaches(
+    rules: Sequence[RuleAnswer], beyond: float, chosen: OfPair | None = None
+) -> Iterator[Approach]:
+    """All pairs that are less than `beyond` [m] above the fail limit of what judges them, with the steps.
+
+    Args:
+        chosen: which pairs; None for all.
+    """
     for rule in rules:
         if rule.pairs is None:
             continue
@@ -78,6 +88,8 @@ def approaches(rules: Sequence[RuleAnswer], beyond: float) -> Iterator[Approach]
             for place in np.unique(near.pairs).tolist():
                 rows = near.pairs == place
                 pair = section.pairs[int(np.flatnonzero(section.places == place)[0])]
+                if chosen is not None and not chosen(section.phase.case, pair):
+                    continue
                 yield from _approach(rule, section, pair, near.steps[rows])
 
 
