@@ -41,6 +41,7 @@ class RectangleState(NamedTuple):
         lower_bounds: (nodes,) [m] proven for all that was closed at a node of clock a.
         witness_faces: (p, 2) the faces that were nearest, or -1.
         part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
+        tally: (5,) counts, as in `certify_unsynchronised`.
     """
 
     waiting: RectangleStack
@@ -52,6 +53,7 @@ class RectangleState(NamedTuple):
     part_b: IntervalMiddle
     at: np.ndarray
     scratch: Scratch
+    tally: np.ndarray
 
 
 class RectangleGoal(NamedTuple):
@@ -60,14 +62,14 @@ class RectangleGoal(NamedTuple):
     Attributes:
         least: [m] the least distance seen in its intervals of clock a, the greatest of these.
         target: [m] what is to be proven.
-        gap: [m] allowed below `least`.
+        aim: with the gap that is allowed below `least` here.
         is_fine: True if neither side is of several intervals.
         counts: True if a distance in the middle is one of an only interval of clock a, at times in the band.
     """
 
     least: float
     target: float
-    gap: float
+    aim: CertificateGoal
     is_fine: bool
     counts: bool
 
@@ -129,12 +131,9 @@ def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
 
 
 @inline
-def look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally, table):
-    """What holds of a pair over a rectangle, as a `PairLook`.
-
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
-    """
-    r, world = rectangle, clocks.world
+def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state, table):
+    """What holds of a pair over a rectangle, as a `PairLook`; `lent` is `surface`, lent."""
+    r, world, tally = rectangle, clocks.world, state.tally
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     whole_a, whole_b = is_whole(r.low_a, r.high_a), is_whole(r.low_b, r.high_b)
     if whole_a and whole_b:
@@ -161,8 +160,7 @@ def look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally
             return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
     tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)
-    aim = CertificateGoal(goal.gap, aim.fail, aim.most_parts)
-    held = hold(bodies, faces, motion, goal.least, aim, state.scratch, tally[1:], table)
+    held = hold(bodies, faces, motion, goal.least, goal.aim, state.scratch, tally[1:], table)
     faces[0], faces[1] = held.face_a, held.face_b
     is_done = held.completed and (goal.counts or held.lower_bound >= goal.target)
     return PairLook(held.lower_bound, held.least, is_done, moved_a, moved_b)

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import lend
-from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER
+from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER, CertificateGoal
 from clearance.kernels.motion.certify_pair import allowed_gap
 from clearance.kernels.motion.clock_rectangles import (
     ALL_TIMES,
@@ -89,7 +89,8 @@ def _goal_of(clocks, rectangle, aim, bounds, state):
     one = is_leaf_of_clock(tree, node)
     counts = one and middle_occurs(tree, clocks.tree_b, rectangle, clocks.band)
     is_fine = one and is_leaf_of_clock(clocks.tree_b, rectangle.node_b)
-    return RectangleGoal(least, target, gap if one else aim.gap, is_fine, counts)
+    allowed = CertificateGoal(gap if one else aim.gap, aim.fail, aim.most_parts)
+    return RectangleGoal(least, target, allowed, is_fine, counts)
 
 
 @inline
@@ -104,7 +105,7 @@ def _note_seen(clocks, rectangle, pair, distance, bounds):
 
 
 @inline
-def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, tally, table):
+def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, table):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
 
     Those that are left are listed.
@@ -121,7 +122,7 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, tally, ta
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
             return 0, True
         pair = listed[place]
-        seen = look_at_pair(lent, surface, clocks, r, pair, goal, aim, state, tally, table)
+        seen = look_at_pair(lent, surface, clocks, r, pair, goal, state, table)
         if seen.is_done:
             bound = seen.lower_bound
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
@@ -205,16 +206,17 @@ def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
         new_rectangle_stack(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
         np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
         new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
+        tally,
     )  # fmt: skip
     for i in range(len(tally)):
         tally[i] = 0
     _begin(clocks, steps, aim, bounds, state)
-    _certify(surface, clocks, aim, bounds, tally, state, table)
+    _certify(surface, clocks, aim, bounds, state, table)
     _end(clocks, bounds, state)
 
 
 @kernel(reference_counts=False)
-def _certify(surface, clocks, aim, bounds, tally, state, table):
+def _certify(surface, clocks, aim, bounds, state, table):
     """`certify_unsynchronised`, with the arrays of its state."""
     lent = lend(surface)
     tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
@@ -224,7 +226,7 @@ def _certify(surface, clocks, aim, bounds, tally, state, table):
         r, count = take_rectangle(waiting, n_waiting)
         if not meets_band(tree_a, tree_b, r, clocks.band):
             continue
-        tally[0] += 1
+        state.tally[0] += 1
         one_a = is_leaf_of_clock(tree_a, r.node_a)
         if one_a:
             row = tree_a.first[r.node_a]
@@ -235,7 +237,7 @@ def _certify(surface, clocks, aim, bounds, tally, state, table):
                 r = clipped(tree_a, tree_b, r, clocks.band)
         _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
         _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
-        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state, tally, table)
+        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state, table)
         if n_left == 0:
             continue
         if n_waiting + 2 > DEPTH:
