@@ -1,9 +1,9 @@
 """Where several processes test at once with an empty cache, each kernel is compiled by one of them.
 
-Each begins with small questions to domains of its own (`lane_of_domains`), before it collects; who comes later to
-a kernel that another one is compiling waits and takes it from the cache. Without this all of them compile the
-same kernels at the same time, first those that test modules need when they are imported. Not for: processes that
-tests start.
+Each begins with small questions to domains of its own (`lane_of_domains`) and to the command line (`rehearsal`),
+before it collects; who comes later to a kernel that another one is compiling waits and takes it from the cache.
+Without this all of them compile the same kernels at the same time, first those that test modules need when they
+are imported. Not for: processes that tests start.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TypeVar
 
+import pytest
 from filelock import FileLock
+
+from tests.guards import ALONE
 
 Item = TypeVar("Item")
 
@@ -27,6 +30,12 @@ MAIN_KERNELS = {
     "sketch": "sketch.graph.plan.make_plan",
 }
 """Of each domain a kernel that is kept once the domain is compiled; neighbours have most in common."""
+
+QUESTIONS = {
+    "tolerances": "budget.sweep.budget_moments",
+    "two robots on two clocks": "motion.unsynchronised.certify_unsynchronised",
+}
+"""Questions of `clearance compile` that need much beside the domains, and a kernel of each in the same way."""
 
 
 def share_of_list(items: Sequence[Item], i: int, n: int) -> Sequence[Item]:
@@ -51,11 +60,24 @@ def compile_share(i: int, n: int) -> None:
 
         for domain in missing:
             DOMAINS[domain]()
+    for question in share_of_list(list(QUESTIONS), i, n):
+        if not is_kept(question):
+            ask(question)
 
 
-def is_kept(domain: str) -> bool:
-    """True if the main kernel of a domain lies compiled in the cache."""
-    module, _, name = MAIN_KERNELS[domain].rpartition(".")
+def ask(question: str) -> None:
+    """Asks one of the questions of `clearance compile`, in this process alone."""
+    from clearance.cli import compile_kernels, rehearsal
+
+    (call,) = (one for one in rehearsal.THE_REST if one.about == question)
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv(ALONE, "1")
+        compile_kernels._ask([call])
+
+
+def is_kept(asked: str) -> bool:
+    """True if the main kernel of a domain or a question lies compiled in the cache."""
+    module, _, name = (MAIN_KERNELS | QUESTIONS)[asked].rpartition(".")
     return getattr(import_module(f"clearance.kernels.{module}"), name).kept.holds_any()
 
 

@@ -34,6 +34,14 @@ def test_a_domain_that_was_asked_counts_as_compiled(domain):
     assert kernel_shares.is_kept(domain)
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(cache_root() is None, reason="nothing is kept here")
+@pytest.mark.parametrize("question", kernel_shares.QUESTIONS)
+def test_a_question_that_was_asked_counts_as_compiled(question):
+    kernel_shares.ask(question)
+    assert kernel_shares.is_kept(question)
+
+
 def kernel_of(room: str) -> SimpleNamespace:
     """What stands for a kernel of a module."""
     return SimpleNamespace(
