@@ -42,13 +42,13 @@ if TYPE_CHECKING:
     FEATURES,
     FANS,
 ) = range(10)
-CERTIFY, OVERLAP = 10, 11
+CERTIFY, OVERLAP, BUDGET_PAIR = 10, 11, 12
 """The places of the table."""
 
 TOGETHER = (MEETING, COMMON_POINT, OVERLAP)
 """Who needs one of these mostly needs the others."""
 
-_table = np.zeros((12, 2), dtype=np.int64)  # address, stamp
+_table = np.zeros((13, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
 _listening = threading.Lock()

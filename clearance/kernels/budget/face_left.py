@@ -9,14 +9,21 @@ from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
+from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
 from clearance.kernels.budget.errors import BodyRows
 from clearance.kernels.budget.pieces import TrianglePairs, bound_of_pieces
 from clearance.kernels.budget.reach import along_at_rest, reach_of_point
 from clearance.kernels.budget.tilted import tilted
 from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
-from clearance.kernels.features.bounds import direction_beside, direction_between, margin_of
+from clearance.kernels.features.bounds import (
+    direction_beside,
+    direction_between,
+    lower_bound_faces_along_direction,
+    margin_of,
+)
 from clearance.kernels.features.face_pair import nearest_of_faces, nothing_yet
+from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.certify_pair import STILL, allowed_gap
 from clearance.kernels.search.node_pairs import Views, views_along
@@ -94,6 +101,13 @@ class _Faces(NamedTuple):
     apart: float
 
 
+class FacesBeside(NamedTuple):
+    """Two faces seen along a direction beside them: [m] a bound on what is left; True if they may be nearest."""
+
+    bound: float
+    is_nearest: bool
+
+
 class _ErrorEffect(NamedTuple):
     """The nearest points of two faces: [m] what errors take there, and what motion takes beside them."""
 
@@ -106,15 +120,19 @@ def _along(a, face_a, b, face_b, direction, seen, slack):
     """What is left of two faces along a direction, in which the errors are seen."""
     u, v = direction.u, direction.v
     far = beyond = -math.inf
-    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
-        x = row(a.vertices, a.face_vertices[c])
+    end = a.face_starts[face_a + 1]
+    for c in range(a.face_starts[face_a], end, WIDTH):
+        x = corners_at(a, c, end)
         height = dot(u, x)
-        far, beyond = max(far, height + moved_of_point(x, 0, u, seen)), max(beyond, height)
+        far = max(far, greatest_in(height + moved_of_point(x, 0, u, seen)))
+        beyond = max(beyond, greatest_in(height))
     first = before = math.inf
-    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
-        x = row(b.vertices, b.face_vertices[c])
+    end = b.face_starts[face_b + 1]
+    for c in range(b.face_starts[face_b], end, WIDTH):
+        x = corners_at(b, c, end)
         height = dot(v, x)
-        first, before = min(first, height - moved_of_point(x, 1, v, seen)), min(before, height)
+        first = min(first, least_in(height - moved_of_point(x, 1, v, seen)))
+        before = min(before, least_in(height))
     return _Faces(
         first + direction.offset - far - slack, before + direction.offset - beyond - slack
     )
@@ -148,18 +166,23 @@ def look_at_both(lent, direction, bodies):
 
 
 @inline
-def look_beside(lent, faces, back, slack):
+def look_beside(lent, faces, back, slack, known, near):
     """What is seen of two faces whole along a direction in which they are probably apart.
 
     Args:
-        back: `b_from_a`.
+        back: `b_from_a`. known: [m] a bound on what is left of them. near: [m] they may be the nearest if they are
+            nearer than that.
     """
     scene = borrow(lent)
     surface = scene.surface
     direction = direction_beside(surface, faces.a, surface, faces.b, faces.m, back)
+    apart = lower_bound_faces_along_direction(surface, faces.a, surface, faces.b, direction) - slack
+    if apart <= known:  # errors only take of it
+        return FacesBeside(known, apart < near)
     look_at_both(lent, direction, faces.bodies)
     own = scene.state.work.own
-    return _along(surface, faces.a, surface, faces.b, direction, own, slack)
+    seen = _along(surface, faces.a, surface, faces.b, direction, own, slack)
+    return FacesBeside(max(known, seen.bound), apart < near)
 
 
 @inline

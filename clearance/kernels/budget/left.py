@@ -21,7 +21,7 @@ from clearance.kernels.arithmetic.lanes import (
     least_of,
     marks_within,
 )
-from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
+from clearance.kernels.arithmetic.vec3 import Vec3, dot, sub
 from clearance.kernels.budget.errors import BESIDE, REACH, SURFACE, TURNED
 from clearance.kernels.budget.face_left import (
     SearchState,
@@ -42,6 +42,7 @@ from clearance.kernels.features.bounds import (
     lower_bound_boxes_along_direction,
     rounding_slack,
 )
+from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, MOST_TURNED
 from clearance.kernels.search.balls import radii_of
@@ -125,12 +126,14 @@ def _group_bounds(a, b, nodes, views, kept, reaches, target):
 def _face_bound(a, face_a, b, face_b, direction, kept, slack):
     """[m] a lower bound on what is left of two faces, along the tilted direction."""
     far, near = -math.inf, math.inf
-    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
-        x = row(a.vertices, a.face_vertices[c])
-        far = max(far, dot(direction.u, x) + kept_of_point(x, 0, kept))
-    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
-        x = row(b.vertices, b.face_vertices[c])
-        near = min(near, dot(direction.v, x) - kept_of_point(x, 1, kept))
+    end = a.face_starts[face_a + 1]
+    for c in range(a.face_starts[face_a], end, WIDTH):
+        x = corners_at(a, c, end)
+        far = max(far, greatest_in(dot(direction.u, x) + kept_of_point(x, 0, kept)))
+    end = b.face_starts[face_b + 1]
+    for c in range(b.face_starts[face_b], end, WIDTH):
+        x = corners_at(b, c, end)
+        near = min(near, least_in(dot(direction.v, x) - kept_of_point(x, 1, kept)))
     return near + direction.offset - far - slack
 
 
@@ -224,8 +227,12 @@ def _resume(scene, pair, moved, views, reaches, target, tally):
     start = fronts.spans[pair, 0]
     n_kept, n_waiting, nearest, lower_bound = 0, 0, 0, math.inf
     for i in range(start, start + fronts.spans[pair, 1]):
-        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
         carried = fronts.lower_bounds[i]
+        if carried - moved >= target and i == start + n_kept:  # it lies there already
+            lower_bound = min(lower_bound, carried - moved)
+            n_kept += 1
+            continue
+        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
         if carried - moved < target:
             nodes = NodeGroup(marks >= OF_B, group, other)
             before = n_waiting
@@ -343,9 +350,9 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         faces = TwoFaces(face_a, face_b, m, bodies)
         is_nearest = False
         if bound < target and n_faces >= FIRST_FACES:
-            beside = look_beside(lent, faces, search.views.b.m, slack)
-            bound = max(bound, beside.bound)
-            is_nearest = beside.apart < AS_NEAR * search.nearest
+            back, near = search.views.b.m, AS_NEAR * search.nearest
+            beside = look_beside(lent, faces, back, slack, bound, near)
+            bound, is_nearest = beside.bound, beside.is_nearest
         if bound >= target and not is_nearest:
             lower_bound = min(lower_bound, bound)
             continue

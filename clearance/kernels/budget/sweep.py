@@ -14,10 +14,10 @@ from clearance.kernels.budget.errors import REACH
 from clearance.kernels.budget.face_left import Aim
 from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
+from clearance.kernels.budget.pair_left import pair_left
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
-    ask,
     begin_anew,
     bound_by_boxes,
     carried_bound,
@@ -181,7 +181,8 @@ def budget_moments(scene, asked, rows, tally, table):
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
-            left = ask(lent, pair, 0.0, place, start, aim, is_step and is_rough, tally)
+            goes_on = is_step and is_rough
+            left = pair_left(table, lent, pair, 0.0, place, start, aim, goes_on, tally)
             note_bound(lent, pair, left.lower_bound)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
@@ -204,7 +205,7 @@ class _PairInterval(NamedTuple):
 
 
 @inline
-def _hold(lent, step, pair, look, least, asked, tally):
+def _hold(lent, step, pair, look, least, asked, tally, table):
     """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
     scene = borrow(lent)
     path, state = scene.path, scene.state
@@ -225,7 +226,7 @@ def _hold(lent, step, pair, look, least, asked, tally):
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False, 0)
         start = start_before(lent, pair)
-        left = ask(lent, pair, half, look, start, aim, n_parts == 1, tally)
+        left = pair_left(table, lent, pair, half, look, start, aim, n_parts == 1, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -279,7 +280,7 @@ def budget_intervals(scene, asked, rows, tally, table):
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved, look = _hold(lent, step, pair, look, least, asked, tally)
+            over, moved, look = _hold(lent, step, pair, look, least, asked, tally, table)
             note_bound(lent, pair, over.lower_bound)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share

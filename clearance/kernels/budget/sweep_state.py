@@ -1,6 +1,6 @@
-"""What is carried from one moment of a sweep to the next, and what is asked of one pair there.
+"""What is carried from one moment of a sweep to the next, and where a search begins there.
 
-Not for: which moments and intervals are asked (`sweep`).
+Not for: what is left of one pair (`pair_left`), and which moments and intervals are asked (`sweep`).
 """
 
 import math
@@ -10,11 +10,10 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.compile.kernel_table import borrow
-from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn, turn_back
+from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn_back
 from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.face_left import LeftScratch
-from clearance.kernels.budget.left import KEPT, Start, least_left
+from clearance.kernels.budget.left import KEPT, Start
 from clearance.kernels.budget.levers import (
     Levers,
     is_still,
@@ -126,7 +125,8 @@ def begin_anew(state):
 
 
 @inline(force=True)
-def _pose(world, body, state):
+def pose_of(world, body, state):
+    """Where a body is."""
     frame = world.frames[body]
     return rigid(state.middle.state.poses[frame] if frame >= 0 else world.standing[body])
 
@@ -168,7 +168,7 @@ def _place_body(surface, world, body, look, state):
         return
     state.placed[body] = look
     root = surface.roots[world.solids[body]]
-    place_box(surface, root, body, _pose(world, body, state), state.boxes)
+    place_box(surface, root, body, pose_of(world, body, state), state.boxes)
 
 
 @inline(force=True)
@@ -216,7 +216,7 @@ def bound_by_boxes(lent, pair, half, look, enough):
 def start_at(lent, pair, points):
     """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
     asked = borrow(lent)
-    pose = _pose(asked.world, asked.world.pairs[pair, 0], asked.state)
+    pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state)
     return Start(move_back(pose, row(points, 0)), move_back(pose, row(points, 1)), True)
 
 
@@ -227,35 +227,13 @@ def start_before(lent, pair):
     surface, world, state = asked.surface, asked.world, asked.state
     seen = row(state.directions, pair)
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    pose_a, pose_b = _pose(world, body_a, state), _pose(world, body_b, state)
+    pose_a, pose_b = pose_of(world, body_a, state), pose_of(world, body_b, state)
     here = Vec3(0.0, 0.0, 0.0)
     if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
         return Start(here, turn_back(pose_a, seen), False)
     p = box_of(surface, surface.roots[world.solids[body_a]]).centre
     q = box_of(surface, surface.roots[world.solids[body_b]]).centre
     return Start(p, move_back(pose_a, move(pose_b, q)), False)
-
-
-@inline
-def ask(lent, pair, half, look, start, aim, goes_on, tally):
-    """What errors leave of a pair about the middle.
-
-    Args:
-        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
-    """
-    asked = borrow(lent)
-    world, state = asked.world, asked.state
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    fill_body(lent, body_a, half, look)
-    fill_body(lent, body_b, half, look)
-    pose = _pose(world, body_a, state)
-    frames = frames_of(pose, _pose(world, body_b, state))
-    tally[1] += 1
-    moved = _moved(asked, pair) if goes_on else math.inf
-    left = least_left(lent, pair, moved, frames, start, aim, tally)
-    u = turn(pose, left.u)
-    state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
-    return left
 
 
 @inline
@@ -318,7 +296,8 @@ def next_motion(lent, pair):
 
 
 @inline(force=True)
-def _moved(asked, pair):
+def moved_of_pair(asked, pair):
+    """[m] what both bodies of a pair have moved in all; infinite where that is not known."""
     pairs, moved = asked.world.pairs, asked.state.moved
     return moved[pairs[pair, 0]] + moved[pairs[pair, 1]]
 
@@ -327,7 +306,7 @@ def _moved(asked, pair):
 def carried_bound(lent, pair):
     """[m] what is left of the bound of a pair after what its bodies have moved."""
     asked = borrow(lent)
-    moved = _moved(asked, pair)
+    moved = moved_of_pair(asked, pair)
     return asked.state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
 
 
@@ -335,4 +314,4 @@ def carried_bound(lent, pair):
 def note_bound(lent, pair, lower_bound):
     """Keeps the bound of a pair for later."""
     asked = borrow(lent)
-    asked.state.lower_bounds[pair] = (lower_bound + _moved(asked, pair)) - KEPT
+    asked.state.lower_bounds[pair] = (lower_bound + moved_of_pair(asked, pair)) - KEPT

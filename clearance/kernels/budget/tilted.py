@@ -93,13 +93,13 @@ def kept_of_box(box, side, kept):
 
 @inline(force=True)
 def kept_of_point(x, side, kept):
-    """[m] how far the rows that are kept move a point at most."""
-    moved = 0.0
+    """[m] how far the rows that are kept move a point at most, or four in lanes."""
+    moved = 0.0 * x.x
     for k in range(kept.n_linear[side]):
         r = kept.linear[side, k]
-        moved += abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
+        moved = moved + abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
     for k in range(kept.n_frames[side]):
         r, w = kept.frames[side, k], kept.directions[side]
         d = cross(Vec3(w[0], w[1], w[2]), sub(x, Vec3(r[0], r[1], r[2])))
-        moved += r[3] * math.sqrt(dot(d, d))
+        moved = moved + r[3] * square_root(dot(d, d))
     return moved * OUTWARD

@@ -3,12 +3,12 @@
 Not for: the rows of errors (`rows`).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, sub
 from clearance.kernels.budget.errors import (
     FIRST,
@@ -82,13 +82,13 @@ def look_along(found, body, side, u, seen):
 
 @inline(force=True)
 def moved_of_point(x, side, u, seen):
-    """[m] how far errors and motion move a point along the direction seen at most."""
-    moved = seen.alike[side]
+    """[m] how far errors and motion move a point, or four in lanes, along the direction seen at most."""
+    moved = seen.alike[side] + 0.0 * x.x  # as many lanes
     for k in range(seen.n_linear[side]):
         r = seen.linear[side, k]
-        moved += abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
+        moved = moved + abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
     for k in range(seen.n_frames[side]):
         r = seen.frames[side, k]
         d = cross(u, sub(x, Vec3(r[0], r[1], r[2])))
-        moved += r[3] * math.sqrt(dot(d, d))
+        moved = moved + r[3] * square_root(dot(d, d))
     return moved * OUTWARD

@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
-from clearance.kernels.arithmetic.lanes import larger, square_root, where_positive
+from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, square_root, where_positive
 from clearance.kernels.arithmetic.vec3 import (
     RigidMotion,
     Vec3,
@@ -22,6 +22,7 @@ from clearance.kernels.arithmetic.vec3 import (
     turn,
     turn_back,
 )
+from clearance.kernels.mesh.corners import corners_at, rows_at
 from clearance.kernels.mesh.surface import box_of
 
 SLACK = 128.0 * 2.0**-53
@@ -178,15 +179,19 @@ def _beside(surface, face, other, face_other, m):
     offset = dot(normal, sub(m.t, row(surface.vertices, surface.face_vertices[start])))
     height = max(0.0, least + offset) + min(0.0, most + offset)
     farthest, outward = 0.0, normal
-    for e in range(start, surface.face_starts[face + 1]):
-        u = row(surface.corner_normals, e)
+    end = surface.face_starts[face + 1]
+    for e in range(start, end, WIDTH):
+        u = rows_at(surface.corner_normals, e, end)
         v = turn_back(m, u)
-        least = math.inf
+        inward = 0.0 * v.x - math.inf  # in lanes, as all that follows
         for c in range(first, last):
-            least = min(least, dot(v, row(other.vertices, other.face_vertices[c])))
-        least += dot(u, sub(m.t, row(surface.vertices, surface.face_vertices[e])))
-        if least > farthest:
-            farthest, outward = least, u
+            x = row(other.vertices, other.face_vertices[c])
+            inward = larger(inward, dot(v, Vec3(-x.x, -x.y, -x.z)))
+        beyond = dot(u, sub(m.t, corners_at(surface, e, end))) - inward
+        for k in range(WIDTH):
+            if lane(beyond, k) > farthest:
+                farthest = lane(beyond, k)
+                outward = row(surface.corner_normals, min(e + k, end - 1))
     to = along(
         Vec3(farthest * outward.x, farthest * outward.y, farthest * outward.z), height, normal
     )
