@@ -6,11 +6,13 @@ for 10^8 values. Not for: which keys are valid, nor messages as ROS prints them 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadSyntax, DuplicateName
 
 if TYPE_CHECKING:
+    from ruamel.yaml import YAML
     from ruamel.yaml.nodes import Node
 
 MOST_REPEATED = 100_000
@@ -24,14 +26,13 @@ def plain_data(data: bytes) -> object:
         BadSyntax: not YAML, not UTF-8, more than one document, or aliases that repeat too much; with the line.
         DuplicateName: a key twice in a mapping.
     """
-    from ruamel.yaml import YAML
     from ruamel.yaml.constructor import DuplicateKeyError
 
     text = _text(data)
     try:
         if "*" in text:
-            _refuse_repetition(YAML(typ="safe", pure=True).compose(text), len(text))
-        return YAML(typ="safe", pure=True).load(text)
+            _refuse_repetition(_reader().compose(text), len(text))
+        return _reader().load(text)
     except BadSyntax:
         raise
     except DuplicateKeyError as error:
@@ -42,6 +43,32 @@ def plain_data(data: bytes) -> object:
     except Exception as error:  # whatever a parser that is not ours dies of, the file brought it
         problem = getattr(error, "problem", None) or str(error) or type(error).__name__
         raise BadSyntax(f"not YAML: {problem}", where=_line(error)) from None
+
+
+def _reader() -> YAML:
+    """A reader of plain data; a day that does not exist stays the text that it is, for who knows its field."""
+    from ruamel.yaml import YAML
+
+    reader = YAML(typ="safe", pure=True)
+    reader.Constructor = _constructor()
+    return reader
+
+
+@cache
+def _constructor() -> type:
+    from ruamel.yaml.constructor import SafeConstructor
+
+    class Constructor(SafeConstructor):
+        pass
+
+    def day_or_text(constructor: SafeConstructor, node: Any) -> object:
+        try:
+            return constructor.construct_yaml_timestamp(node)
+        except ValueError:
+            return constructor.construct_scalar(node)
+
+    Constructor.add_constructor("tag:yaml.org,2002:timestamp", day_or_text)
+    return Constructor
 
 
 def _text(data: bytes) -> str:

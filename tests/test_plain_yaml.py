@@ -1,5 +1,7 @@
 """YAML to plain data: what no YAML is ends with one line; aliases repeat no more than the file's length allows."""
 
+from datetime import date
+
 import pytest
 
 from clearance.errors import BadInput, BadSyntax, DuplicateName
@@ -48,7 +50,7 @@ def test_an_alias_of_what_it_stands_in_is_refused(text):
     "text",
     [
         b"a: !!bool maybe", b"a: !!int ''", b"a: !!float ''", b"a: !!timestamp x", b"%YAML 1.1\n---\na: -_",
-        b"a: " + b"1" * 5000, b"a: 2020-13-45", b"? {a: [1]}\n: 2", b"a: *b", b"a\0", b"\xff", b"[" * 500, b"a: [",
+        b"a: " + b"1" * 5000, b"? {a: [1]}\n: 2", b"a: *b", b"a\0", b"\xff", b"[" * 500, b"a: [",
         b"--- 1\n--- 2", b"!!python/object:os.system x",
     ],
 )  # fmt: skip
@@ -73,3 +75,12 @@ def test_every_file_of_ours_is_bounded(tmp_path):
     for read in (read_curve, read_outline, Sketch.load):
         with pytest.raises(BadInput, match=r"f\.yaml: line 6: the aliases repeat too much"):
             read(str(tmp_path / "f.yaml"))
+
+
+def test_a_day_that_is_none_stays_text():
+    """Who knows the field says what is wrong with it."""
+    assert plain_data(b"[2027-03-31, 2027-02-30, 2027-02-30T25:00:00]") == [
+        date(2027, 3, 31),
+        "2027-02-30",
+        "2027-02-30T25:00:00",
+    ]

@@ -11,8 +11,9 @@ from datetime import date
 
 from clearance.batch.cases import Cases
 from clearance.batch.item import Item
-from clearance.errors import nearest_name
-from clearance.load.case_file import waivers_of_cell
+from clearance.errors import ClearanceError, nearest_name
+from clearance.findings.waiver_names import unknown_among
+from clearance.load.case_file import load_cell, waivers_of_cell
 from clearance.world.rules import matches
 from clearance.world.waiver import Waiver
 
@@ -71,6 +72,20 @@ def _why_not(items: Sequence[Item], waiver: Waiver) -> str:
     names = [item.name for item in items]
     if all(item.trajectory for item in items) and not any(matches(n, waiver.case) for n in names):
         return f"no case is called {waiver.case!r}; {nearest_name(waiver.case, names)}"
-    return (
+    return _unknown_name(items, waiver) or (
         "what it is of keeps to its rule in all cases, or is not there, or a later waiver is of it"
     )
+
+
+def _unknown_name(items: Sequence[Item], waiver: Waiver) -> str:
+    """What a waiver names that no cell has, with the nearest name; empty where one has all, and where a case is a
+    file of its own, whose names are not asked for.
+    """
+    if not all(item.trajectory for item in items):
+        return ""
+    try:
+        cells = [load_cell(file).case for file in dict.fromkeys(item.file for item in items)]
+    except ClearanceError:  # it was changed since its cases were measured
+        return ""
+    rules = dict.fromkeys(name for cell in cells for name in cell.limits.rule_names)
+    return unknown_among(cells, [*rules], waiver)

@@ -127,7 +127,9 @@ def _shown(error: OSError) -> str:
 
 def _hint(error: Exception) -> str:
     context = getattr(error, "ctx", None)
-    return f" (see {context.command_path} --help)" if context is not None else ""
+    if context is None:
+        return ""
+    return f" (see {' '.join(context.command_path.split())} --help)"
 
 
 def _say(line: str) -> None:

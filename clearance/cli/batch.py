@@ -11,6 +11,8 @@ from clearance.cli import ExitCode
 from clearance.cli.for_ci import DateParamType
 from clearance.cli.options import LengthParamType, OutputPath, accept_option
 
+_LEFT_OUT = "clearance.batch.command_left_out"
+
 
 class _Commands(click.Group):
     """A group in which what is no command's name is an argument of the first one."""
@@ -19,14 +21,27 @@ class _Commands(click.Group):
         """The arguments, the command's name before them where it is left out."""
         if args and args[0] not in (*self.commands, *ctx.help_option_names):
             args = ["check", *args]
+            ctx.meta[_LEFT_OUT] = True
         return super().parse_args(ctx, args)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """The command; without a name where that was left out, so that hints say what was typed."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return None if ctx.meta.get(_LEFT_OUT) else name, command, rest
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """The options of the command whose name may be left out, then the commands."""
+        self.commands["check"].format_options(ctx, formatter)
+        self.format_commands(ctx, formatter)
 
 
 @click.group(cls=_Commands, options_metavar="", subcommand_metavar="[check] … | status STORE")
 def batch() -> None:
     """Many cases, measured once each and answered together.
 
-    `clearance batch MANIFEST.yaml --out STORE` checks; `clearance batch check --help` has its options.
+    `clearance batch MANIFEST.yaml --out STORE` checks; these are its options.
     """
 
 

@@ -47,7 +47,17 @@ TABLE = {
     ),
     "no case needs it": (
         waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
-        "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
+        "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: no body is called 'floor'",
+    ),
+    "no case needs it, and its bodies are there": (
+        waiver() + waiver("[ground, wall]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        "waivers     waiver ground - wall (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
+    ),
+    "of no body": (
+        waiver() + waiver("[slider, wal]"), 1, "STALE WAIVER", "no body is called 'wal'; did you mean 'wall'?",
+    ),
+    "of no rule": (
+        waiver() + waiver(rule="defalt"), 1, "STALE WAIVER", "no rule is called 'defalt'; did you mean 'default'?",
     ),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
     "of a case": (
@@ -148,7 +158,7 @@ CELL_TABLE = {
     "expired": (waiver(until="2026-10-31"), 1, "VIOLATED", "has expired on 2026-10-31"),
     "no motion needs it": (
         waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
-        "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: what it is of keeps",
+        "waivers     waiver slider - floor (own.yaml: waivers[1]) is not needed: no body is called 'floor'",
     ),
     "of no motion": (waiver() + waiver(case="t02"), 1, "STALE WAIVER", "did you mean 't002'?"),
     "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),

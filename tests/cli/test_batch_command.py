@@ -30,6 +30,16 @@ def test_the_exit_code_is_that_of_the_worst(folder, capsys):
     assert "cached      0 of 3" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("typed", "told"), [([], "batch"), (["check"], "batch check")])
+def test_a_hint_names_the_command_that_was_typed(typed, told, folder, capsys):
+    assert run(["batch", *typed, "batch.yaml", "--out", "store", "--shard", "5/2"]) == 2
+    err = capsys.readouterr().err
+    assert "'5/2' is no part; i/n with i from 1 to n" in err
+    assert err.endswith(f"(see clearance {told} --help)\n")
+    assert run(["batch", "--help"]) == 0
+    assert "--shard" in capsys.readouterr().out
+
+
 def test_samples_only_is_said(folder, capsys):
     batch("batch.yaml", "--out", "store", "--samples-only")
     assert "basis       3 cases looked at the samples only" in capsys.readouterr().out

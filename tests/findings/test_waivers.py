@@ -170,7 +170,10 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
         ("- {between: [a, b], at_least: 0.1, reason: r, until: 2027-01-01}", "'by' is missing"),
         ("- {between: [a, b], at_least: 0.1, reason: r, by: b}", "'until' is missing"),
         ("- {between: [a, b], at_least: 0.1, reason: r, by: b, until: 31.3.2027}", "a day, as 2027-03-31"),
-        ("- {between: [a, b], at_least: 0.1, reason: r, by: b, until: 2027-02-30}", "waivers.yaml"),
+        (
+            "- {between: [a, b], at_least: 0.1, reason: r, by: b, until: 2027-02-30}",
+            "waivers.yaml: waivers[0].until: 2027-02-30 is given; a day, as 2027-03-31",
+        ),
         ("- {between: [a, b], at_least: 0.1, reason: r, by: b, until: 7}", "a day, as 2027-03-31"),
         ("- {between: [a, b], atleast: 0.1, reason: r, by: b, until: 2027-01-01}", "did you mean 'at_least'?"),
     ],
