@@ -196,7 +196,7 @@ def _least_of_several(
             best = _best_from_sides(search, shift, best, far)
     if best.kept and shift.size(best.state.x) > NO_WORSE * at_least:
         best = _best_from_sides(search, shift, best, INSIDE * shift.size(best.state.x))
-    return replace(best, n_measured=search.n_measured)
+    return best
 
 
 def _best_from_sides(
@@ -204,10 +204,10 @@ def _best_from_sides(
 ) -> SearchResult:
     """The best, or a better one of searches from `far` [m] along each axis, either way.
 
-    Starts without contact come first; once a change is known, one in contact is left out.
+    The one that misses least comes first, those in contact last; once a change is known, these are left out.
     """
     states = [search.state_at(start) for start in _starts(far, shift)]
-    for state in sorted(states, key=lambda one: one.touches):
+    for state in sorted(states, key=lambda one: np.inf if one.touches else one.worst):
         if best.kept and state.touches:
             break
         found = search.from_state(state, shift.size(best.state.x) if best.kept else np.inf)

@@ -54,6 +54,9 @@ SAME_PLACE = 0.01
 SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
 
+SURELY = 1.0 - 1e-9
+"""[-] A size is below another if it is by more than rounding."""
+
 LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
 """[-] Of what is foretold: with less a step is not taken, with more the next goes farther."""
 
@@ -147,6 +150,7 @@ class Search:
         self.n_measured = 0
         self.known: list[np.ndarray] = []
         self.places: list[np.ndarray] = []
+        self.below = np.inf
 
     def first_state(self) -> State:
         """The case as it is, measured, with what comes near though no change moves it."""
@@ -159,12 +163,12 @@ class Search:
     def from_state(self, state: State, below: float = np.inf) -> SearchResult:
         """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
-        self.known, self.places = self.known + self.places, [state.x]
+        self.known, self.places, self.below = self.known + self.places, [state.x], below * SURELY
         for _ in range(MOST_PROOFS):
             state = self._improved(state)
-            if self._is_known(state.x):
+            if self._is_known(state):
                 break
-            if state.worst > FINE or self.change.size(state.x) >= below:
+            if state.worst > FINE or self.change.size(state.x) >= self.below:
                 break
             record = proven(state.case, self.margin)
             if keeps(record):
@@ -222,7 +226,7 @@ class Search:
             if done > GOOD_SHARE * gain:
                 reach = self._next_reach(reach, x - state.x)
             state = tried.seen_within(self.change.swing(reach) + FINE)
-            if self._is_known(state.x):
+            if self._is_known(state):
                 return state
             self.places.append(state.x)
             rows = state.rows(self.change.gradient)
@@ -230,18 +234,26 @@ class Search:
         return state
 
     def _next_reach(self, reach: np.ndarray, step: np.ndarray) -> np.ndarray:
-        """(m,) how far the next step may go after one that did what was foretold: farther after one that went as far
-        as it could, else no farther than leads well past where it ended."""
+        """(m,) how far the next step may go after one that did what was foretold.
+
+        Farther after one that went as far as it could, else no farther than leads well past where it ended.
+        """
         first = self.change.first_reach
         if (np.abs(step) >= (1.0 - SMALLER) * reach).any():
             return np.minimum(WIDER * reach, 8.0 * first)
         far = WIDER * float((np.abs(step) / first).max())
         return np.minimum(reach, max(far, 1.0) * first)
 
-    def _is_known(self, x: np.ndarray) -> bool:
-        """True if an earlier search has passed here: this one would end where that did."""
-        near = SAME_PLACE * self.change.size(x)
-        return any(self.change.size(x - place) <= near for place in self.known)
+    def _is_known(self, state: State) -> bool:
+        """True if an earlier search has passed here: this one would end where that did.
+
+        What is kept and smaller than all before goes on all the same.
+        """
+        size = self.change.size(state.x)
+        if state.worst <= FINE and size < self.below:
+            return False
+        near = SAME_PLACE * size
+        return any(self.change.size(state.x - place) <= near for place in self.known)
 
     def _aim(self, state: State, rows: Rows, reach: np.ndarray) -> np.ndarray:
         """Where the next step goes: the least change that keeps all rows, or misses them by least.

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from gain_cases import Change, change_of
+from gain_cases import Perturbation, change_of
 from gain_files import CaseOnDisk
 
 import clearance as cl
@@ -94,7 +94,7 @@ def general_change(one: CaseOnDisk, n_intervals: int, seconds: float) -> General
 class _Problem:
     """The programme of one case; the best that was seen of it at any time."""
 
-    def __init__(self, change: Change, known: float, ends: float) -> None:
+    def __init__(self, change: Perturbation, known: float, ends: float) -> None:
         self.change, self.ends = change, ends
         self.n_variables = len(change.first_reach)
         self.best: np.ndarray | None = None
@@ -156,7 +156,7 @@ class _Problem:
         return np.hstack([slopes, np.zeros((len(slopes), 1))]) if self.is_path else slopes
 
 
-def _stretches(state: State, change: Change) -> tuple[np.ndarray, np.ndarray]:
+def _stretches(state: State, change: Perturbation) -> tuple[np.ndarray, np.ndarray]:
     """(k,) [m] the least above the limit in each stretch of the run, and (k, m) what it grows by."""
     n_steps = len(state.record.motions[0].times)
     above, slopes = np.full(STRETCHES, BEYOND), np.zeros((STRETCHES, len(state.x)))
