@@ -5,6 +5,7 @@ Nothing that measured or certified takes part: `receipt.proof` does all that dec
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import field, replace
 from os import PathLike
@@ -215,9 +216,9 @@ def _loaded(place: Path, receipt: Receipt, case: str | PathLike[str] | None) -> 
         if not way:
             raise BadInput("the receipt is of a case without a file", valid="give the case")
         path = place / way
-        if not path.is_file():
+        if not os.path.isfile(path):
             raise MissingFile(
-                f"there is no {way}", where=str(place / FILE_NAME), valid="--case CASE.yaml"
+                f"there is no {shown(way)}", where=str(place / FILE_NAME), valid="--case CASE.yaml"
             )
         return load_case(path)
     return load_case(case)
@@ -233,9 +234,9 @@ def _with_tolerance(
     if tolerance is None and not way:
         return case
     path = place / way if tolerance is None else Path(tolerance)
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise MissingFile(
-            f"there is no {path.name}", where=str(place / FILE_NAME), valid="--tolerance FILE"
+            f"there is no {shown(path.name)}", where=str(place / FILE_NAME), valid="--tolerance FILE"
         )
     return with_tolerance(case, path)
 

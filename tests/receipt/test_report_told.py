@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 import clearance as cl
-from clearance.errors import BadSyntax
+from clearance.errors import BadSyntax, MissingFile
 from clearance.receipt.case_data import case_data
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
 from clearance.receipt.report_told import digest_of
@@ -142,3 +142,13 @@ def test_a_receipt_of_another_version_says_so_where_numbers_differ(folder):
     rewritten(folder, head=head | {"version": "0.0.1", "data": "0" * 64})
     with pytest.raises(BadSyntax, match=r"clearance 0.0.1 wrote it, this is"):
         cl.verify(folder, turning_arm())
+
+
+@pytest.mark.parametrize("key", ["case", "tolerance"])
+@pytest.mark.parametrize("way", ["a" * 5000, "\x00", "x\ny.yaml"])
+def test_a_way_that_leads_nowhere_is_told_in_one_line(folder, key, way):
+    head = read_receipt(folder / FILE_NAME).head
+    rewritten(folder, head=head | {key: way})
+    with pytest.raises(MissingFile, match="there is no") as told:
+        cl.verify(folder, None if key == "case" else turning_arm())
+    assert str(told.value).isprintable()
