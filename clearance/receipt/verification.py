@@ -236,7 +236,9 @@ def _with_tolerance(
     path = place / way if tolerance is None else Path(tolerance)
     if not os.path.isfile(path):
         raise MissingFile(
-            f"there is no {shown(path.name)}", where=str(place / FILE_NAME), valid="--tolerance FILE"
+            f"there is no {shown(path.name)}",
+            where=str(place / FILE_NAME),
+            valid="--tolerance FILE",
         )
     return with_tolerance(case, path)
 
