@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 NOMINAL = "the receipt proves the bound without tolerances; what these leave is not proven again"
 
+NO_RECEIPT = "{}: the report is whole, and has no receipt"
+
 receipt_option = click.option(
     "--receipt",
     type=click.Choice(["full", "sampled"]),
@@ -52,16 +54,22 @@ def write_receipt_of(
     *,
     quiet: bool,
 ) -> None:
-    """Writes the receipt where one is wanted, and says how long it is, and if tolerances are no part of it."""
+    """Writes the receipt where one is wanted, and says how long it is, and if tolerances are no part of it.
+
+    The report is written before: whoever does not wait for the receipt keeps the answer.
+    """
     if receipt is None or out is None:
         return
     from clearance.cli.progress import shown_progress
     from clearance.receipt.receipt_file import read_receipt
     from clearance.receipt.writing import write_receipt
 
-    passes = ["receipt"] if run.record.case.tolerance is None else ["receipt", "with tolerances"]
-    with shown_progress(quiet, passes) as progress:
-        path = write_receipt(run, out, case_file, receipt, tolerance_file or "", progress)
+    try:
+        with shown_progress(quiet, ["receipt"]) as progress:
+            path = write_receipt(run, out, case_file, receipt, tolerance_file or "", progress)
+    except KeyboardInterrupt:
+        click.echo(NO_RECEIPT.format(out), err=True)
+        raise
     if read_receipt(path).head["nominal"]:
         click.echo(f"{path}: {NOMINAL}", err=True)
     if not quiet:
@@ -93,23 +101,24 @@ def verify(folder: Path, case_file: Path | None, tolerance: Path | None, quiet: 
     proven, with the first pair and interval that are not; 2 bad input: a receipt that is damaged,
     or of other files, and which.
     """
+    from clearance.errors import shown
     from clearance.receipt.verification import verify as verified
 
     found = verified(folder, case_file, tolerance)
     if not quiet:
         click.echo(found.headline)
         for path, digest in found.inputs:
-            click.echo(f"  {digest[:16]}  {path}")
+            click.echo(f"  {digest[:16]}  {shown(path)}")
         for path, digest in found.not_read:
             click.echo(
-                f"  {digest[:16]}  {path} (of the run; not read again, no part of the proof)"
+                f"  {digest[:16]}  {shown(path)} (of the run; not read again, no part of the proof)"
             )
         if found.unmeasured:
             click.echo(
                 f"  {len(found.unmeasured)} links and pairs are left out, as the report lists them:"
             )
             for one in found.unmeasured[:MOST_TOLD]:
-                click.echo(f"    {one.link} - {one.obstacle}: {one.reason}")
+                click.echo(f"    {shown(one.link)} - {shown(one.obstacle)}: {shown(one.reason)}")
             if len(found.unmeasured) > MOST_TOLD:
                 click.echo(f"    and {len(found.unmeasured) - MOST_TOLD} more")
     return ExitCode.CLEAR if found.proven else ExitCode.VIOLATED

@@ -5,7 +5,7 @@ Whatever direction comes out, it only has to do; what it proves is decided elsew
 
 from __future__ import annotations
 
-import itertools
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from clearance.receipt.proof.error_terms import along_of
 from clearance.receipt.proof.halving import farthest, farthest_points
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.placing import PlacedViews
-from clearance.receipt.proof.separation import Sides, dot
+from clearance.receipt.proof.separation import Sides, across, dot
 from clearance.receipt.proof.stage import Stage
 
 ROUNDS = 24
@@ -22,17 +22,27 @@ ROUNDS = 24
 NEAR = 1e-10
 """[-] Of the distance: nearer to it nothing is gained."""
 
-SUBSETS = [list(one) for size in (1, 2, 3, 4) for one in itertools.combinations(range(4), size)]
+FLAT = 1e-13
+"""[-] Of a triangle or a tetrahedron against its edges: flatter ones are left to their sides."""
+
+TIP = 3
+"""The number of the newest of four points."""
 
 
-def nearest_directions(stage: Stage, items: Items) -> tuple[np.ndarray, np.ndarray]:
+def nearest_directions(
+    stage: Stage, items: Items, first: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """(3, k) unit vectors from the first to the second part of each item in the middle of its time; (k,) [m] how
     far they are apart there beyond what is wanted and what their motion is off straight.
+
+    Args:
+        first: (3, k) unit vectors to begin with.
     """
     n = len(items.pair)
+    first = np.repeat([[1.0], [0.0], [0.0]], n, axis=1) if first is None else first
     found, slack = np.zeros((3, n)), np.zeros(n)
     for rows, at, a, b in stage.middles(items):
-        found[:, rows], apart = _directions(stage, at, a, b)
+        found[:, rows], apart = _directions(stage, at, a, b, first[:, rows])
         own = items.of(rows)
         wanted = stage.wanted[own.pair, own.start + own.span // 2]
         lost = sum(at.rest[s.place] + stage.halves.radius[s.body] for s in (a, b))
@@ -52,27 +62,26 @@ def _by_errors(stage: Stage, at: PlacedViews, side: Sides, u: np.ndarray) -> np.
     return farthest(stage.halves, side.body, side.node, nothing, errors)[0]
 
 
-def _directions(stage: Stage, at: PlacedViews, a: Sides, b: Sides) -> tuple[np.ndarray, np.ndarray]:
+def _directions(
+    stage: Stage, at: PlacedViews, a: Sides, b: Sides, first: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Unit vectors and how far apart the parts are along them; 0 where they are not."""
-    n = len(a.place)
-    w = _support(stage, at, a, b, np.repeat([[1.0], [0.0], [0.0]], n, axis=1)).T
-    points = np.tile(w[:, None], (1, 4, 1))
-    best, u = np.full(n, -np.inf), np.zeros((3, n))
-    active = np.arange(n)
+    w = _support(stage, at, a, b, first)
+    points = np.repeat(w[None], TIP, axis=0)
+    best, u, active = dot(w, first), first.copy(), np.arange(len(a.place))
     for _ in range(ROUNDS):
-        toward = w[active].T
-        length = np.sqrt(dot(toward, toward))
-        own = Sides(*(c[active] for c in a)), Sides(*(c[active] for c in b))
-        unit = toward / np.where(length > 0.0, length, 1.0)
-        tip = _support(stage, at, *own, unit)
+        length = np.sqrt(dot(w, w))
+        unit = w / np.where(length > 0.0, length, 1.0)
+        tip = _support(stage, at, *(Sides(*(c[active] for c in s)) for s in (a, b)), unit)
         apart = dot(tip, unit)
         better = apart > best[active]
         best[active[better]], u[:, active[better]] = apart[better], unit[:, better]
-        going = (length > 0.0) & (apart < (1.0 - NEAR) * length)
-        active, tip = active[going], tip[:, going]
+        going = np.flatnonzero((length > 0.0) & (apart < (1.0 - NEAR) * length))
+        points, w = nearest_in(points[:, :, going], tip[:, going])
+        nearer = dot(w, w) < length[going] ** 2
+        active, points, w = active[going[nearer]], points[:, :, nearer], w[:, nearer]
         if not len(active):
             break
-        points[active], w[active] = _nearest_in(points[active], tip.T)
     return u, np.maximum(best, 0.0)
 
 
@@ -88,34 +97,60 @@ def _support(stage: Stage, at: PlacedViews, a: Sides, b: Sides, u: np.ndarray) -
     return tips[1] - tips[0]
 
 
-def _nearest_in(points: np.ndarray, tip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The points (k, 4, 3) with a tip (k, 3) among them, less those that are of no use, and their hulls' points
-    (k, 3) nearest to the origin. The last of the four is free for the next tip.
+class _Nearest(NamedTuple):
+    """The point of some hulls nearest to the origin, as far as they were looked at: (3, k), its square distance
+    (k,), and which two points beside the tip it is between (k,) each; `TIP` for none.
     """
-    corners = points.copy()
-    corners[:, 3] = tip
-    best, least, kept = np.zeros_like(tip), np.full(len(tip), np.inf), corners.copy()
-    for subset in SUBSETS:
-        own = corners[:, subset]
-        share = _shares(own)
-        point = np.einsum("kj,kji->ki", share, own)
-        size = (point * point).sum(axis=1)
-        better = (share >= 0.0).all(axis=1) & (size < least)
-        best[better], least[better] = point[better], size[better]
-        kept[better] = np.concatenate([own] + [own[:, :1]] * (4 - len(subset)), axis=1)[better]
-    return kept, best
+
+    point: np.ndarray
+    size: np.ndarray
+    one: np.ndarray
+    other: np.ndarray
+
+    def take(self, valid: np.ndarray, point: np.ndarray, one: int, other: int) -> None:
+        """Takes other points (3, k) where they are valid and nearer."""
+        size = dot(point, point)
+        nearer = np.flatnonzero(valid & (size < self.size))
+        self.point[:, nearer], self.size[nearer] = point[:, nearer], size[nearer]
+        self.one[nearer], self.other[nearer] = one, other
 
 
-def _shares(own: np.ndarray) -> np.ndarray:
-    """(k, m) barycentric coordinates of the point of m points' affine hull nearest to the origin; NaN if flat."""
-    m = own.shape[1]
-    if m == 1:
-        return np.ones((len(own), 1))
-    base = own[:, :1]
-    edges = own[:, 1:] - base
-    gram = np.einsum("kij,klj->kil", edges, edges)
-    right = -np.einsum("kij,kj->ki", edges, base[:, 0])
-    scale = np.trace(gram, axis1=1, axis2=2)[:, None, None] * 1e-13
-    gram = gram + scale * np.eye(m - 1) + 1e-300 * np.eye(m - 1)
-    rest = np.linalg.solve(gram, right[..., None])[..., 0]
-    return np.concatenate([1.0 - rest.sum(axis=1, keepdims=True), rest], axis=1)
+def nearest_in(points: np.ndarray, tip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of hulls of three points (3, 3, k) and a tip (3, k) the points (3, k) nearest to the origin, and before them
+    the three points (3, 3, k) that it is between.
+
+    Only what has the tip in it is looked at: it is nearer than all that was known.
+    """
+    k = tip.shape[1]
+    found = _Nearest(tip.copy(), dot(tip, tip), np.full(k, TIP), np.full(k, TIP))
+    edges = points - tip
+    toward = [-dot(edge, tip) for edge in edges]
+    squares = [dot(edge, edge) for edge in edges]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for i in range(TIP):
+            share = toward[i] / squares[i]
+            found.take((share > 0.0) & (share <= 1.0), tip + share * edges[i], i, TIP)
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            product = dot(edges[i], edges[j])
+            flat = squares[i] * squares[j]
+            size = flat - product * product
+            one = (toward[i] * squares[j] - toward[j] * product) / size
+            other = (toward[j] * squares[i] - toward[i] * product) / size
+            valid = (one > 0.0) & (other > 0.0) & (one + other <= 1.0) & (size > FLAT * flat)
+            found.take(valid, tip + one * edges[i] + other * edges[j], i, j)
+        inside = _holds_origin(edges, tip, squares)
+    found.point[:, inside] = 0.0
+    corners = np.concatenate([points, tip[None]])
+    which = np.stack([found.one, found.other, np.full(k, TIP)])
+    return np.take_along_axis(corners, which[:, None], axis=0), found.point
+
+
+def _holds_origin(edges: np.ndarray, tip: np.ndarray, squares: list[np.ndarray]) -> np.ndarray:
+    """(k,) True where a tetrahedron holds it."""
+    a, b, c = edges
+    normals = across(b, c), across(c, a), across(a, b)
+    volume = dot(a, normals[0])
+    shares = [-dot(tip, normal) / volume for normal in normals]
+    flat = volume * volume <= FLAT * squares[0] * squares[1] * squares[2]
+    held = (shares[0] >= 0.0) & (shares[1] >= 0.0) & (shares[2] >= 0.0)
+    return held & (shares[0] + shares[1] + shares[2] <= 1.0) & ~flat

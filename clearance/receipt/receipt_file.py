@@ -1,34 +1,48 @@
 """The receipt as a file: what is claimed, of which inputs, and the evidence. Same receipt, same bytes.
 
 A first line that names the format, a line with the sha256 of all that follows, a line of JSON, and the numbers,
-compressed. Not for: what they prove (`receipt.proof`).
+compressed (xz). Not for: what they prove (`receipt.proof`).
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import zlib
+import lzma
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadSyntax, MissingFile, at
+from clearance.errors import BadSyntax, MissingFile, at, shown
 from clearance.late_dataclass import dataclass
 from clearance.receipt.proof.proving import SIZES, BadEvidence
 
 FILE_NAME = "receipt.bin"
-REPORT = ("findings.json", "steps.csv", "summary.json")
-"""Files of the report whose bytes a receipt is of."""
+REPORT = ("findings.json", "report.html", "steps.csv", "summary.json")
+"""Files that every report has; a receipt is of their bytes."""
 
-MAGIC = b"clearance receipt 1\n"
+REPORT_FILES = (
+    *REPORT,
+    "budget.csv",
+    "contacts.csv",
+    "pairs.parquet",
+    "replay.npz",
+    "steps.parquet",
+    "worst_moments.yaml",
+)
+"""Files that a report can have; a receipt is of the bytes of those that are there."""
+
+FORMAT = b"clearance receipt "
+MAGIC = FORMAT + b"2\n"
 
 MOST_ITEMS = 2**23
 """Of a receipt; more would take minutes to go through."""
 
 LARGEST = 2**28
 """[bytes] No receipt is longer."""
+
+HEXADECIMAL = frozenset("0123456789abcdef")
 
 TYPES = {most: kind for (_, most), kind in zip(SIZES, ("<i1", "<i2", "<i4"), strict=True)}
 DAMAGED = "the receipt is damaged or cut off"
@@ -40,9 +54,9 @@ class Receipt:
     """A receipt.
 
     Attributes:
-        head: as in the file: kind ("full" or "sampled"), case and tolerance (files; empty for none), name, data
-            (sha256 of the case's numbers), inputs (path and sha256), report (sha256 by file), rules (names),
-            nominal (the run had tolerances, which are not taken off).
+        head: as in the file: kind ("full" or "sampled"), case and tolerance (files; empty for none), name, version
+            (of what wrote it), data (sha256 of the case's numbers), inputs (path and sha256), report (sha256 by
+            file), rules (names), nominal (the run had tolerances, which are not taken off).
         claims: (rules, intervals) in nanometres, as `proof.motion_data.UNIT` says.
         deeds: (k,) what is done with each item. codes: directions of each size, (n, 2).
     """
@@ -62,7 +76,7 @@ def receipt_bytes(receipt: Receipt) -> bytes:
     }
     shapes = {name: list(array.shape) for name, array in arrays.items()}
     head = json.dumps(receipt.head | {"shapes": shapes}, sort_keys=True, ensure_ascii=False)
-    body = zlib.compress(b"".join(array.tobytes() for array in arrays.values()), 9)
+    body = lzma.compress(b"".join(array.tobytes() for array in arrays.values()))
     rest = head.encode() + b"\n" + body
     return MAGIC + hashlib.sha256(rest).hexdigest().encode() + b"\n" + rest
 
@@ -94,6 +108,12 @@ def receipt_of(content: bytes) -> Receipt:
         BadSyntax: it is none, or is damaged.
     """
     if not content.startswith(MAGIC):
+        if content.startswith(FORMAT):
+            line = content[:40].partition(b"\n")[0].decode("ascii", "replace")
+            raise BadSyntax(
+                f"another version of clearance wrote it: {shown(line)!r:.60}",
+                valid="that version, or the receipt of a run of this one",
+            )
         raise BadSyntax("this is no receipt of this format", valid=REMEDY)
     checksum, newline, rest = content[len(MAGIC) :].partition(b"\n")
     if not newline or hashlib.sha256(rest).hexdigest().encode() != checksum:
@@ -104,7 +124,7 @@ def receipt_of(content: bytes) -> Receipt:
         shapes = head.pop("shapes")
         arrays = _arrays(shapes, body)
         _require_head(head, arrays["claims"])
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError, zlib.error):
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError, lzma.LZMAError):
         raise BadSyntax(DAMAGED, valid=REMEDY) from None
     codes = {most: arrays[f"codes_{most}"] for most in TYPES}
     return Receipt(head, arrays["claims"], arrays["deeds"], codes)
@@ -122,7 +142,7 @@ def _arrays(shapes: dict[str, list[int]], body: bytes) -> dict[str, np.ndarray]:
     total = sum(sizes.values())
     if total > LARGEST:
         raise ValueError("too large")
-    unpacked = zlib.decompressobj()
+    unpacked = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=LARGEST)
     data = unpacked.decompress(body, total + 1)
     if len(data) != total or not unpacked.eof or unpacked.unused_data:
         raise ValueError("not as long as it says")
@@ -139,16 +159,20 @@ def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
         head["case"],
         head["tolerance"],
         head["name"],
+        head["version"],
         head["data"],
         *head["rules"],
     ]
     texts += [one[key] for one in head["inputs"] for key in ("path", "sha256")]
     texts += [*head["report"], *head["report"].values()]
+    digests = [head["data"], *(one["sha256"] for one in head["inputs"]), *head["report"].values()]
+    if not all(len(digest) == 64 and set(digest) <= HEXADECIMAL for digest in digests):
+        raise ValueError("sha256")
     if not isinstance(head["nominal"], bool):
         raise ValueError("nominal")
     if not all(isinstance(text, str) for text in texts) or head["kind"] not in ("full", "sampled"):
         raise ValueError("head")
-    if sorted(head["report"]) != list(REPORT):
+    if not {*REPORT} <= {*head["report"]} <= {*REPORT_FILES}:
         raise ValueError("report")
     if claims.shape[0] != len(head["rules"]):
         raise ValueError("rules")

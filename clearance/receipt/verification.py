@@ -5,34 +5,26 @@ Nothing that measured or certified takes part: `receipt.proof` does all that dec
 
 from __future__ import annotations
 
-import hashlib
-import json
-from dataclasses import replace
+import os
+from collections.abc import Mapping
+from dataclasses import field, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance import __version__
+from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
 from clearance.late_dataclass import dataclass
-from clearance.receipt.case_data import CaseData, case_data, with_tolerances
+from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.claims import judged, missing
 from clearance.receipt.proof.depths import depths_reached
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.proof.proving import BadEvidence, Failure, failure_in
 from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, EvidenceReader, Receipt, read_receipt
-from clearance.report.withdrawn import OLDER_SUMMARY
+from clearance.receipt.report_told import ROUNDED, Told, overstated, require_report, told_by
 from clearance.world.case import Case, Omission
-
-SUMMARY = "summary.json"
-
-SHARE = 0.25
-"""[-] Of what tolerances take at most, by which a claim may be below what was proven (`writing.GIVEN_UP`)."""
-
-ROUNDED = 3
-"""Units by which a claim may be below what was certified (`writing.claims_of`)."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +43,8 @@ class Verification:
         unmeasured: links and pairs that are left out, and why.
         nominal: the case has tolerances, of which the bound takes nothing off.
         n_not_ruled_out: in how many intervals tolerances leave nothing, so that nothing is proven of that.
+        below: [m] the fail limit of each of those rules whose bound is below it, as the report has it.
+        verdict: of the report.
     """
 
     name: str
@@ -67,6 +61,8 @@ class Verification:
     nominal: bool
     not_read: tuple[tuple[str, str], ...] = ()
     n_not_ruled_out: int = 0
+    below: Mapping[str, float] = field(default_factory=dict)
+    verdict: str = ""
 
     @property
     def proven(self) -> bool:
@@ -75,36 +71,35 @@ class Verification:
 
     @property
     def headline(self) -> str:
-        """One line: what is proven, of what."""
+        """One line: what is proven, of what; what is not comes before all figures."""
         sampled = "SAMPLED: " if self.kind == "sampled" else ""
         if self.failure:
             return f"{sampled}NOT PROVEN: {self.failure}"
-        bounds = ", ".join(
-            f"at least {np.floor(bound * 1e6) / 1e3:.3f} mm ({rule})"
-            for rule, bound in self.bounds.items()
-        )
-        bounds = bounds or "nothing"
+        nominal = "NOMINAL ONLY, tolerances are not taken off: " if self.nominal else ""
+        bounds = ", ".join(self._bound_text(rule) for rule in self.bounds) or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
         inputs = f"{len(self.inputs)} inputs unchanged"
         if self.not_read:
-            inputs += (
-                f", {len(self.not_read)} not read again ({', '.join(p for p, _ in self.not_read)})"
-            )
-        nominal = ", NOMINAL ONLY: tolerances are not taken off" if self.nominal else ""
+            names = ", ".join(shown(path) for path, _ in self.not_read)
+            inputs += f", {len(self.not_read)} not read again ({names})"
         return (
-            f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion"
-            f"{self._left_out}"
-            f"{nominal}; {inputs}, data {self.data[:16]}"
+            f"{sampled}{nominal}PROVEN{self._left_out}: {bounds} between all {self.n_pairs} pairs over {span} "
+            f"intervals of motion; the report's verdict is {self.verdict}; {inputs}, data {self.data[:16]}"
         )
+
+    def _bound_text(self, rule: str) -> str:
+        bound = np.floor(self.bounds[rule] * 1e6) / 1e3
+        below = f", BELOW ITS LIMIT of {self.below[rule] * 1e3:g} mm" if rule in self.below else ""
+        return f"at least {bound:.3f} mm ({shown(rule)}{below})"
 
     @property
     def _left_out(self) -> str:
         """In how many intervals there is nothing to prove."""
         told = ""
         if self.n_contact:
-            told = f", except in {self.n_contact} intervals, in which bodies may touch"
+            told = f" EXCEPT in {self.n_contact} intervals, in which bodies may touch"
         if self.n_not_ruled_out:
-            told += f", except with tolerances in {self.n_not_ruled_out} intervals"
+            told += f"{' and' if told else ' EXCEPT'} with tolerances in {self.n_not_ruled_out} intervals"
             told += ", in which contact is not ruled out"
         return told
 
@@ -126,36 +121,59 @@ def verify(
     """
     place = Path(folder)
     receipt = read_receipt(place / FILE_NAME)
-    _require_report(place, receipt)
+    require_report(place, receipt)
+    told = told_by(place)
     given = case if isinstance(case, Case) else _loaded(place, receipt, case)
     given = _with_tolerance(given, place, receipt, tolerance)
     _require_inputs(given, receipt)
     data = case_data(replace(given, tolerance=None) if receipt.head["nominal"] else given)
     _require_data(data, receipt)
-    failure = _failure(data, receipt) or _overstated(place, data, receipt)
-    claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
-    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
+    failure = _failure(data, receipt) or overstated(told, data, receipt)
     inputs, read = _inputs_of(receipt), {source.path for source in given.sources}
+    bounds = _bounds(data, receipt.claims)
+    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
+    claimed = (receipt.claims != NOT_CLAIMED) & judged(data)
+    open_ones = claimed & (receipt.claims <= 0)
+    has_tolerances = told.left is not None or given.tolerance is not None
     return Verification(
-        data.name,
-        receipt.head["kind"],
-        failure,
-        {
-            data.rules[i]: float(receipt.claims[i, row].min()) * UNIT
-            for i, row in enumerate(claimed & (receipt.claims > 0))
-            if row.any()
-        },
-        data.n_pairs,
-        data.n_intervals,
-        int(claimed.any(axis=0).sum()),
-        int((claimed & (receipt.claims <= 0))[:n_nominal].any(axis=0).sum()),
-        data.digest,
-        tuple(one for one in inputs if one[0] in read),
-        data.unmeasured,
-        not data.has_errors and (receipt.head["nominal"] or given.tolerance is not None),
-        tuple(one for one in inputs if one[0] not in read),
-        int((claimed & (receipt.claims <= 0))[n_nominal:].any(axis=0).sum()),
+        name=data.name,
+        kind=receipt.head["kind"],
+        failure=failure,
+        bounds=bounds,
+        n_pairs=data.n_pairs,
+        n_intervals=data.n_intervals,
+        n_claimed=int(claimed.any(axis=0).sum()),
+        n_contact=int(open_ones[:n_nominal].any(axis=0).sum()),
+        data=data.digest,
+        inputs=tuple(one for one in inputs if one[0] in read),
+        unmeasured=data.unmeasured,
+        nominal=not data.has_errors and (receipt.head["nominal"] or has_tolerances),
+        not_read=tuple(one for one in inputs if one[0] not in read),
+        n_not_ruled_out=int(open_ones[n_nominal:].any(axis=0).sum()),
+        below=_below(bounds, data, told),
+        verdict=told.verdict,
     )
+
+
+def _bounds(data: CaseData, claims: np.ndarray) -> dict[str, float]:
+    """[m] what is claimed of each rule wherever that is above 0."""
+    above = (claims != NOT_CLAIMED) & (claims > 0) & judged(data)
+    return {
+        data.rules[i]: float(claims[i, row].min()) * UNIT
+        for i, row in enumerate(above)
+        if row.any()
+    }
+
+
+def _below(bounds: dict[str, float], data: CaseData, told: Told) -> dict[str, float]:
+    """[m] the limits that bounds are below."""
+    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
+    found = {}
+    for i, rule in enumerate(data.rules):
+        limit = told.limits.get(data.rules[i % n_nominal], {"fail": 0.0})["fail"]
+        if rule in bounds and bounds[rule] + ROUNDED * UNIT < limit:
+            found[rule] = limit
+    return found
 
 
 def _inputs_of(receipt: Receipt) -> tuple[tuple[str, str], ...]:
@@ -178,63 +196,6 @@ def _failure(data: CaseData, receipt: Receipt) -> str:
     return "" if evidence.at_end else "the evidence is not of this case: some is left over"
 
 
-def _overstated(place: Path, data: CaseData, receipt: Receipt) -> str:
-    """What the report says beyond what the receipt claims, if it does.
-
-    Raises:
-        BadSyntax: a summary that is none.
-    """
-    try:
-        summary = json.loads((place / SUMMARY).read_bytes())
-        told = _number(summary["certified"]["lower_bound"])
-    except (ValueError, TypeError, KeyError, RecursionError):
-        raise BadSyntax(
-            "there is no certified bound in it", where=str(place / SUMMARY), valid="the report"
-        ) from None
-    n_nominal = len(data.rules) // 2 if data.has_errors else len(data.rules)
-    least = _least(receipt.claims[:n_nominal])
-    if not told <= least + ROUNDED * UNIT:
-        return f"{SUMMARY} tells of {told * 1e3:.6f} mm, the receipt of {least * 1e3:.6f} mm"
-    return _overstated_with_tolerances(summary, data, receipt) if data.has_errors else ""
-
-
-def _overstated_with_tolerances(summary: Any, data: CaseData, receipt: Receipt) -> str:
-    """What the report says tolerances leave beyond what the receipt claims, but for a share of what they take.
-
-    Raises:
-        BadSyntax: a summary that tells nothing of it.
-    """
-    nominal, left = np.split(np.where(receipt.claims == NOT_CLAIMED, 0, receipt.claims), 2)
-    given_up = SHARE * float((nominal - left).max()) * UNIT
-    try:
-        told = {one["rule"]: _number(one["proven"]) for one in summary["tolerances"]["rules"]}
-    except (TypeError, KeyError, ValueError):
-        raise BadSyntax("it tells of no tolerances", where=SUMMARY, valid="the report") from None
-    for rule, proven in told.items():
-        name = with_tolerances(rule)
-        least = _least(receipt.claims[data.rules.index(name)]) if name in data.rules else -np.inf
-        if proven > 0.0 and not proven <= least + given_up:
-            return f"{SUMMARY} tells of {proven * 1e3:.6f} mm ({name}), the receipt of {least * 1e3:.6f} mm"
-    return ""
-
-
-def _number(told: Any) -> float:
-    """A finite number.
-
-    Raises:
-        ValueError: it is none.
-    """
-    if not np.isfinite(found := float(told)):
-        raise ValueError(told)
-    return found
-
-
-def _least(claims: np.ndarray) -> float:
-    """[m] the least that is claimed."""
-    claimed = claims[claims != NOT_CLAIMED]
-    return float(claimed.min()) * UNIT if len(claimed) else 0.0
-
-
 def _failure_text(data: CaseData, receipt: Receipt, failure: Failure) -> str:
     stretch = data.stretches[failure.stretch]
     names = " and ".join(data.shapes[body].name for body in stretch.pairs[failure.pair].tolist())
@@ -255,9 +216,9 @@ def _loaded(place: Path, receipt: Receipt, case: str | PathLike[str] | None) -> 
         if not way:
             raise BadInput("the receipt is of a case without a file", valid="give the case")
         path = place / way
-        if not path.is_file():
+        if not os.path.isfile(path):
             raise MissingFile(
-                f"there is no {way}", where=str(place / FILE_NAME), valid="--case CASE.yaml"
+                f"there is no {shown(way)}", where=str(place / FILE_NAME), valid="--case CASE.yaml"
             )
         return load_case(path)
     return load_case(case)
@@ -273,39 +234,13 @@ def _with_tolerance(
     if tolerance is None and not way:
         return case
     path = place / way if tolerance is None else Path(tolerance)
-    if not path.is_file():
+    if not os.path.isfile(path):
         raise MissingFile(
-            f"there is no {path.name}", where=str(place / FILE_NAME), valid="--tolerance FILE"
+            f"there is no {shown(path.name)}",
+            where=str(place / FILE_NAME),
+            valid="--tolerance FILE",
         )
     return with_tolerance(case, path)
-
-
-def _require_report(place: Path, receipt: Receipt) -> None:
-    """Nothing, if the report beside the receipt is the one that it was written with.
-
-    Raises:
-        BadSyntax: the first file that is not.
-    """
-    for name, digest in receipt.head["report"].items():
-        path = place / Path(name).name
-        try:
-            content = path.read_bytes()
-        except OSError as error:
-            if (place / OLDER_SUMMARY).is_file():
-                raise MissingFile(
-                    "a later run into this folder has not come to its end: its report is an older one",
-                    where=str(path),
-                    valid="a run that came to its end",
-                ) from None
-            raise MissingFile(
-                f"cannot be read: {error.strerror or error}", where=str(path), valid="the report"
-            ) from None
-        if hashlib.sha256(content).hexdigest() != digest:
-            raise BadSyntax(
-                "it is not as it was when the receipt was written",
-                where=str(path),
-                valid="the report of the same run",
-            )
 
 
 def _require_inputs(case: Case, receipt: Receipt) -> None:
@@ -332,8 +267,14 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
     with at(FILE_NAME):
         if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
             raise BadSyntax(
-                f"it is of other numbers than those of case {data.name!r}",
+                f"it is of other numbers than those of case {data.name!r}{_other_version(receipt)}",
                 valid="the case that the receipt was made of, with its tolerances",
             )
         if receipt.claims.shape != (len(data.rules), data.n_intervals):
             raise BadSyntax(DAMAGED, valid="claims of every rule and interval")
+
+
+def _other_version(receipt: Receipt) -> str:
+    """That another version wrote the receipt, which may read the same files as other numbers."""
+    written, own = receipt.head["version"], __version__
+    return "" if written == own else f"; clearance {written} wrote it, this is {own}"

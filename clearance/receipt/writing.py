@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -11,19 +11,23 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from clearance import __version__
 from clearance.errors import BadInput, MissingFile
 from clearance.progress import Progress
 from clearance.receipt.case_data import CaseData, case_data, require_covered, with_tolerances
 from clearance.receipt.claims import with_samples_only
-from clearance.receipt.proof.halving import halves_of
+from clearance.receipt.fronts import EvidenceList
+from clearance.receipt.proof.halving import Halves, halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import (
     FILE_NAME,
     REPORT,
+    REPORT_FILES,
     Receipt,
     receipt_bytes,
 )
-from clearance.receipt.search import EvidenceList, evidence_for
+from clearance.receipt.report_told import digest_of
+from clearance.receipt.search import MOST_ITEMS, EvidenceSearch, TooManyProofs
 from clearance.report.folder import write_file
 
 GIVEN_UP = (0.03, 0.12)
@@ -37,6 +41,12 @@ MOST_WITH_ERRORS = 1_500_000
 
 MANY = 500_000
 """Proofs without tolerances from which on the most is given up at once."""
+
+FORESEEN = 250
+"""Thousandths of the work, as it is told, that are done by the time that it is known how much it is."""
+
+ERRORS_TAKE = 2
+"""Times as long as one without takes a proof with tolerances, about."""
 
 MICROMETRES = round(2e-6 / UNIT)
 
@@ -79,6 +89,7 @@ def write_receipt(
         "case": _way(place, case_file),
         "tolerance": _way(place, tolerance_file),
         "name": data.name,
+        "version": __version__,
         "data": data.digest,
         "inputs": [{"path": s.path, "sha256": s.sha256} for s in record.case.sources],
         "report": report,
@@ -99,33 +110,96 @@ class _Claims(NamedTuple):
 
 
 def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:
-    """The evidence, of what tolerances leave too where that can be found.
+    """The evidence, of what tolerances leave too where that can be found. How much it will be is foreseen of both
+    before all of it is looked for.
 
     Raises:
-        BadInput: none is found of the bound without them.
+        TooManyProofs: a full receipt would be too large. BadInput: none is found of the bound without tolerances.
     """
     with_errors = case_data(record.case)
     data = case_data(replace(record.case, tolerance=None))
     halves = halves_of(data.shapes)
     claims = _kept(claims_of(record, data), data, kind)
-    found = evidence_for(data.stretches, data.shapes, halves, claims, progress=progress)
-    if not with_errors.has_errors:
-        return _Claims(data, claims, found)
-    n_rules, n_stretches = len(data.rules), len(data.stretches)
-    exact = claims_of(record, with_errors)
-    lowest = _lowered(exact, n_rules, MOST_GIVEN_UP)
-    for share in GIVEN_UP if found.n_items < MANY else GIVEN_UP[-1:]:
-        lowered = _kept(_lowered(exact, n_rules, share), with_errors, kind)
-        both = np.concatenate([claims, lowered[n_rules:]])
+    search = EvidenceSearch(data.stretches, data.shapes, halves, claims)
+    search.foresee(MOST_ITEMS, part_of(progress, 0, FORESEEN // 2))
+    late = part_of(progress, FORESEEN // 2, FORESEEN)
+    attempts: Iterator[_Attempt] = iter(())
+    if with_errors.has_errors:
+        attempts = _attempts(record, kind, with_errors, claims, halves, search.n_foreseen)
+    attempt = _first(attempts, late)
+    share = 1.0 if attempt is None else _share(search, attempt.search)
+    middle = FORESEEN + round((1000 - FORESEEN) * share)
+    found = search.finish(MOST_ITEMS, part_of(progress, FORESEEN, middle))
+    while attempt is not None:
         try:
-            more = evidence_for(
-                with_errors.stretches[n_stretches:], data.shapes, halves, both, MOST_WITH_ERRORS, progress,
-                lowest,
-            )  # fmt: skip
-        except BadInput:
-            continue
-        return _Claims(with_errors, both, found.and_then(more))
+            most = min(attempt.most_items, MOST_ITEMS - found.n_items)
+            more = attempt.search.finish(most, part_of(progress, middle, 1000))
+            return _Claims(with_errors, attempt.claims, found.and_then(more))
+        except BadInput as error:
+            attempt = _first(attempts, None, error)
     return _Claims(data, claims, found)
+
+
+def _share(search: EvidenceSearch, with_errors: EvidenceSearch) -> float:
+    """[-] Of the time that both have ahead, the first's; a proof with errors takes `ERRORS_TAKE` times as long."""
+    ahead = [max(1, one.n_foreseen - one.n_found) for one in (search, with_errors)]
+    return ahead[0] / (ahead[0] + ERRORS_TAKE * ahead[1])
+
+
+class _Attempt(NamedTuple):
+    """Claims with tolerances, less some of what these take, the search for what proves them, and its limit."""
+
+    claims: np.ndarray
+    search: EvidenceSearch
+    most_items: int
+
+
+def _attempts(
+    record: Record, kind: str, data: CaseData, claims: np.ndarray, halves: Halves, n_nominal: int
+) -> Iterator[_Attempt]:
+    """Attempts to claim what tolerances leave, with more given up each.
+
+    Args:
+        data: with errors. claims, n_nominal: without, and about how many proofs of these there are.
+    """
+    n_rules, n_stretches = len(data.rules) // 2, len(data.stretches) // 2
+    exact = claims_of(record, data)
+    lowest = _lowered(exact, n_rules, MOST_GIVEN_UP)
+    for share in GIVEN_UP if n_nominal < MANY else GIVEN_UP[-1:]:
+        lowered = _kept(_lowered(exact, n_rules, share), data, kind)
+        both = np.concatenate([claims, lowered[n_rules:]])
+        search = EvidenceSearch(data.stretches[n_stretches:], data.shapes, halves, both, lowest)
+        last = share == GIVEN_UP[-1]
+        yield _Attempt(both, search, MOST_ITEMS - n_nominal if last else MOST_WITH_ERRORS)
+
+
+def _first(
+    attempts: Iterator[_Attempt], progress: Progress | None, error: BadInput | None = None
+) -> _Attempt | None:
+    """The first of some attempts that is not foreseen to fail; None if what is claimed cannot be proven.
+
+    Args:
+        error: of an attempt before.
+
+    Raises:
+        TooManyProofs: the last was too large.
+    """
+    for attempt in attempts:
+        try:
+            attempt.search.foresee(attempt.most_items, progress)
+            return attempt
+        except BadInput as failed:
+            error = failed
+    if isinstance(error, TooManyProofs):
+        raise error
+    return None
+
+
+def part_of(progress: Progress | None, low: int, high: int) -> Progress | None:
+    """Progress of a part of the work, from and to thousandths of all."""
+    if progress is None:
+        return None
+    return lambda done, total: progress(low + (high - low) * done // total, 1000)
 
 
 def _kept(claims: np.ndarray, data: CaseData, kind: str) -> np.ndarray:
@@ -189,17 +263,13 @@ def _claimed(lower: np.ndarray, data: CaseData) -> np.ndarray:
 
 
 def _hashes(folder: Path) -> dict[str, str]:
-    found = {}
+    found = {name: digest_of(folder / name) for name in REPORT_FILES}
     for name in REPORT:
-        try:
-            found[name] = hashlib.sha256((folder / name).read_bytes()).hexdigest()
-        except OSError as error:
+        if found[name] is None:
             raise MissingFile(
-                f"cannot be read: {error.strerror or error}",
-                where=str(folder / name),
-                valid="run.save(folder) first",
-            ) from None
-    return found
+                "there is none", where=str(folder / name), valid="run.save(folder) first"
+            )
+    return {name: digest for name, digest in found.items() if digest is not None}
 
 
 def _way(folder: Path, case_file: str | PathLike[str]) -> str:

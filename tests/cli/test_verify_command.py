@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import ExitCode, run
+from clearance.receipt.search import too_many
 
 SCENE = Path(__file__).parents[2] / "scenes" / "box_box"
 ROBOT = Path(__file__).parents[2] / "robots" / "gantry_box"
@@ -127,4 +128,30 @@ def test_tolerances_that_no_receipt_covers_are_told_in_a_line_of_their_own(home,
     told = capsys.readouterr().err
     assert told.count("\n") == 1 and "proves the bound without tolerances" in told
     assert run(["verify", str(out)]) == ExitCode.CLEAR
-    assert ", NOMINAL ONLY: tolerances are not taken off; " in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert told.startswith("NOMINAL ONLY, tolerances are not taken off: PROVEN: at least ")
+
+
+@pytest.mark.parametrize(
+    ("stopped_by", "code", "said"),
+    [
+        (
+            KeyboardInterrupt(),
+            ExitCode.INTERRUPTED,
+            "the report is whole, and has no receipt\ninter",
+        ),
+        (too_many(9_400_000, 8_000_000), ExitCode.BAD_INPUT, "at most; --receipt sampled\n"),
+    ],
+)
+def test_who_does_not_get_a_receipt_keeps_the_answer(
+    home, monkeypatch, capsys, stopped_by, code, said
+):
+    def stopped(*args):
+        raise stopped_by
+
+    monkeypatch.setattr("clearance.receipt.writing.write_receipt", stopped)
+    out, case = home / "out", home / "scenes" / "box_box" / "case.yaml"
+    assert run(["check", str(case), "--out", str(out), "--receipt"]) == code
+    told = capsys.readouterr()
+    assert told.out.startswith("CLEAR  box_box") and said in told.err
+    assert (out / "summary.json").is_file() and not (out / "receipt.bin").exists()

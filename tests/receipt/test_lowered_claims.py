@@ -8,10 +8,11 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.receipt.case_data import case_data
+from clearance.receipt.fronts import EvidenceList
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.proving import failure_in
-from clearance.receipt.search import EvidenceList, evidence_for
+from clearance.receipt.search import evidence_for
 from clearance.receipt.writing import claims_of
 from tests.receipt.receipts import turning_arm
 

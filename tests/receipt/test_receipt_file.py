@@ -7,16 +7,27 @@ import pytest
 
 from clearance.errors import BadSyntax, ClearanceError
 from clearance.receipt.proof.proving import SIZES, BadEvidence
-from clearance.receipt.receipt_file import MAGIC, EvidenceReader, Receipt, receipt_bytes, receipt_of
+from clearance.receipt.receipt_file import (
+    FILE_NAME,
+    MAGIC,
+    REPORT,
+    REPORT_FILES,
+    EvidenceReader,
+    Receipt,
+    receipt_bytes,
+    receipt_of,
+)
+from clearance.report.output import OWN
+from clearance.report.withdrawn import OLDER_SUMMARY
 
 
 def small():
     head = {
         "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "nominal": False,
-        "tolerance": "",
+        "tolerance": "", "version": "0",
         "rules": ["default"],
         "inputs": [{"path": "case.yaml", "sha256": "1" * 64}], 
-        "report": dict.fromkeys(("findings.json", "steps.csv", "summary.json"), "2" * 64),
+        "report": dict.fromkeys(REPORT, "2" * 64),
     }  # fmt: skip
     codes = {most: np.array([[most, -most]]) for _, most in SIZES}
     return Receipt(head, np.array([[5, -(2**62), 7]]), np.array([4, 1, 2, 3]), codes)
@@ -66,3 +77,23 @@ def test_evidence_that_ends_too_soon_is_none():
     assert list(evidence.deeds(3)) == [4, 1, 2] and not evidence.at_end
     with pytest.raises(BadEvidence):
         evidence.deeds(2)
+
+
+def test_a_receipt_is_of_every_file_that_a_report_can_have():
+    assert {*REPORT_FILES} == {*OWN} - {FILE_NAME, OLDER_SUMMARY}
+
+
+def test_another_version_is_told():
+    content = receipt_bytes(small()).replace(b"receipt 2\n", b"receipt 1\n")
+    with pytest.raises(
+        BadSyntax, match="another version of clearance wrote it: 'clearance receipt 1'"
+    ):
+        receipt_of(content)
+
+
+def test_what_is_no_hash_is_refused():
+    receipt = small()
+    for sha in ("1" * 63, "1" * 63 + "\n", "A" * 64, 5):
+        receipt.head["inputs"][0]["sha256"] = sha
+        with pytest.raises(BadSyntax, match="damaged"):
+            receipt_of(receipt_bytes(receipt))

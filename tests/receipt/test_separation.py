@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from clearance.receipt.case_data import case_data
+from clearance.receipt.fronts import codes_of
 from clearance.receipt.nearest import nearest_directions
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.proving import SIZES
 from clearance.receipt.proof.separation import BYTE, directions
 from clearance.receipt.proof.stage import by_balls, by_directions
-from clearance.receipt.search import codes_of
 from tests import cells
 from tests.oracle.polyhedra import polyhedron_distance_sq
 from tests.receipt.receipts import everything_moves, stage_of

@@ -18,7 +18,7 @@ from clearance.receipt.proof.separation import Sides, along, as_balls, centre_of
 from clearance.receipt.proof.views import views_of
 from clearance.receipt.proof.ways import Balls
 
-BLOCK = 2**13
+BLOCK = 2**12
 """Rows that are worked out together: their numbers stay in a core's cache."""
 
 PIECES = 2**9
