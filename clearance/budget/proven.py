@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.budget.errors_of import errors_of
-from clearance.compile.kernel_table import call
+from clearance.compile.kernel_table import call, prepared
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
     EXACT_LOOKS,
@@ -93,6 +93,11 @@ class PairsWithErrors:
     def _idle(self) -> list[BudgetScene]:
         """Scenes that no thread is at work with."""
         return []
+
+    @cached_property
+    def _prepared(self) -> dict[Callable, Callable]:
+        """The kernels that were called, for arguments of the types that they have here."""
+        return {}
 
     @contextmanager
     def _scene(self) -> Iterator[BudgetScene]:
@@ -193,7 +198,10 @@ class PairsWithErrors:
             own = BudgetRows(*(column[span] for column in rows))
             tally = np.zeros(5, dtype=np.int64)
             with self._scene() as scene:
-                call(kernel, scene, ask(span), own, tally)
+                arguments = scene, ask(span), own, tally
+                if kernel not in self._prepared:
+                    self._prepared[kernel] = prepared(kernel, *arguments)
+                call(self._prepared[kernel], *arguments)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):
             pass

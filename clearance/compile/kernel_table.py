@@ -103,6 +103,13 @@ def call(function: Callable, *args: object) -> object:
             compile_kernel(place)
 
 
+def prepared(function: Callable, *args: object) -> Callable:
+    """`function` for `call` with arguments of the types of these, which are told here and not at each call."""
+    if isinstance(function, ReadyKernel):
+        return function.for_types_of((*args, _table))
+    return function
+
+
 def is_kept(place: int) -> bool:
     """True if the kernel lies compiled in the cache, for this processor or others."""
     function, _ = _apart[place]

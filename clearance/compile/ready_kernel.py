@@ -46,6 +46,11 @@ class ReadyKernel(DeferredValue):
         ready = self._ready.get(form)
         return self._first(form, arguments) if ready is None else ready(*arguments)
 
+    def for_types_of(self, arguments: tuple) -> Any:
+        """What is called with arguments of these types, and asks for the types of none."""
+        form = form_of(arguments)
+        return self.compiled() if form is None else self._made_ready(form)
+
     def compiled(self) -> Any:
         """The compiler's form; calls for the compiler."""
         begin()
@@ -67,9 +72,12 @@ class ReadyKernel(DeferredValue):
         return load(entry)
 
     def _first(self, form: object, arguments: tuple) -> object:
+        ready = self.compiled() if form is None else self._made_ready(form)
+        return ready(*arguments)
+
+    def _made_ready(self, form: object) -> Any:
         with _loading:
-            if form is not None and form not in self._ready:
+            if form not in self._ready:
                 found = self.loaded(form)
                 self._ready[form] = self.compiled() if found is None else found.call
-        ready = self.compiled() if form is None else self._ready[form]
-        return ready(*arguments)
+        return self._ready[form]

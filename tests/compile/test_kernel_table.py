@@ -58,3 +58,18 @@ def test_a_caller_with_other_types_is_refused():
     assert meeting.meeting is not None
     with pytest.raises(TypeError, match=r"meeting.* is called with other types"):
         call(with_other_types, 1.0)
+
+
+def test_a_kernel_that_is_prepared_tells_the_types_of_no_call(monkeypatch):
+    from clearance.compile import ready_kernel
+
+    told = []
+    function = ready_kernel.ReadyKernel(lambda *args: args, lambda: None, lambda: None)
+    monkeypatch.setattr(ready_kernel, "form_of", lambda args: told.append(args) or "a form")
+    function._ready["a form"] = lambda *args: ("ready", *args)
+    ready = kernel_table.prepared(function, 1.0)
+    assert len(told) == 1
+    assert call(ready, 2.0)[:2] == ("ready", 2.0)
+    assert len(told) == 1
+    plain = kernel_table.prepared(max, 1.0)
+    assert plain is max

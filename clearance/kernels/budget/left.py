@@ -46,7 +46,7 @@ from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, MOST_TURNED
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.front import LONGEST, OF_B, forget, keep
+from clearance.kernels.search.front import OF_B, forget, keep, leave
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     opened,
@@ -202,16 +202,6 @@ def _let_wait(scene, nodes, marks, views, reaches, target, n_waiting, tally):
     return _Waiting(n_waiting, marks, low, passed)
 
 
-@inline(force=True)
-def _leave(scratch, n_left, nodes, marks, lower_bound):
-    """Notes an entry of the front; how many there are, at most one more than are kept."""
-    left = scratch.left
-    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
-    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
-    scratch.lower_bounds[n_left] = lower_bound - KEPT
-    return n_left + (n_left <= LONGEST)
-
-
 class _Queue(NamedTuple):
     """What waits when a search begins: entries of the front that stay, node pairs, [m] a bound on all else."""
 
@@ -331,7 +321,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         is_face = is_leaf(a, node_a) and is_leaf(b, node_b)
         if not is_kept and (is_face or bound >= target):
             one = NodeGroup(False, node_a // WIDTH, node_b)
-            n_left = _leave(scratch, n_left, one, 1 << node_a % WIDTH, bound + moved)
+            n_left = leave(scratch, n_left, one, 1 << node_a % WIDTH, bound + moved - KEPT)
         if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
@@ -343,7 +333,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
             )
             n_waiting, lower_bound = found.n_waiting, min(lower_bound, found.passed)
             if found.marks > 0:
-                n_left = _leave(scratch, n_left, nodes, found.marks, found.low + moved)
+                n_left = leave(scratch, n_left, nodes, found.marks, found.low + moved - KEPT)
             continue
         face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
         bound = max(bound, _face_bound(a, face_a, b, face_b, search.views.a.direction, kept, slack))

@@ -38,7 +38,7 @@ from clearance.kernels.search.face_search import (
     nearest_so_far,
     settle_waiting,
 )
-from clearance.kernels.search.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
+from clearance.kernels.search.front import KEPT_DOWN, OF_B, forget, keep, leave
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     bounds_of_group,
@@ -122,20 +122,10 @@ def _wait_for_near(a, b, near, nodes, marks, bounds, slack, scratch, n_waiting):
 
 
 @inline(force=True)
-def _leave(scratch, n_left, nodes, marks, lower_bound):
-    """Notes an entry for the front; the number of them."""
-    left = scratch.left
-    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
-    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
-    scratch.lower_bounds[n_left] = lower_bound * KEPT_DOWN
-    return n_left + (n_left <= LONGEST)  # one too many says that not all are there
-
-
-@inline(force=True)
-def _leave_pair(scratch, n_left, node_a, node_b, lower_bound):
-    """The same of one node pair."""
+def _leave_pair(scratch, n_left, node_a, node_b, kept):
+    """`leave` of one node pair."""
     nodes = NodeGroup(False, node_a // WIDTH, node_b)
-    return _leave(scratch, n_left, nodes, 1 << node_a % WIDTH, lower_bound)
+    return leave(scratch, n_left, nodes, 1 << node_a % WIDTH, kept)
 
 
 @inline(one_caller=True)
@@ -237,12 +227,14 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
         if bound > near.cut:
             lower_bound = min(lower_bound, bound)
             if not is_kept:
-                n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
+                kept = (bound + front.moved) * KEPT_DOWN
+                n_left = _leave_pair(scratch, n_left, node_a, node_b, kept)
         elif is_leaf(a, node_a) and is_leaf(b, node_b):
             faces = parts(roots, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
             search = look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch)
             if not is_kept:  # the roots
-                n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
+                kept = (bound + front.moved) * KEPT_DOWN
+                n_left = _leave_pair(scratch, n_left, node_a, node_b, kept)
         else:
             nodes, count = opened(a, node_a, b, node_b)
             marks = (1 << count) - 1
@@ -254,7 +246,8 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
             )
             lower_bound = min(lower_bound, far)
             if marks > 0:
-                n_left = _leave(scratch, n_left, nodes, marks, low + front.moved)
+                kept = (low + front.moved) * KEPT_DOWN
+                n_left = leave(scratch, n_left, nodes, marks, kept)
     lower_bound = min(lower_bound, search.lower_bound)
     met = search.meeting
     refined = search.progress.refined

@@ -146,6 +146,20 @@ def _has_room(fronts, pair, n_kept, length):
 
 
 @inline(force=True)
+def leave(scratch, n_left, nodes, marks, kept):
+    """Notes an entry for a front: a group's marked nodes against the node across. How many there are now.
+
+    Args:
+        kept: [m] a bound on them, plus both bodies' displacements in all.
+    """
+    left = scratch.left
+    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
+    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
+    scratch.lower_bounds[n_left] = kept
+    return n_left + (n_left <= LONGEST)  # one too many says that not all are there
+
+
+@inline(force=True)
 def keep(fronts, pair, n_kept, entries, lower_bounds, n_fresh):
     """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
     length = n_kept + n_fresh
