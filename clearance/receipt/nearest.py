@@ -72,7 +72,8 @@ def _directions(
     for _ in range(ROUNDS):
         length = np.sqrt(dot(w, w))
         unit = w / np.where(length > 0.0, length, 1.0)
-        tip = _support(stage, at, *(Sides(*(c[active] for c in s)) for s in (a, b)), unit)
+        own_a, own_b = (Sides(*(column[active] for column in side)) for side in (a, b))
+        tip = _support(stage, at, own_a, own_b, unit)
         apart = dot(tip, unit)
         better = apart > best[active]
         best[active[better]], u[:, active[better]] = apart[better], unit[:, better]
