@@ -38,7 +38,9 @@ NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
 
 @pytest.fixture
 def manifest(tmp_path, monkeypatch):
-    monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, and one segment, however slow the machine
+    monkeypatch.setattr(
+        engine, "SECONDS", 1e9
+    )  # one task, and one segment, however slow the machine
     return write_cell(tmp_path / "in", NEAREST)
 
 
