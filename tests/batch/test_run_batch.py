@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 import trimesh
 
-from clearance.batch import file_hashes, rows
+from clearance.batch import engine, file_hashes, rows
 from clearance.batch.engine import LocalEngine
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
@@ -37,7 +37,10 @@ NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
 
 
 @pytest.fixture
-def manifest(tmp_path):
+def manifest(tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        engine, "SECONDS", 1e9
+    )  # one task, and one segment, however slow the machine
     return write_cell(tmp_path / "in", NEAREST)
 
 
