@@ -4,6 +4,7 @@ So the search of a pair is compiled once. Not for: the search (`left`), and whic
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,6 +27,22 @@ from clearance.kernels.motion.joint_path import NO_BALLS, JointPath
 from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.world import World
 
+
+class Look(NamedTuple):
+    """A pair and the part of the motion over which it is looked into.
+
+    Attributes:
+        pair: its number. half: half of the part's share of its interval, 0 at a step.
+        number: of the part; what is made for one part is not made again for it.
+        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
+    """
+
+    pair: int
+    half: float
+    number: int
+    goes_on: bool
+
+
 _NOTHING_LEFT = PairLeft(-math.inf, math.inf, -math.inf, False, Vec3(0.0, 0.0, 0.0))
 
 
@@ -44,21 +61,21 @@ def _like():
     here = Vec3(0.0, 0.0, 0.0)
     start, aim = Start(here, here, True), Aim(0.0, 0.0, 0.0, 0.0, True, 0)
     tally = np.empty(0, dtype=np.int64)
-    return LentArgument(_scene_like()), 0, 0.0, 0, start, aim, True, tally
+    return LentArgument(_scene_like()), Look(0, 0.0, 0, True), start, aim, tally
 
 
 @apart(BUDGET_PAIR, _like)
-def _pair_left(lent, pair, half, look, start, aim, goes_on, tally):
+def _pair_left(lent, look, start, aim, tally):
     """`pair_left`, compiled by itself."""
-    asked = borrow(lent)
+    asked, pair = borrow(lent), look.pair
     world, state = asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    fill_body(lent, body_a, half, look)
-    fill_body(lent, body_b, half, look)
+    fill_body(lent, body_a, look.half, look.number)
+    fill_body(lent, body_b, look.half, look.number)
     pose = pose_of(world, body_a, state)
     frames = frames_of(pose, pose_of(world, body_b, state))
     tally[1] += 1
-    moved = moved_of_pair(asked, pair) if goes_on else math.inf
+    moved = moved_of_pair(asked, pair) if look.goes_on else math.inf
     left = least_left(lent, pair, moved, frames, start, aim, tally)
     u = turn(pose, left.u)
     state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
@@ -66,14 +83,10 @@ def _pair_left(lent, pair, half, look, start, aim, goes_on, tally):
 
 
 @inline
-def pair_left(table, lent, pair, half, look, start, aim, goes_on, tally):
+def pair_left(table, lent, look, start, aim, tally):
     """What errors leave of a pair about the middle.
 
-    Many arguments: they are handed on as they are.
-
     Args:
-        table: of `kernel_table`. lent: a `BudgetScene`.
-        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
+        table: of `kernel_table`. lent: a `BudgetScene`. look: `Look`.
     """
-    arguments = (lent, pair, half, look, start, aim, goes_on, tally)
-    return at_address(table, BUDGET_PAIR, _NOTHING_LEFT, arguments)
+    return at_address(table, BUDGET_PAIR, _NOTHING_LEFT, (lent, look, start, aim, tally))

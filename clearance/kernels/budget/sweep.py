@@ -14,7 +14,7 @@ from clearance.kernels.budget.errors import REACH
 from clearance.kernels.budget.face_left import Aim
 from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
-from clearance.kernels.budget.pair_left import pair_left
+from clearance.kernels.budget.pair_left import Look, pair_left
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
@@ -139,8 +139,7 @@ def budget_moments(scene, asked, rows, tally, table):
     begin_anew(state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
-    for i in range(len(tally)):
-        tally[i] = 0
+    tally[:] = 0
     last, before, was_step = np.int64(-1), np.int64(-1), True
     for place in range(len(asked.intervals)):
         interval, share = asked.intervals[place], asked.shares[place]
@@ -181,8 +180,8 @@ def budget_moments(scene, asked, rows, tally, table):
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
-            goes_on = is_step and is_rough
-            left = pair_left(table, lent, pair, 0.0, place, start, aim, goes_on, tally)
+            look = Look(pair, 0.0, place, is_step and is_rough)
+            left = pair_left(table, lent, look, start, aim, tally)
             note_bound(lent, pair, left.lower_bound)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
@@ -226,7 +225,7 @@ def _hold(lent, step, pair, look, least, asked, tally, table):
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False, 0)
         start = start_before(lent, pair)
-        left = pair_left(table, lent, pair, half, look, start, aim, n_parts == 1, tally)
+        left = pair_left(table, lent, Look(pair, half, look, n_parts == 1), start, aim, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
