@@ -29,6 +29,7 @@ from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.rows_on_demand import RowsOnDemand
+from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import Pair
@@ -124,15 +125,20 @@ class WorstMoments(LazyItems[BudgetMoment]):
             sizes, units = sizes_of(budget, key), units_of(case, key)
             without = pairs.of(with_sizes(budget, key, (0.0,) * len(sizes)))
             taken = _at(without, low) - _at(pairs, low)
-            variance = sum(float(variance_of(slope, budget)[0]) for slope in own)
+            expected = None if moment.touches else _deviation(own, budget)
             found.append(
                 ErrorSource(
                     key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
-                    max(0.0, taken), float(np.sqrt(variance)),
+                    max(0.0, taken), expected,
                     LazyItems(partial(self._largest.of, case, key)),
                 )
             )  # fmt: skip
         return sorted(found, key=lambda source: -source.proven)
+
+
+def _deviation(own: list[Slope], budget: Budget) -> float:
+    """[m] of the clearance, by errors of one source."""
+    return float(np.sqrt(sum(float(variance_of(slope, budget)[0]) for slope in own)))
 
 
 def _at(pairs: PairsWithErrors, low: _LowMoment) -> float:

@@ -98,13 +98,13 @@ def _row(i: int, source: dict[str, Any]) -> Markup:
     name: object = source["name"]
     if i == 0 and source["proven"] > 0.0:
         name = element("strong", name) + " " + element("span", "tighten first", class_="tag near")
-    at_most = source["at_most"]
+    at_most, expected = source["at_most"], source["expected"]
     return element(
         "tr",
         element("td", element("span", class_=f"swatch hue{i % HUES}"), name),
         element("td", source["given"]),
         element("td", depth_mm(source["proven"]), class_="number"),
-        element("td", depth_mm(source["expected"]), class_="number"),
+        element("td", "" if expected is None else depth_mm(expected), class_="number"),
         element("td", at_most or "not enough alone", class_=None if at_most else "text-violated"),
     )
 

@@ -31,7 +31,7 @@ class ErrorSource:
         tolerances: what the budget gives, each with its unit ("m", "rad" or "s"): an offset and an angle for
             frames, else one.
         proven: [m] what it takes of the proven clearance, all others as given. expected: [m] its standard
-            deviation at the witness points.
+            deviation at the witness points; None in contact, where no direction leads from one body to the other.
         largest: the greatest single tolerance, in the order of `tolerances`, all others as given, at which the
             limit is still proven to be kept; None where even 0 does not keep it.
     """
@@ -41,7 +41,7 @@ class ErrorSource:
     part: str
     tolerances: tuple[tuple[float, str], ...]
     proven: float
-    expected: float
+    expected: float | None
     largest: Sequence[float | None] = ()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -125,6 +126,17 @@ def test_contact_is_never_kept():
     assert not budget.keeps
     assert np.isnan(budget.expected[budget.proven < -1.0]).all()
     budget.worst[0].sources[:1]
+
+
+def test_a_report_of_bodies_that_touch_tells_no_deviation(tmp_path):
+    """No direction leads from one body to the other there; the report is written, and says nothing of it."""
+    arm = SCENES / "panda_shelf" / "case.yaml"
+    touching = cl.check(arm, tolerance={"base": {"xyz": 0.002}, "joints": {"all": 0.0005}})
+    touching.save(tmp_path)
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    worst = summary["tolerances"]["rules"][0]["worst"][0]
+    assert (worst["clearance"], worst["expected"]) == (0.0, None)
+    assert {source["expected"] for source in worst["sources"]} == {None}
 
 
 def test_clocks_that_are_not_tied_are_refused():
