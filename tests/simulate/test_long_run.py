@@ -284,6 +284,14 @@ def resampled(case: Case, n_steps: int) -> Case:
 def most_memory(case: Case, folder: Path, jobs: int) -> int:
     """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
     tracemalloc.start()
+    check_and_write(case, folder, jobs)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return most
+
+
+def check_and_write(case: Case, folder: Path, jobs: int) -> None:
+    """The whole of a run, but the page."""
     with open_resumable_rows(folder / "kept", print) as kept:
         run = cl.check(
             case, need="pairs", certify=True, resources=cl.Resources(jobs=jobs, rows=kept)
@@ -293,16 +301,13 @@ def most_memory(case: Case, folder: Path, jobs: int) -> int:
         write_parquet(pair_batches(run.record, kept), folder / "pairs.parquet")
         summary_of(run.record)
         replay_of(run.record, 300, kept)
-    most = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    return most
 
 
 def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     """[bytes] of 2000 and of 20,000 steps on one thread, and of 20,000 on two."""
     parts.LONGEST_PART, parts.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
-    most_memory(resampled(case, 500), folder, 2)  # what is loaded once
+    check_and_write(resampled(case, 500), folder, 2)  # loads and compiles, slow where traced
     few, many = resampled(case, 2_000), resampled(case, 20_000)
     return most_memory(few, folder, 1), most_memory(many, folder, 1), most_memory(many, folder, 2)
 
