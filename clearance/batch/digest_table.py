@@ -11,12 +11,15 @@ from array import array
 NONE = -1
 """The number of a digest that is not there."""
 
+TEXT_WIDTH = 16
+"""Bytes of a text's digest: two texts of one digest are not to be expected in any batch."""
+
 _FIRST_SLOTS = 64
 
 
-def digest_of_text(text: str, width: int) -> bytes:
-    """(width,) A digest of a text that may be no valid Unicode, as names of files are."""
-    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=width).digest()
+def digest_of_text(text: str) -> bytes:
+    """(TEXT_WIDTH,) A digest of a text that may be no valid Unicode, as names of files are."""
+    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=TEXT_WIDTH).digest()
 
 
 class DigestTable:

@@ -10,9 +10,10 @@ from collections.abc import Iterable, Sequence
 
 import pyarrow as pa
 
-from clearance.batch.digest_table import NONE, DigestTable, digest_of_text
+from clearance.batch.digest_table import NONE, TEXT_WIDTH, DigestTable, digest_of_text
 
-_COLUMNS = {"path": 16, "marks": 16, "sha256": 32}
+_SHA256_WIDTH = 32
+_COLUMNS = {"path": TEXT_WIDTH, "marks": TEXT_WIDTH, "sha256": _SHA256_WIDTH}
 """Of the table that is kept, each with the bytes of an entry."""
 
 
@@ -20,7 +21,7 @@ class KnownHashes:
     """Hashes of files by path and marks; of each path the last marks that were told."""
 
     def __init__(self) -> None:
-        self._paths = DigestTable(_COLUMNS["path"])
+        self._paths = DigestTable(TEXT_WIDTH)
         self._marks, self._hashes = bytearray(), bytearray()
 
     def __len__(self) -> int:
@@ -28,16 +29,16 @@ class KnownHashes:
 
     def find(self, path: str, marks: Sequence[int]) -> str | None:
         """The sha256 of a file of these marks; None where it is not known."""
-        number = self._paths.find(digest_of_text(path, _COLUMNS["path"]))
-        if number == NONE or self._marks[16 * number : 16 * number + 16] != _digest(path, marks):
+        number = self._paths.find(digest_of_text(path))
+        if number == NONE or self._marks[_entry(number, TEXT_WIDTH)] != _digest(path, marks):
             return None
-        return self._hashes[32 * number : 32 * number + 32].hex()
+        return self._hashes[_entry(number, _SHA256_WIDTH)].hex()
 
     def learn(self, path: str, marks: Sequence[int], sha256: str) -> bool:
         """Takes over what is known of a file; True if that is new."""
         told, content = _digest(path, marks), bytes.fromhex(sha256)
-        number = self._paths.enter(digest_of_text(path, _COLUMNS["path"]))
-        at, of_hash = slice(16 * number, 16 * number + 16), slice(32 * number, 32 * number + 32)
+        number = self._paths.enter(digest_of_text(path))
+        at, of_hash = _entry(number, TEXT_WIDTH), _entry(number, _SHA256_WIDTH)
         if self._marks[at] == told and self._hashes[of_hash] == content:
             return False
         self._marks[at], self._hashes[of_hash] = told, content
@@ -66,13 +67,18 @@ class KnownHashes:
             paths, marks, hashes = (
                 _bytes(batch.column(name), width) for name, width in _COLUMNS.items()
             )
-            for start in range(0, len(paths), _COLUMNS["path"]):
-                made._paths.enter(paths[start : start + _COLUMNS["path"]])
+            for start in range(0, len(paths), TEXT_WIDTH):
+                made._paths.enter(paths[start : start + TEXT_WIDTH])
             made._marks += marks
             made._hashes += hashes
-        if 16 * len(made) != len(made._marks):
+        if TEXT_WIDTH * len(made) != len(made._marks):
             raise ValueError("a path stands twice")
         return made
+
+
+def _entry(number: int, width: int) -> slice:
+    """Where an entry of a column lies."""
+    return slice(width * number, width * (number + 1))
 
 
 def _bytes(column: pa.Array, width: int) -> bytes:
@@ -85,4 +91,4 @@ def _bytes(column: pa.Array, width: int) -> bytes:
 
 
 def _digest(path: str, marks: Sequence[int]) -> bytes:
-    return digest_of_text(f"{path}\0{tuple(marks)}", _COLUMNS["marks"])
+    return digest_of_text(f"{path}\0{tuple(marks)}")

@@ -14,7 +14,7 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 
 from clearance.batch.cases import Cases
-from clearance.batch.digest_table import DigestTable, digest_of_text
+from clearance.batch.digest_table import TEXT_WIDTH, DigestTable, digest_of_text
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
@@ -25,9 +25,6 @@ from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_
 from clearance.load.tolerance_file import tolerance_digest
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
-
-_WIDTH = 16
-"""Bytes of a digest by which one case or name is told from another."""
 
 
 @dataclass(frozen=True)
@@ -80,12 +77,12 @@ def _given(arguments: Sequence[str], changes: Changes) -> Iterator[Item]:
 
 def _once(items: Iterable[Item]) -> Iterator[Item]:
     """The items without those of which the same was measured already."""
-    seen, asked = DigestTable(_WIDTH), dict[CaseOptions, int]()
+    seen, asked = DigestTable(TEXT_WIDTH), dict[CaseOptions, int]()
     for item in items:
         n_before = len(seen)
         number = asked.setdefault(item.options, len(asked))
         told = repr((item.file, item.trajectory, number))
-        seen.enter(digest_of_text(told, _WIDTH))
+        seen.enter(digest_of_text(told))
         if len(seen) > n_before:
             yield item
 
@@ -218,9 +215,9 @@ def _common_folder(paths: Sequence[str]) -> Path:
 
 
 def _require_own_names(cases: Cases) -> None:
-    seen = DigestTable(_WIDTH)
+    seen = DigestTable(TEXT_WIDTH)
     for item in cases:
-        number = seen.enter(digest_of_text(item.name, _WIDTH))
+        number = seen.enter(digest_of_text(item.name))
         if number != item.number:
             other = cases[number]
             files = dict.fromkeys([_file(other), _file(item)])

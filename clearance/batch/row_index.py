@@ -8,10 +8,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterator, Sequence
 
-from clearance.batch.digest_table import NONE, DigestTable, digest_of_text
-
-_WIDTH = 16
-"""Bytes of a digest by which one file, or list of files, is told from another."""
+from clearance.batch.digest_table import NONE, TEXT_WIDTH, DigestTable, digest_of_text
 
 
 class RowIndex:
@@ -73,19 +70,19 @@ class _InputsIndex:
     """What case files were read with: of each list of files one row that has it."""
 
     def __init__(self) -> None:
-        self._files, self._lists = DigestTable(_WIDTH), DigestTable(_WIDTH)
+        self._files, self._lists = DigestTable(TEXT_WIDTH), DigestTable(TEXT_WIDTH)
         self._first, self._last, self._next = array("i"), array("i"), array("i")
         self._segment, self._row = array("I"), array("I")
 
     def enter(self, file: str, inputs: str, segment: int, row: int) -> None:
         """Takes in what a case file was read with, unless it is known."""
-        number = self._lists.enter(digest_of_text(f"{file}\0{inputs}", _WIDTH))
+        number = self._lists.enter(digest_of_text(f"{file}\0{inputs}"))
         if number < len(self._segment):
             return
         self._segment.append(segment)
         self._row.append(row)
         self._next.append(NONE)
-        whose = self._files.enter(digest_of_text(file, _WIDTH))
+        whose = self._files.enter(digest_of_text(file))
         if whose == len(self._first):
             self._first.append(number)
             self._last.append(number)
@@ -95,7 +92,7 @@ class _InputsIndex:
 
     def places(self, file: str) -> Iterator[tuple[int, int]]:
         """Segment and row of each list of a case file."""
-        whose = self._files.find(digest_of_text(file, _WIDTH))
+        whose = self._files.find(digest_of_text(file))
         number = NONE if whose == NONE else self._first[whose]
         while number != NONE:
             yield self._segment[number], self._row[number]
