@@ -44,12 +44,11 @@ class ReadyKernel(DeferredValue):
     def __call__(self, *arguments: object) -> object:
         form = form_of(arguments)
         ready = self._ready.get(form)
-        return self._first(form, arguments) if ready is None else ready(*arguments)
+        return (self._of_form(form) if ready is None else ready)(*arguments)
 
     def for_types_of(self, arguments: tuple) -> Any:
         """What is called with arguments of these types, and asks for the types of none."""
-        form = form_of(arguments)
-        return self.compiled() if form is None else self._made_ready(form)
+        return self._of_form(form_of(arguments))
 
     def compiled(self) -> Any:
         """The compiler's form; calls for the compiler."""
@@ -71,11 +70,9 @@ class ReadyKernel(DeferredValue):
 
         return load(entry)
 
-    def _first(self, form: object, arguments: tuple) -> object:
-        ready = self.compiled() if form is None else self._made_ready(form)
-        return ready(*arguments)
-
-    def _made_ready(self, form: object) -> Any:
+    def _of_form(self, form: object) -> Any:
+        if form is None:
+            return self.compiled()
         with _loading:
             if form not in self._ready:
                 found = self.loaded(form)
