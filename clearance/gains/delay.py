@@ -22,6 +22,7 @@ from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
+from clearance.simulate.point_motion import moves_with_joints
 from clearance.simulate.record import Record
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
@@ -214,8 +215,8 @@ def _excluded(state: State, i_robot: int, margin: float, longer: Longer) -> floa
     columns, most = columns_of(state.case, i_robot), 0.0
     transfers = Transfers(state.case, (False, i_robot))
     for approach in state.near:
-        radii = [motion_radii(approach.case, body)[columns].any() for body in approach.pair]
-        if not any(radii) or all(radii) or transfers.has(approach):
+        a, b = (moves_with_joints(approach.case, body, columns) for body in approach.pair)
+        if a == b or transfers.has(approach):
             continue
         ways = np.maximum(way_needed(approach, margin), 0.0)
         most = max(most, float(longer(state, approach, ways).max(initial=0.0)))

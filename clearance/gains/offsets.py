@@ -24,11 +24,11 @@ from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import motion_of_frame
+from clearance.simulate.point_motion import motion_of_frame, moves_with_joints
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.forest import WORLD, carried_by, forest_of, link_poses_at
-from clearance.world.pairs import BodyIndex, Pair
+from clearance.world.forest import link_poses_at
+from clearance.world.pairs import Pair
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 
@@ -149,13 +149,8 @@ class JointOffsets:
         return replace(self.placed, trajectory=changed)
 
     def moves(self, case: Case, pair: Pair) -> bool:
-        return any(self._carries(case, body) for body in pair) or self.transfers.has_of(case, pair)
-
-    def _carries(self, case: Case, body: BodyIndex) -> bool:
-        """True if a joint of the path moves a body."""
-        forest, frame = forest_of(case), body.frame_in(case)
-        links = [] if frame == WORLD else [*carried_by(forest, frame)]
-        return not {*forest.links.columns[links].tolist()}.isdisjoint(self.columns)
+        by_joint = any(moves_with_joints(case, body, self.columns) for body in pair)
+        return by_joint or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.transfers.has(approach):

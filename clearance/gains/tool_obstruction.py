@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
+from clearance.gains.lower_bounds import INWARD, way_needed
 from clearance.gains.obstruction import KEPT_STILL, Obstruction, pair_at
 from clearance.gains.offsets import JointOffsets
 from clearance.gains.shortfalls import SAME, State
 from clearance.gains.tool_poses import ToolKeep
 from clearance.simulate.approaches import Approach
+from clearance.simulate.point_motion import moves_with_joints
 from clearance.world.forest import WORLD, forest_of
 
 
@@ -43,7 +44,7 @@ def _most(offsets: JointOffsets, approach: Approach, row: int, keep: ToolKeep, l
     tool.
     """
     case = approach.case
-    moved = [body for body in approach.pair if motion_radii(case, body)[offsets.columns].any()]
+    moved = [body for body in approach.pair if moves_with_joints(case, body, offsets.columns)]
     if len(moved) != 1:
         return float("inf")
     (body,) = moved

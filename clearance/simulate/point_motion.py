@@ -5,6 +5,8 @@ Not for: what that does to a clearance (`approaches`).
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
@@ -46,6 +48,17 @@ def motion_of_frame(case: Case, poses: np.ndarray, frame: int, points: np.ndarra
             axes = np.cross(axes, points - poses[:, link, :3, 3])
         moved[:, column] += links.factors[link] * axes
     return moved
+
+
+def moves_with_joints(case: Case, body: BodyIndex, columns: Collection[int]) -> bool:
+    """True if a joint that follows one of some columns of the forest moves a body."""
+    forest, frame = forest_of(case), body.frame_in(case)
+    links = forest.links
+    return frame != WORLD and any(
+        links.kinds[link] in (TURNING, SLIDING) and links.factors[link] != 0.0
+        for link in carried_by(forest, frame)
+        if links.columns[link] in columns
+    )
 
 
 def moves_with_robot(case: Case, body: BodyIndex, i_robot: int) -> bool:
