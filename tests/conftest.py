@@ -12,7 +12,6 @@ import pytest
 
 from tests import examples, kernel_shares
 from tests.guards import guarded, refused
-from tests.kernel_shares import spread
 from tests.marks import marks_of
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
@@ -81,7 +80,10 @@ def _put_long_files_first(items: list[pytest.Item]) -> None:
     """
     long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
     files = list(dict.fromkeys(item.path for item in items))
-    order = [*spread([f for f in files if f in long]), *spread([f for f in files if f not in long])]
+    order = [
+        *kernel_shares.spread([f for f in files if f in long]),
+        *kernel_shares.spread([f for f in files if f not in long]),
+    ]
     places = {path: i for i, path in enumerate(order)}
     items.sort(key=lambda item: places[item.path])
 

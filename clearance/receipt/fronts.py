@@ -215,7 +215,7 @@ def _may_hold(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
 
 
 def _lowered(
-    stage: Stage, items: Items, u: np.ndarray, deeds: np.ndarray, lowest: LowerableClaims
+    stage: Stage, items: Items, u: np.ndarray, deeds: np.ndarray, claims: LowerableClaims
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lowers the claims of items that would be cut in time once more after many times.
 
@@ -225,16 +225,16 @@ def _lowered(
     deep = np.flatnonzero((deeds == CUT_TIME) & (items.depth >= DEEP))
     coded = codes_of(u[:, deep], LONG)
     own, along = items.of(deep), directions(coded, LONG)
-    assert lowest.lowest is not None
+    assert claims.lowest is not None
     short = np.minimum(by_directions(stage, own, along), 0.0)
     rules, interval = stage.stretch.rules[own.pair], own.start
     at = rules, stage.stretch.first + interval
-    wanted = lowest.claims[at] - np.ceil(-short / UNIT).astype(np.int64) - 1
-    may = np.flatnonzero(np.isfinite(short) & (wanted >= lowest.lowest[at]))
-    np.minimum.at(lowest.claims, (at[0][may], at[1][may]), wanted[may])
+    wanted = claims.claims[at] - np.ceil(-short / UNIT).astype(np.int64) - 1
+    may = np.flatnonzero(np.isfinite(short) & (wanted >= claims.lowest[at]))
+    np.minimum.at(claims.claims, (at[0][may], at[1][may]), wanted[may])
     for rule, step in {*zip(rules[may].tolist(), interval[may].tolist(), strict=True)}:
         pairs = stage.stretch.rules == rule
-        claim = lowest.claims[rule, stage.stretch.first + step]
+        claim = claims.claims[rule, stage.stretch.first + step]
         stage.wanted[pairs, step] = claim * UNIT + stage.stretch.padding[pairs]
     held = np.zeros(len(deep), dtype=bool)
     held[may] = by_directions(stage, own.of(may), along[:, may]) >= 0.0

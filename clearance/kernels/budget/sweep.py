@@ -252,8 +252,7 @@ def budget_intervals(scene, asked, rows, tally, table):
     begin_anew(state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
-    for i in range(len(tally)):
-        tally[i] = 0
+    tally[:] = 0
     look, before = np.int64(0), asked.intervals[0]
     for place in range(len(asked.intervals)):
         step, least = asked.intervals[place], asked.known[place]
