@@ -13,7 +13,7 @@ from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
 from clearance.late_dataclass import dataclass
 from clearance.load.input_files import read_bytes
 from clearance.load.pcd_file import read_pcd
-from clearance.load.ply_file import read_ply_points
+from clearance.load.ply_points import read_ply_points
 from clearance.load.points import Points
 from clearance.load.points_text import read_points_text
 

@@ -14,9 +14,9 @@ from clearance.load.mjcf_document import mjcf_document
 from clearance.load.mjcf_model import MjcfGeom, MjcfModel
 from clearance.load.mjcf_shapes import MjcfShapes, compiled, primitive, triangles_of
 from clearance.load.off_file import off_text
+from clearance.load.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.pose_row import pose_row
 from clearance.load.scene_request import SceneContent, SceneRequest
-from clearance.load.sdf_geometry import PLANE_DEPTH, PLANE_SIDE
 from clearance.world.notice import Notice, Severity, listed
 
 

@@ -2,7 +2,8 @@
 
 Own code, because the usual readers keep what is left of a cut-off text file, cut polygons as fans, and leave
 `tristrips` out. Points, faces and strips are read; colours and other elements are passed over. Not for: how
-elements are stored (`ply_elements`). Source: G. Turk, The PLY polygon file format, 1994.
+elements are stored (`ply_elements`), nor points without faces (`ply_points`).
+Source: G. Turk, The PLY polygon file format, 1994.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import numpy as np
 from clearance.errors import BadSyntax, EmptyMesh, MissingKey, at
 from clearance.load.ply_elements import elements_of
 from clearance.load.ply_rows import PlyRows
-from clearance.load.points import Points
 from clearance.load.polygon_cut import cut_rings
 from clearance.load.strips import strip
 from clearance.load.triangles import Triangles, checked, refuse_missing_corners
@@ -27,7 +27,7 @@ def read_ply(data: bytes) -> Triangles:
         BadSyntax, MissingKey: not PLY, cut off, or longer than its header says. BadPolygon, EmptyMesh, NotFinite.
     """
     elements = elements_of(data)
-    points = _points(elements)
+    points = vertices(elements)
     corners = [cut_rings(points, *rings) for rings in _rings(elements, "face", points)]
     for flat, counts in _rings(elements, "tristrips", points, ends=True):
         corners += [_strips(ring) for ring in np.split(flat, np.cumsum(counts)[:-1])]
@@ -39,19 +39,12 @@ def read_ply(data: bytes) -> Triangles:
     return Triangles(points, np.concatenate(corners))
 
 
-def read_ply_points(data: bytes) -> Points:
-    """The vertices of a PLY file, as points of a scan; faces are passed over.
+def vertices(elements: dict[str, PlyRows]) -> np.ndarray:
+    """(n, 3) the vertices, in the file's unit.
 
     Raises:
-        BadSyntax, MissingKey: as `read_ply`.
+        MissingKey: there are none with x, y and z.
     """
-    elements = elements_of(data)
-    faces = [name for name in ("face", "tristrips") if name in elements and elements[name].n_rows]
-    notes = ("its faces are passed over: only the vertices are taken",) if faces else ()
-    return Points(_points(elements), notes)
-
-
-def _points(elements: dict[str, PlyRows]) -> np.ndarray:
     columns = elements["vertex"].columns if "vertex" in elements else {}
     missing = [name for name in "xyz" if name not in columns]
     if missing:

@@ -11,13 +11,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, at, nearest_name
+from clearance.load.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.sdf_document import numbers_of, text_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
-
-PLANE_SIDE, PLANE_DEPTH = 40.0, 1.0
-"""[m] A plane, which has no end and no thickness, as a box below it; arms work within 20 m of where they stand."""
 
 _UNREAD = {
     "heightmap": "its surface is a picture",
