@@ -16,7 +16,7 @@ __all__ += ["__version__"]
 
 
 def _read_mesh(path, scale):
-    return import_module("clearance.load.mesh").read_mesh(path, scale)
+    return import_module("clearance.load.mesh.mesh_file").read_mesh(path, scale)
 
 
 attach_file_reader(_read_mesh)

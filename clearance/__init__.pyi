@@ -6,12 +6,12 @@ from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
 from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
-from .load.case_file import load_case
-from .load.cloud import read_points
-from .load.mesh import read_mesh
-from .load.robot_formats import load_robot
-from .load.urdf import load_urdf
-from .load.waiver_file import load_waivers
+from .load.case.case_file import load_case
+from .load.case.waiver_file import load_waivers
+from .load.cloud.formats import read_points
+from .load.mesh.mesh_file import read_mesh
+from .load.robot.formats import load_robot
+from .load.robot.urdf.robot import load_urdf
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
 from .planar.deviation import deviation

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from clearance.batch.known_hashes import KnownHashes
-from clearance.load.input_files import regular_file
+from clearance.load.files.input_files import regular_file
 
 RACY = 2_000_000_000
 """[ns] The coarsest clock of a file system that is in use (FAT) counts two seconds."""

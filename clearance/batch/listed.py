@@ -15,7 +15,7 @@ from clearance.batch.cases import Cases
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.errors import BadInput, MissingFile, nearest_name
-from clearance.load.tolerance_file import tolerance_digest
+from clearance.load.tolerance.tolerance_file import tolerance_digest
 from clearance.report.folder import written_file
 from clearance.world.waiver import Waiver
 

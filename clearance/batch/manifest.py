@@ -20,9 +20,9 @@ from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.late_dataclass import dataclass
-from clearance.load.input_files import read_bytes
-from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_manifest
-from clearance.load.tolerance_file import tolerance_digest
+from clearance.load.files.input_files import read_bytes
+from clearance.load.schema.manifest import Manifest, Reading, is_manifest, load_manifest
+from clearance.load.tolerance.tolerance_file import tolerance_digest
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
 

@@ -21,10 +21,10 @@ from clearance.batch.segments import segment_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import ClearanceError, Incomplete
 from clearance.late_dataclass import dataclass
-from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
-from clearance.load.manifest_schema import Reading
-from clearance.load.mesh_paths import variables_of
-from clearance.load.xacro_variables import variables_asked
+from clearance.load.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
+from clearance.load.files.mesh_paths import variables_of
+from clearance.load.robot.urdf.xacro_variables import variables_asked
+from clearance.load.schema.manifest import Reading
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 

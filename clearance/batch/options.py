@@ -9,7 +9,7 @@ from pathlib import Path
 
 from clearance.errors import BadInput
 from clearance.late_dataclass import dataclass
-from clearance.load.tolerance_file import tolerance_digest, with_tolerance
+from clearance.load.tolerance.tolerance_file import tolerance_digest, with_tolerance
 from clearance.run import Question
 from clearance.run.question import with_levels
 from clearance.tolerance import CERTIFY_GAP

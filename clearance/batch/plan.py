@@ -21,9 +21,9 @@ from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.outcome import Outcome
 from clearance.batch.store import MOST_TEXTS, Store
 from clearance.late_dataclass import dataclass
-from clearance.load.bag_files import files_of
-from clearance.load.input_files import InputFiles
-from clearance.load.lookups import leads_to
+from clearance.load.files.input_files import InputFiles
+from clearance.load.files.lookups import leads_to
+from clearance.load.motion.bag_files import files_of
 from clearance.world.case import LOOKUP
 
 Files = tuple[tuple[str, str], ...]

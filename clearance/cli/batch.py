@@ -152,7 +152,7 @@ def check(
     from clearance.batch.store import open_store
     from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
-    from clearance.load.waiver_file import load_waivers
+    from clearance.load.case.waiver_file import load_waivers
 
     if samples_only and certify_mm is not None:
         raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")

@@ -226,7 +226,7 @@ def _require_file(case_file: Path) -> None:
     Raises:
         MissingFile: as when it is read.
     """
-    from clearance.load.input_files import require_file
+    from clearance.load.files.input_files import require_file
 
     require_file(case_file, case_file.name)
 
@@ -244,7 +244,7 @@ def _case(
     accept: tuple[str, ...],
 ) -> Case:
     """The case with what the command line changes of it."""
-    from clearance.load.case_file import load_case
+    from clearance.load.case.case_file import load_case
     from clearance.run.question import with_levels
 
     case = load_case(case_file)

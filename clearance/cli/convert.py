@@ -12,7 +12,7 @@ from clearance.cli.options import OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.load.conversion import ConvertedFiles
+    from clearance.load.conversion.files import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -54,10 +54,10 @@ def convert(
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.written_files import refuse_there, write_files
-    from clearance.load.conversion import Conversion, converted
-    from clearance.load.file_kind import FileKind, kind_of
-    from clearance.load.input_files import InputFiles
-    from clearance.load.trajectory_request import Choice
+    from clearance.load.conversion.file_kind import FileKind, kind_of
+    from clearance.load.conversion.files import Conversion, converted
+    from clearance.load.files.input_files import InputFiles
+    from clearance.load.motion.trajectory_request import Choice
 
     _require_place(in_file, out_file)
     refuse_there([out_file], force=force)

@@ -88,8 +88,8 @@ def with_waivers(case: Case, paths: Sequence[Path]) -> Case:
     """
     if not paths:
         return case
-    from clearance.load.input_files import InputFiles
-    from clearance.load.waiver_file import waivers_of
+    from clearance.load.case.waiver_file import waivers_of
+    from clearance.load.files.input_files import InputFiles
 
     found, sources = list(case.waivers), {source.path: source for source in case.sources}
     for path in paths:

@@ -111,7 +111,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.cli.places import require_folder_place
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.load.case_file import load_case
+    from clearance.load.case.case_file import load_case
     from clearance.overwriting import refuse_inputs
 
     options = _with_turn(options) | {"robot": _robot(options["robot"])}

@@ -15,7 +15,7 @@ from clearance.cli.options import OutputPath
 from clearance.late_dataclass import dataclass
 
 if TYPE_CHECKING:
-    from clearance.load.trajectory_writer import WrittenTrajectory
+    from clearance.load.motion.trajectory_writer import WrittenTrajectory
     from clearance.run import Run
     from clearance.world.case import Case
 

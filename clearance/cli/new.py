@@ -16,7 +16,7 @@ from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
 
 if TYPE_CHECKING:
-    from clearance.load.new_case import NewCase
+    from clearance.load.new_case.files import NewCase
 
 _MOST_NOTES = 8
 
@@ -128,8 +128,8 @@ def new(
     each, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
     that of the check.
     """
-    from clearance.load.new_case import new_case
-    from clearance.load.new_robot import NewCaseRequest
+    from clearance.load.new_case.files import new_case
+    from clearance.load.new_case.robot import NewCaseRequest
 
     keys = {
         "urdf": robot,
@@ -176,8 +176,8 @@ def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
     from clearance.cli.written_files import write_files
     from clearance.errors import Unwritable
-    from clearance.load.new_case import CASE, TRAJECTORY
-    from clearance.load.new_scene import SCENE
+    from clearance.load.new_case.files import CASE, TRAJECTORY
+    from clearance.load.new_case.scene import SCENE
 
     if out_dir.exists() and not out_dir.is_dir():
         raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")

@@ -30,7 +30,7 @@ def pre_commit(files: tuple[Path, ...]) -> int:
     limit` on each.
     """
     from clearance.errors import ClearanceError
-    from clearance.load.case_list import cases_in
+    from clearance.load.case.case_list import cases_in
 
     worst = ExitCode.CLEAR
     for file in files:

@@ -52,7 +52,7 @@ def sweep(
     from clearance.cli.notices import say_notices
     from clearance.cli.places import refuse_inputs_of_cases, require_file_place
     from clearance.cli.progress import shown_progress
-    from clearance.load.case_file import load_case
+    from clearance.load.case.case_file import load_case
     from clearance.profiles.profile_file import require_suffix, write_profile
     from clearance.profiles.sweep import TOLERANCE, swept_profile
 

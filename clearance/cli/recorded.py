@@ -1,4 +1,4 @@
-"""Options of a recorded run: which file, whose, its clock. Not for: reading it (`load.recorded_run`)."""
+"""Options of a recorded run: which file, whose, its clock. Not for: reading it (`load.case.recorded_run`)."""
 
 from __future__ import annotations
 
@@ -63,6 +63,6 @@ def with_recording(case: Case, path: Path | None, offset: float | None, robot: s
     """
     if path is None:
         return case
-    from clearance.load.recorded_run import with_recorded
+    from clearance.load.case.recorded_run import with_recorded
 
     return with_recorded(case, path, offset or 0.0, robot)

@@ -58,7 +58,7 @@ def workspace(
     """
     from clearance.cli.notices import say_notices
     from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
-    from clearance.load.case_file import load_case
+    from clearance.load.case.case_file import load_case
     from clearance.report.workspace import OWN
     from clearance.simulate.workspace import WITHIN, shared_workspace
 

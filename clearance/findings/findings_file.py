@@ -16,8 +16,8 @@ from clearance.findings.finding import Finding
 from clearance.findings.measurement_conditions import MeasurementConditions, conditions_of
 from clearance.findings.of_record import findings_of, why_incomplete
 from clearance.late_dataclass import dataclass
-from clearance.load.input_files import read_bytes
-from clearance.load.schema_errors import place
+from clearance.load.files.input_files import read_bytes
+from clearance.load.schema.errors import place
 from clearance.simulate.record import Record
 
 FILE_NAME = "findings.json"

@@ -175,7 +175,7 @@ class Polyhedron:
         """The surface in a mesh file (STL, OBJ, PLY, DAE, …), its coordinates times `scale` in metres.
 
         Raises:
-            MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `clearance.load.mesh.read_mesh`.
+            MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `load.mesh.mesh_file.read_mesh`.
         """
         return file_reader()(path, scale)
 

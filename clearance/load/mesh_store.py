@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.geometry.kept_shapes import kept, name_of
-from clearance.load import mesh
-from clearance.load.input_files import InputFiles
-from clearance.load.mesh import LoadedMesh, mesh_from_bytes
-from clearance.load.mesh_formats import CAD
-from clearance.load.placing import UpAxis
+from clearance.load.files.input_files import InputFiles
+from clearance.load.mesh import mesh_file as mesh
+from clearance.load.mesh.formats import CAD
+from clearance.load.mesh.mesh_file import LoadedMesh, mesh_from_bytes
+from clearance.load.mesh.placing import UpAxis
 from clearance.tolerance import TESSELLATION
 
 if TYPE_CHECKING:
-    from clearance.load.cloud import LoadedCloud
+    from clearance.load.cloud.formats import LoadedCloud
 
 Scale = tuple[float, float, float]
 
@@ -51,7 +51,7 @@ class MeshStore:
             tolerance: [m] how far the facets of a CAD file may be off its surface.
 
         Raises:
-            BadInput: as `mesh.read_mesh`, with the path as it is shown.
+            BadInput: as `mesh.mesh_file.read_mesh`, with the path as it is shown.
         """
         key = (os.path.abspath(path), scale, up_axis, tolerance)
         if key not in self._loaded:
@@ -66,11 +66,11 @@ class MeshStore:
         """The cloud in a file of points; the same object for the same file, radius, scale and unit.
 
         Raises:
-            BadInput: as `cloud.read_points`, with the path as it is shown.
+            BadInput: as `cloud.formats.read_points`, with the path as it is shown.
         """
         key = (os.path.abspath(path), radius, scale, in_millimetres)
         if key not in self._clouds:
-            from clearance.load.cloud import cloud_from_bytes
+            from clearance.load.cloud.formats import cloud_from_bytes
 
             data = self.files.read(path)
             self._clouds[key] = cloud_from_bytes(

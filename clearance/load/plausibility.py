@@ -1,6 +1,6 @@
 """What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
 
-Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema`,
+Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema.case`,
 `csv_table`).
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.geometry.shapes import SHAPES
-from clearance.load.obstacle_schema import Obstacle
+from clearance.load.schema.obstacle import Obstacle
 from clearance.world.notice import Notice, Severity, listed
 
 LARGE_RADIUS = 5.0

@@ -1,4 +1,4 @@
-"""The files of tolerances that have a name. Not for: reading them (`tolerance_presets`)."""
+"""The files of tolerances that have a name. Not for: reading them (`tolerance.presets`)."""
 
 from __future__ import annotations
 

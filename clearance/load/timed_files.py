@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from clearance.errors import BadInput, at
-from clearance.load.bag_files import files_of, is_bag
-from clearance.load.csv_table import Opener
-from clearance.load.foreign_files import refuse_foreign
-from clearance.load.input_files import InputFiles, resolved
-from clearance.load.pose_formats import read_poses, read_samples
-from clearance.load.pose_schema import PoseFile, TrajectoryFile
-from clearance.load.pose_table_request import PoseRequest, ReadPoses, ReadSamples
-from clearance.load.trajectory_file import read_trajectory
-from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.load.files.foreign_files import refuse_foreign
+from clearance.load.files.input_files import InputFiles, resolved
+from clearance.load.motion.bag_files import files_of, is_bag
+from clearance.load.motion.pose_formats import read_poses, read_samples
+from clearance.load.motion.pose_table_request import PoseRequest, ReadPoses, ReadSamples
+from clearance.load.motion.trajectory_file import read_trajectory
+from clearance.load.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.load.schema.pose import PoseFile, TrajectoryFile
+from clearance.load.table.csv_table import Opener
 from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.pose_table import require_samples_to_loop
@@ -102,7 +102,7 @@ def _of_bag(
     path: Path, files: InputFiles, choice: Choice, kinds: Mapping[str, bool]
 ) -> ReadTrajectory:
     """What is in a bag, whose files are not kept."""
-    from clearance.load.rosbag_file import read_bag
+    from clearance.load.motion.rosbag_file import read_bag
 
     shown = files.shown(path)
     for one in files_of(path):

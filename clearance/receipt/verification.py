@@ -209,7 +209,7 @@ def _failure_text(data: CaseData, receipt: Receipt, failure: Failure) -> str:
 
 
 def _loaded(place: Path, receipt: Receipt, case: str | PathLike[str] | None) -> Case:
-    from clearance.load.case_file import load_case
+    from clearance.load.case.case_file import load_case
 
     if case is None:
         way = receipt.head["case"]
@@ -228,7 +228,7 @@ def _with_tolerance(
     case: Case, place: Path, receipt: Receipt, tolerance: str | PathLike[str] | None
 ) -> Case:
     """The case with the file of tolerances that it was measured with, if there was one."""
-    from clearance.load.tolerance_file import with_tolerance
+    from clearance.load.tolerance.tolerance_file import with_tolerance
 
     way = receipt.head["tolerance"]
     if tolerance is None and not way:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.load.message_times import split_time
+from clearance.load.message.times import split_time
 from clearance.report.actors import paddings_of
 from clearance.report.pair_judge import PairJudge
 from clearance.report.verdict import verdict_of

@@ -1,4 +1,7 @@
-"""Joints that follow others, to the joint that moves them all. Not for: what a file may say (`load.joints`)."""
+"""Joints that follow others, to the joint that moves them all.
+
+Not for: what a file may say (`load.robot.urdf.joints`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a robot really did, held against what it was commanded. Not for: reading one (`load.recorded_run`)."""
+"""What a robot really did, held against what it was commanded. Not for: reading one (`load.case.recorded_run`)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Waivers: who lets which two bodies come nearer than a rule says, how near, why and until when.
 
-Not for: whether a run needs one and keeps to it (`findings.judgement`), nor files of them (`load.waiver_file`).
+Not for: whether a run needs one and keeps to it (`findings.judgement`), nor their files (`load.case.waiver_file`).
 """
 
 from __future__ import annotations

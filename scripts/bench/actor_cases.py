@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import clearance as cl
-from clearance.load.srdf import load_srdf
-from clearance.load.urdf import load_urdf
+from clearance.load.robot.srdf import load_srdf
+from clearance.load.robot.urdf.robot import load_urdf
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources

@@ -39,7 +39,7 @@ from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
 from clearance.batch.store import open_store
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 
 COLUMNS = ("what", "value", "unit", "target")
 CHUNK = 20

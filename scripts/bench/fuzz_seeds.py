@@ -68,7 +68,7 @@ def readers() -> dict[str, Reader]:
 
 def _meshes() -> dict[str, Reader]:
     pieces, words, text = parts_damaged, lines_damaged, after_header(b"end_header")
-    read, where = reading.mesh, "load.mesh"
+    read, where = reading.mesh, "load.mesh.formats"
     return {
         "STL binary": Reader("m.stl", shapes.binary_stl(), read, pieces, where),
         "STL text": Reader("m.stl", shapes.text_stl(), read, words, where),
@@ -87,7 +87,7 @@ def _meshes() -> dict[str, Reader]:
 
 
 def _scans() -> dict[str, Reader]:
-    read, where, body = reading.points, "load.cloud", after_header(b"DATA")
+    read, where, body = reading.points, "load.cloud.formats", after_header(b"DATA")
     in_mm, plain = table(POINTS, ",", "x [mm],y [mm],z [mm]"), table(POINTS, " ", "")
     return {
         "PCD ascii": Reader("s.pcd", pcd(POINTS, "ascii"), read, lines_damaged, where),
@@ -111,12 +111,14 @@ def _drawings() -> dict[str, Reader]:
 
 
 def _robots() -> dict[str, Reader]:
-    where, beside = "load.robot_formats", reading.robot_beside
+    where, beside = "load.robot.formats", reading.robot_beside
     evaluated = reading.by_path(reading.xacro)
     return {
         "URDF": Reader("arm.urdf", texts.URDF, reading.robot, xml_damaged, where, (".xml",)),
         "MJCF": Reader("arm.xml", texts.MJCF, reading.robot, xml_damaged, where, (".mjcf",)),
-        "xacro": Reader("arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.robot_element"),
+        "xacro": Reader(
+            "arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.robot.robot_element"
+        ),
         "SRDF": Reader("arm.srdf", texts.SRDF, beside, xml_damaged),
         "joint limits": Reader("limits.yaml", texts.LIMITS, beside, yaml_damaged),
         "controllers": Reader("control.yaml", texts.CONTROL, beside, yaml_damaged),
@@ -124,7 +126,7 @@ def _robots() -> dict[str, Reader]:
 
 
 def _scenes() -> dict[str, Reader]:
-    read, where = reading.scene, "load.scene_formats"
+    read, where = reading.scene, "load.scene.formats"
     return {
         "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where),
         "PlanningScene": Reader("cell.yaml", texts.PLANNING_SCENE, read, yaml_damaged, where),
@@ -139,8 +141,8 @@ def _scenes() -> dict[str, Reader]:
 
 
 def _motions() -> dict[str, Reader]:
-    read, where = reading.trajectory, "load.trajectory_file"
-    poses, tables = reading.poses, "load.pose_formats"
+    read, where = reading.trajectory, "load.motion.trajectory_file"
+    poses, tables = reading.poses, "load.motion.pose_formats"
     yml = (".yml",)
     return {
         "trajectory": Reader("path.csv", texts.PATH, read, table_damaged, where),
@@ -154,7 +156,7 @@ def _motions() -> dict[str, Reader]:
 
 
 def _bags() -> dict[str, Reader]:
-    read, where = reading.by_path(reading.bag), "load.rosbag_file"
+    read, where = reading.by_path(reading.bag), "load.motion.rosbag_file"
     folder = reading.by_path(reading.bag_folder)
     return {
         "bag bag": Reader("run.bag", bag("bag"), read, parts_damaged, where),

@@ -21,7 +21,7 @@ from rows import write_csv
 import clearance as cl
 from clearance.gains.answer import Gain, Request
 from clearance.gains.changed_files import case_files
-from clearance.load.rewritten_case import Node, rewritten_case
+from clearance.load.case.rewritten_case import Node, rewritten_case
 from clearance.run import Question, answer
 
 INDEX = "index.csv"

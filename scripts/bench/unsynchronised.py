@@ -25,10 +25,10 @@ from rich.console import Console
 from rich.table import Table
 
 import clearance as cl
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from clearance.simulate.resources import Resources
 from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised

@@ -17,8 +17,8 @@ from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import Task, measure
 from clearance.batch.store import open_store
 from clearance.errors import Incomplete, Unwritable
-from clearance.load.case_file import load_cell, with_trajectory_file
-from clearance.load.pose_schema import TrajectoryFile
+from clearance.load.case.case_file import load_cell, with_trajectory_file
+from clearance.load.schema.pose import TrajectoryFile
 from clearance.run import Question, answer
 from tests.batch.batches import (
     CELL,

@@ -8,7 +8,7 @@ import pytest
 from clearance.batch.listed import read_list
 from clearance.batch.manifest import Changes, items_of
 from clearance.cli import run
-from clearance.load.waiver_file import load_waivers
+from clearance.load.case.waiver_file import load_waivers
 from tests.batch.batches import answer_bytes, write_cell
 from tests.report.junit_schema import valid_suite
 

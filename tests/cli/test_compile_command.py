@@ -6,7 +6,7 @@ import pytest
 
 from clearance.cli import compile_kernels, rehearsal, run
 from clearance.kept_files import cache_root
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
-from clearance.load.trajectory_file import parse_trajectory
-from clearance.load.trajectory_writer import WRITERS, written
+from clearance.load.motion.trajectory_file import parse_trajectory
+from clearance.load.motion.trajectory_writer import WRITERS, written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.load.making_case import TWO_JOINTS, changed, load_small

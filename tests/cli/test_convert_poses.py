@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from clearance import check
 from clearance.cli import run
-from clearance.load.pose_formats import read_samples
-from clearance.load.pose_table_request import PoseRequest, PoseSamples
-from clearance.load.pose_writer import SUFFIXES, written_poses
+from clearance.load.motion.pose_formats import read_samples
+from clearance.load.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.load.motion.pose_writer import SUFFIXES, written_poses
 from tests.examples import examples
 from tests.load.making_cell import load_cell
 from tests.load.test_pose_formats import STAMPED, pose

@@ -9,7 +9,7 @@ import pytest
 
 from clearance import check
 from clearance.cli import run
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from tests.load.making import CASE, cube_stl, write_case
 from tests.load.making_case import TWO_JOINTS
 from tests.load.making_mjcf import mjcf, tetrahedron_stl

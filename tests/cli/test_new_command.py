@@ -11,9 +11,9 @@ from ruamel.yaml import YAML
 
 from clearance import load_case
 from clearance.cli import run
-from clearance.load.written_paths import path_from
-from clearance.load.yaml_file import parse_yaml
-from clearance.load.yaml_text import flow
+from clearance.load.files.written_paths import path_from
+from clearance.load.text.yaml_file import parse_yaml
+from clearance.load.text.yaml_text import flow
 from tests.load.making import CASE, CUBE, PATH, cube_stl
 from tests.load.making_case import TWO_JOINTS
 from tests.load.making_messages import ROS2

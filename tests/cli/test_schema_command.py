@@ -11,8 +11,8 @@ from ruamel.yaml import YAML
 
 from clearance.cli import run
 from clearance.errors import BadInput
-from clearance.load import schema
-from clearance.load.schema_errors import validated
+from clearance.load.schema import case as schema
+from clearance.load.schema.errors import validated
 from tests.load.making import CASE
 from tests.load.making_cell import CELL
 

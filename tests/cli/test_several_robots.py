@@ -8,7 +8,7 @@ import pytest
 
 from clearance.cli import run
 from clearance.geometry import boolean
-from clearance.load import case_file
+from clearance.load.case import case_file
 from tests import cells
 from tests.load.making_cell import write_cell
 

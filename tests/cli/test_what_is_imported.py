@@ -80,7 +80,7 @@ def test_a_check_whose_kernels_are_compiled_imports_no_compiler(tmp_path):
     imported_by(check(case), tmp_path)  # compiles what is not kept yet
     found = imported_by(check(case), tmp_path)
     assert {"numpy", "llvmlite", "pydantic"} <= found
-    other = {"clearance.query.contact", "clearance.load.sdf_file", "clearance.report.page"}
+    other = {"clearance.query.contact", "clearance.load.scene.sdf.scene", "clearance.report.page"}
     assert not found & {*OPTIONAL, *other, "numba", "scipy", "pyarrow.compute", "filelock"}
     imported_by(check(case, "--out", "report"), tmp_path)
     found = imported_by(check(case, "--out", "report"), tmp_path)

@@ -17,8 +17,8 @@ import pytest
 
 import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
-from clearance.load.srdf import load_srdf
-from clearance.load.urdf import load_urdf
+from clearance.load.robot.srdf import load_srdf
+from clearance.load.robot.urdf.robot import load_urdf
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources

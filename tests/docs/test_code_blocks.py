@@ -16,10 +16,10 @@ import pytest
 from ruamel.yaml import YAML
 
 from clearance.cli.commands import clearance
-from clearance.load.manifest_schema import Manifest
-from clearance.load.schema import Case
-from clearance.load.tolerance_schema import Tolerance
-from clearance.load.waiver_file import load_waivers
+from clearance.load.case.waiver_file import load_waivers
+from clearance.load.schema.case import Case
+from clearance.load.schema.manifest import Manifest
+from clearance.load.schema.tolerance import Tolerance
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
 LANGUAGES = {"python", "bash", "console", "yaml", "csv", "dockerfile", "text"}

@@ -11,7 +11,7 @@ import pytest
 from clearance.errors import BadInput
 from clearance.findings.judgement import judgement_of
 from clearance.findings.of_record import findings_of
-from clearance.load.waiver_file import load_waivers
+from clearance.load.case.waiver_file import load_waivers
 from clearance.run import Question, Run, answer
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates

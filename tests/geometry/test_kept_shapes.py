@@ -15,8 +15,8 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder
 from clearance.kept_files import cache_root
 from clearance.load import mesh_store
-from clearance.load.input_files import InputFiles
-from clearance.load.mesh import mesh_file
+from clearance.load.files.input_files import InputFiles
+from clearance.load.mesh.mesh_file import mesh_file
 
 
 @pytest.fixture

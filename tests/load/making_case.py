@@ -1,6 +1,6 @@
 """The small case of `making`, loaded as it is or with changes."""
 
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from tests.load.making import ARM, CASE, write_case
 
 TWO_JOINTS = ARM.replace(

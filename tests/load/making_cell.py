@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from clearance.world.case import Case
 from tests.load.making import write_case
 

@@ -6,10 +6,10 @@ MuJoCo is imported here, before any test runs: it starts a process to find out t
 import mujoco  # noqa: F401
 import numpy as np
 
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from tests.load.making import binary_stl
 
 TETRAHEDRON = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.3, 0.9]])

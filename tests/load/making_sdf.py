@@ -1,11 +1,11 @@
 """SDF files written by tests, and read as scenes."""
 
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.obstacle_schema import Scene
-from clearance.load.scene_file import make_obstacles
-from clearance.load.scene_formats import read_scene
-from clearance.load.scene_request import SceneRequest
+from clearance.load.scene.formats import read_scene
+from clearance.load.scene.obstacles import make_obstacles
+from clearance.load.scene.request import SceneRequest
+from clearance.load.schema.obstacle import Scene
 
 BOX = "<box><size>0.2 0.4 0.6</size></box>"
 

@@ -1,9 +1,9 @@
 """Small URDF files, put together from their elements."""
 
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from tests.load.making import cube_stl
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import UnknownLink
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.rules import Allowance, Rule

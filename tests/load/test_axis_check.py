@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from clearance.world.notice import Severity
 from tests.load.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.load.making_case import changed, load_small

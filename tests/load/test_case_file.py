@@ -15,7 +15,7 @@ from clearance.errors import (
     NothingToMeasure,
     UnknownKey,
 )
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from tests.load.making import ARM, CASE, cube_stl, signed_volume, write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small, with_obstacle
 

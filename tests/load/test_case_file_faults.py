@@ -20,7 +20,7 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
-from clearance.load import obstacle_schema
+from clearance.load.schema import obstacle as obstacle_schema
 from tests.load.making import ARM, CASE
 from tests.load.making_case import TWO_JOINTS, changed, load_small, with_obstacle
 

@@ -3,8 +3,8 @@
 import pytest
 
 from clearance.errors import BadInput, DuplicateName, MissingFile, UnknownRobot
-from clearance.load.case_file import load_case, load_cell, with_trajectory_file
-from clearance.load.pose_schema import TrajectoryFile
+from clearance.load.case.case_file import load_case, load_cell, with_trajectory_file
+from clearance.load.schema.pose import TrajectoryFile
 from tests.load.making import CASE, write_case
 
 CELL = CASE.replace("trajectory: {file: path.csv}\n", "")

@@ -9,10 +9,10 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, ClearanceError
 from clearance.geometry.point_cloud import PointCloud
-from clearance.load.case_file import load_case
-from clearance.load.cloud import cloud_from_bytes, read_points
-from clearance.load.lzf import decompressed
-from clearance.load.mesh import mesh_from_bytes
+from clearance.load.case.case_file import load_case
+from clearance.load.cloud.formats import cloud_from_bytes, read_points
+from clearance.load.cloud.lzf import decompressed
+from clearance.load.mesh.mesh_file import mesh_from_bytes
 from tests.load.making_clouds import XYZ, lzf, pcd, ply, table
 
 GAPS = "most of its balls of 10 mm touch no other: what is thinner than the gaps between them passes through"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadDimension, BadInput, BadPolygon, BadSyntax, EmptyMesh, NotFinite
-from clearance.load.input_files import InputFiles
-from clearance.load.mesh import mesh_from_bytes, read_mesh
+from clearance.load.files.input_files import InputFiles
+from clearance.load.mesh.mesh_file import mesh_from_bytes, read_mesh
 from clearance.load.mesh_store import MeshStore
 from tests.load.making import signed_volume
 

@@ -23,8 +23,8 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import clearance.load
-from clearance.load.bag_files import SUFFIXES
-from clearance.load.robot_element import XACRO
+from clearance.load.motion.bag_files import SUFFIXES
+from clearance.load.robot.robot_element import XACRO
 from scripts.bench.fuzz_outcome import not_finite, outcome
 from scripts.bench.fuzz_seeds import readers
 from scripts.bench.fuzz_trees import yaml_damaged
@@ -95,15 +95,15 @@ def test_little_memory_is_taken(kind, tmp_path):
 
 def suffixes() -> dict[str, list[str]]:
     """The suffixes in each table of readers, by the module that begins with it."""
-    found = {"load.robot_element": [XACRO], "load.rosbag_file": [*SUFFIXES]}
+    found = {"load.robot.robot_element": [XACRO], "load.motion.rosbag_file": [*SUFFIXES]}
     seen: list[object] = []
-    for module in pkgutil.iter_modules(clearance.load.__path__):
-        held = vars(importlib.import_module(f"clearance.load.{module.name}"))
+    for module in pkgutil.walk_packages(clearance.load.__path__, "clearance.load."):
+        held = vars(importlib.import_module(module.name))
         for table in (value for key, value in held.items() if key.endswith("READERS")):
             keys = [key for key in table if isinstance(key, str) and key.startswith(".")]
             if keys and not any(table is one for one in seen):
                 seen.append(table)
-                found[f"load.{module.name}"] = keys
+                found[module.name.removeprefix("clearance.")] = keys
     return found
 
 

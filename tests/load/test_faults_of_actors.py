@@ -19,7 +19,7 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from tests.load.making import CASE
 from tests.load.making_case import changed, load_small
 from tests.load.making_cell import write_cell

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from clearance.errors import BadInput, BadShape
-from clearance.load.file_kind import HEAD, FileKind, kind_of
-from clearance.load.input_files import InputFiles
+from clearance.load.conversion.file_kind import HEAD, FileKind, kind_of
+from clearance.load.files.input_files import InputFiles
 from tests.load import making_messages, making_moveit
 from tests.load.making import CASE, PATH
 from tests.load.making_cell import DOOR

@@ -4,7 +4,7 @@ import pytest
 
 from clearance import check
 from clearance.errors import BadInput, BadShape, BadSyntax
-from clearance.load.case_file import load_case
+from clearance.load.case.case_file import load_case
 from tests.load.making import ARM, CASE, cube_stl
 from tests.load.making_case import changed, load_small
 from tests.load.making_urdf import BOX, link, robot

@@ -18,8 +18,8 @@ from clearance.errors import (
     DuplicateName,
     MissingKey,
 )
-from clearance.load.trajectory_file import read_trajectory
-from clearance.load.trajectory_request import Choice, TrajectoryRequest
+from clearance.load.motion.trajectory_file import read_trajectory
+from clearance.load.motion.trajectory_request import Choice, TrajectoryRequest
 from tests.examples import examples
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small

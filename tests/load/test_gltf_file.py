@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, BadSyntax
-from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
+from clearance.load.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.load.making import CUBE, CUBE_TRIANGLES, signed_volume
 from tests.load.making_glb import changed, cube_document, document_of, glb
 

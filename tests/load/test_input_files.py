@@ -5,8 +5,8 @@ import os
 import pytest
 
 from clearance.errors import MissingFile
-from clearance.load.case_file import load_case
-from clearance.load.input_files import InputFiles, read_bytes
+from clearance.load.case.case_file import load_case
+from clearance.load.files.input_files import InputFiles, read_bytes
 from clearance.profiles.outline_file import read_outline, read_profile
 from clearance.sketch import Sketch
 from tests.load.making import PATH, write_case

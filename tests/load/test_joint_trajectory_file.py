@@ -21,8 +21,8 @@ from clearance.errors import (
     UnknownJoint,
     UnknownKey,
 )
-from clearance.load.trajectory_file import parse_trajectory, read_trajectory
-from clearance.load.trajectory_request import Choice, TrajectoryRequest
+from clearance.load.motion.trajectory_file import parse_trajectory, read_trajectory
+from clearance.load.motion.trajectory_request import Choice, TrajectoryRequest
 from tests.examples import examples, some_slow
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small

@@ -2,9 +2,9 @@
 
 import trimesh
 
-from clearance.load.case_file import load_case
-from clearance.load.input_files import InputFiles
-from clearance.load.lookups import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
+from clearance.load.case.case_file import load_case
+from clearance.load.files.input_files import InputFiles
+from clearance.load.files.lookups import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.report.provenance import inputs
 
 URDF = """<robot name="cart"><link name="ground"/>

@@ -16,7 +16,7 @@ from clearance.errors import (
     MissingFile,
     NotFinite,
 )
-from clearance.load.mesh import OPEN, mesh_from_bytes, read_mesh, triangles_from_bytes
+from clearance.load.mesh.mesh_file import OPEN, mesh_from_bytes, read_mesh, triangles_from_bytes
 from tests.load.making import CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume, text_stl
 
 CUBE_CORNERS = CUBE[CUBE_TRIANGLES]

@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import MissingFile
-from clearance.load import mesh_paths
+from clearance.load.files import mesh_paths
 from clearance.world.notice import Severity
 from tests.load.making import cube_stl
 from tests.load.making_urdf import collision, link, load_urdf, robot

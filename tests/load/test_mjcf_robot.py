@@ -5,10 +5,10 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, NothingToMeasure
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from clearance.simulate.physics_model import write_physics_urdf
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput
-from clearance.load.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.obstacle_schema import Scene
-from clearance.load.scene_file import make_obstacles
-from clearance.load.scene_formats import read_scene
-from clearance.load.scene_request import SceneRequest
-from clearance.load.schema_errors import validated
+from clearance.load.scene.formats import read_scene
+from clearance.load.scene.obstacles import make_obstacles
+from clearance.load.scene.request import SceneRequest
+from clearance.load.schema.errors import validated
+from clearance.load.schema.obstacle import Scene
 from tests.load.making_case import load_small
 from tests.load.making_mjcf import BALL, mjcf, write_mjcf
 

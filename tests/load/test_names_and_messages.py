@@ -4,11 +4,11 @@ import pytest
 
 from clearance.errors import BadInput, BadPose
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.load.obstacle_schema import Obstacle
-from clearance.load.schema_errors import validated
-from clearance.load.trajectory_file import parse_trajectory
-from clearance.load.urdf_elements import parse_document
-from clearance.load.yaml_file import parse_yaml
+from clearance.load.motion.trajectory_file import parse_trajectory
+from clearance.load.robot.urdf.elements import parse_document
+from clearance.load.schema.errors import validated
+from clearance.load.schema.obstacle import Obstacle
+from clearance.load.text.yaml_file import parse_yaml
 from clearance.world.names import checked_name
 from clearance.world.rules import matches
 

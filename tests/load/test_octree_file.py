@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadInput, ClearanceError
-from clearance.load.case_file import load_case
-from clearance.load.mesh import mesh_from_bytes
-from clearance.load.octree_file import octree_of
+from clearance.load.case.case_file import load_case
+from clearance.load.mesh.mesh_file import mesh_from_bytes
+from clearance.load.mesh.octree_file import octree_of
 from tests.examples import examples
 from tests.load.making_octree import data_of, octree
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from clearance.errors import BadInput
-from clearance.load import csv_table
-from clearance.load.plain_table import plain_numbers
-from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.motion.trajectory_file import parse_trajectory
+from clearance.load.table import csv_table
+from clearance.load.table.plain_table import plain_numbers
 
 FORMS = ("%.6f", "%.17g", "%.18e", "%g", "%.3e", "%r", "%.0f", "%.9f")
 LONG = ("9007199254740993", "18446744073709549567", "0.1" + 17 * "0", "9007199254740992.5", "-0.0")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, BadSyntax
-from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
+from clearance.load.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.load.making import CUBE, CUBE_TRIANGLES, signed_volume
 
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadPolygon
-from clearance.load import polygon_cut
-from clearance.load.polygon_cut import cut_rings
+from clearance.load.mesh import polygon_cut
+from clearance.load.mesh.polygon_cut import cut_rings
 
 L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
 DART = np.array([[0, 0], [2, 2], [0, 1], [-2, 2]], dtype=float)

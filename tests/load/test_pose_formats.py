@@ -9,8 +9,8 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.errors import BadInput, BadPose, BadTime, ClearanceError
-from clearance.load.pose_formats import read_poses
-from clearance.load.pose_table_request import PoseRequest
+from clearance.load.motion.pose_formats import read_poses
+from clearance.load.motion.pose_table_request import PoseRequest
 from tests.load.making_cell import DOOR, load_cell, write_cell
 
 STAMPED = """header:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadInput
-from clearance.load.pose_table_file import COLUMNS, parse_pose_table
+from clearance.load.motion.pose_table_file import COLUMNS, parse_pose_table
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 

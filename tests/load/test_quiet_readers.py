@@ -9,8 +9,8 @@ import pytest
 
 from clearance.errors import BadDimension, BadInput, BadPose
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.load.cloud import cloud_from_bytes
-from clearance.load.mesh import mesh_from_bytes
+from clearance.load.cloud.formats import cloud_from_bytes
+from clearance.load.mesh.mesh_file import mesh_from_bytes
 from scripts.bench.fuzz_meshes import collada
 from tests.load.making_clouds import pcd
 from tests.load.making_mjcf import load_mjcf, mjcf

@@ -13,8 +13,8 @@ from clearance.errors import (
     UnknownJoint,
     UnknownRobot,
 )
-from clearance.load.recorded_run import with_recorded
-from clearance.load.tolerance_file import with_tolerance
+from clearance.load.case.recorded_run import with_recorded
+from clearance.load.tolerance.tolerance_file import with_tolerance
 from clearance.world.recording import recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory

@@ -7,8 +7,8 @@ import pytest
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadTime, ClearanceError
+from clearance.load.motion.trajectory_request import Choice
 from clearance.load.timed_files import load_trajectory
-from clearance.load.trajectory_request import Choice
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed
 

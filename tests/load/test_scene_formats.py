@@ -1,7 +1,7 @@
 """Scene files are read by their suffix, from one table."""
 
-from clearance.load import scene_formats
-from clearance.load.scene_request import SceneContent
+from clearance.load.scene import formats as scene_formats
+from clearance.load.scene.request import SceneContent
 from clearance.world.notice import Notice, Severity
 from tests.load.making import CASE
 from tests.load.making_case import load_small

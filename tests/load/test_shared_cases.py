@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.load.case_file import load_case
-from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
+from clearance.load.case.case_file import load_case
+from clearance.load.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.shared_cases import SHARED_CASES as CASES
 
 pytestmark = [

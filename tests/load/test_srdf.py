@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import BadInput, BadSyntax, MissingFile, MissingKey
-from clearance.load.srdf import load_srdf
+from clearance.load.robot.srdf import load_srdf
 from clearance.world.collision_matrix import BY_DEFAULT
 from tests.load.making_urdf import collision, joint, link, load_urdf, robot
 

@@ -4,8 +4,8 @@ import pytest
 
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadSyntax, ClearanceError, MissingKey, UnknownState
-from clearance.load.input_files import InputFiles
-from clearance.load.srdf_states import read_states
+from clearance.load.files.input_files import InputFiles
+from clearance.load.robot.srdf_states import read_states
 from tests.load.making_case import TWO_JOINTS, changed, load_small
 
 JOINTS = '<joint name="shoulder" value="0.3"/><joint name="lift" value="0.05"/>'

@@ -5,8 +5,8 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadSyntax, Unavailable
-from clearance.load import step_file
-from clearance.load.mesh import mesh_from_bytes
+from clearance.load.mesh import step_file
+from clearance.load.mesh.mesh_file import mesh_from_bytes
 from tests.load.making_case import load_small, with_obstacle
 from tests.load.making_step import box_step, cylinder_step
 

@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import BadInput, BadSyntax
-from clearance.load.step_text import step_facts
+from clearance.load.mesh.step_text import step_facts
 from tests.load.making_case import load_small, with_obstacle
 from tests.load.making_step import HEAD, TAIL, box_step, cylinder_step
 

@@ -18,8 +18,8 @@ from clearance.errors import (
     UnknownObstacle,
 )
 from clearance.load.preset_files import preset_names
-from clearance.load.tolerance_file import with_tolerance
-from clearance.load.tolerance_presets import preset
+from clearance.load.tolerance.presets import preset
+from clearance.load.tolerance.tolerance_file import with_tolerance
 from clearance.world.budget import (
     Budget,
     JointTolerance,

@@ -12,7 +12,7 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
 )
-from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.motion.trajectory_file import parse_trajectory
 
 
 def parse(text: str):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax
-from clearance.load.input_files import InputFiles, resolved
+from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.mimics import followers

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import yourdfpy
 
-from clearance.load.input_files import InputFiles, resolved
-from clearance.load.joints import joints_of
-from clearance.load.urdf_elements import numbers, parse_document, pose_of
+from clearance.load.files.input_files import InputFiles, resolved
+from clearance.load.robot.urdf.elements import numbers, parse_document, pose_of
+from clearance.load.robot.urdf.joints import joints_of
 
 ROOT = Path(__file__).parents[2]
 OURS = sorted((ROOT / "robots").rglob("*.urdf"))

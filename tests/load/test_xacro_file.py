@@ -8,12 +8,13 @@ import pytest
 from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, UnknownKey
-from clearance.load import robot_request, xacro_file
-from clearance.load.input_files import InputFiles
-from clearance.load.robot_request import RobotRequest
-from clearance.load.urdf import load_urdf
-from clearance.load.xacro_file import expanded
-from clearance.load.xacro_process import ChildWatch, evaluated
+from clearance.load.files.input_files import InputFiles
+from clearance.load.robot import request as robot_request
+from clearance.load.robot.request import RobotRequest
+from clearance.load.robot.urdf import xacro_file
+from clearance.load.robot.urdf.robot import load_urdf
+from clearance.load.robot.urdf.xacro_file import expanded
+from clearance.load.robot.urdf.xacro_process import ChildWatch, evaluated
 from tests.load.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own

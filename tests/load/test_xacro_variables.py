@@ -2,7 +2,7 @@
 
 import pytest
 
-from clearance.load.xacro_variables import variables_asked
+from clearance.load.robot.urdf.xacro_variables import variables_asked
 from clearance.world.case import Source
 
 

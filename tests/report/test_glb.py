@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from clearance.load.mesh import mesh_from_bytes
+from clearance.load.mesh.mesh_file import mesh_from_bytes
 from clearance.report.still.glb import glb_of
 from clearance.report.still.scene import still_of
 from clearance.simulate.replay import replay_of

@@ -11,11 +11,11 @@ import pytest
 
 from clearance.errors import BadInput, MissingFile
 from clearance.geometry.point_cloud import PointCloud
-from clearance.load.case_file import load_case
-from clearance.load.input_files import InputFiles
+from clearance.load.case.case_file import load_case
+from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot.formats import read_robot
+from clearance.load.robot.request import RobotRequest
 from clearance.simulate.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot

@@ -3,7 +3,7 @@
 A corner that turns left is an ear if no corner that does not turn left lies in its triangle (Meisters, Polygons
 have ears, 1975). Where a polygon is simple, corners that turn left keep doing so while ears go, so the grid is
 made once and only loses corners. All triangles turn left or are flat, and their boundaries add up to the
-polygon's: where it is simple they cover exactly it. Not for: which polygons need this (`load.polygon_cut`).
+polygon's: where it is simple they cover exactly it. Not for: which polygons need this (`load.mesh.polygon_cut`).
 """
 
 from __future__ import annotations

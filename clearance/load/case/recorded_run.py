@@ -1,0 +1,123 @@
+"""A recorded run in place of what a robot was asked: its errors become the tracking of the case's tolerances.
+
+Not for: comparing (`world.recording`), nor the formats (`timed_files`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+from clearance.errors import BadInput, BadTime, UnknownRobot, at
+from clearance.load.files.input_files import InputFiles
+from clearance.load.schema.pose import TrajectoryFile
+from clearance.load.schema.tolerance import MOST_ANGLE, MOST_OFFSET
+from clearance.load.timed_files import trajectory_of
+from clearance.world.budget import Budget, JointTolerance, RobotTolerance
+from clearance.world.case import Case, PlacedRobot, index_of_robot
+from clearance.world.joint_positions import turns
+from clearance.world.recording import Recording, recording_of
+from clearance.world.timing import AS_GIVEN, Timing
+from clearance.world.trajectory import Trajectory
+
+
+def with_recorded(
+    case: Case, path: str | Path, offset: float = 0.0, robot: str | None = None
+) -> Case:
+    """The case in which a robot does what was recorded, its errors being the tracking of its joints.
+
+    Args:
+        path: a bag or a table. offset: [s] added to its times to have the run's; none is estimated.
+        robot: whose run it is; needed where several move by trajectories.
+
+    Raises:
+        BadInput: with the file; joints that are not recorded, no time in common, errors of a size that only
+            another offset explains.
+    """
+    i_robot = _robot_of(case, robot)
+    placed, path = case.robots[i_robot], Path(path)
+    if not math.isfinite(offset):
+        raise BadTime(f"an offset of {offset} s", valid="a finite number of seconds")
+    files = InputFiles(path.parent)
+    shown = files.shown(path)
+    given = TrajectoryFile(file=path.name)
+    read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files)
+    with at(f"recorded: {shown}"):
+        driven = replace(read, times=Timing(start=offset).run_times(read.times))
+        resting = placed.fixed_positions
+        found = recording_of(shown, offset, driven, placed.asked, placed.timing, resting)
+        budget = _with_tracking(case.tolerance or Budget(), placed, found)
+    robots = [*case.robots]
+    robots[i_robot] = _as_driven(placed, driven, found, str(path))
+    sources = {one.path: one for one in (*case.sources, *files.sources)}
+    return replace(
+        case,
+        robots=tuple(robots),
+        tolerance=budget,
+        sources=tuple(sources[name] for name in sorted(sources)),
+        notes=(*case.notes, *notes, *_notes(found)),
+    )
+
+
+def _robot_of(case: Case, robot: str | None) -> int:
+    moving = [one.robot.name for one in case.robots if one.trajectory is not None]
+    if robot is None and len(moving) == 1:
+        robot = moving[0]
+    i_robot = index_of_robot(case.robots, robot)
+    if case.robots[i_robot].trajectory is None:
+        raise UnknownRobot(
+            f"robot {case.robots[i_robot].robot.name!r} was asked for nothing",
+            valid="a robot with a trajectory",
+        )
+    return i_robot
+
+
+def _as_driven(placed: PlacedRobot, driven: Trajectory, found: Recording, path: str) -> PlacedRobot:
+    return replace(
+        placed,
+        trajectory=driven,
+        timing=AS_GIVEN,
+        recording=found,
+        trajectory_path=path,
+    )
+
+
+def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Budget:
+    """The budget with the greatest error of each joint as its tracking.
+
+    Raises:
+        BadInput: an error beyond what tolerances may be.
+    """
+    name = placed.robot.name
+    robot = budget.robots.get(name, RobotTolerance())
+    joints, units = dict(robot.joints), _units(placed)
+    for one in found.joints:
+        most = MOST_ANGLE if units[one.joint] == "rad" else MOST_OFFSET
+        if one.greatest > most:
+            raise BadInput(
+                f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off its course at {one.time:.3f} s",
+                valid=f"at most {most:g} {units[one.joint]}; is its clock another (--recorded-offset)?",
+            )
+        joints[one.joint] = replace(joints.get(one.joint, JointTolerance()), tracking=one.greatest)
+    told = f"tracking: the greatest errors of the run {found.path}"
+    robots = {**budget.robots, name: replace(robot, joints=joints)}
+    return replace(budget, robots=robots, sources=(*budget.sources, told))
+
+
+def _units(placed: PlacedRobot) -> dict[str, str]:
+    return {joint.name: "rad" if turns(joint) else "m" for joint in placed.robot.joints}
+
+
+def _notes(found: Recording) -> list[str]:
+    span = f"from {found.start:.3f} to {found.end:.3f} s"
+    clock = "its clock is taken as the run's" if found.offset == 0.0 else (
+        f"{found.offset:g} s are added to its times"
+    )  # fmt: skip
+    end = float(found.timing.run_times(found.commanded.times)[-1])
+    start = float(found.timing.run_times(found.commanded.times)[0])
+    short = "" if (found.start, found.end) == (start, end) else f", of {start:.3f} to {end:.3f} s"
+    return [
+        f"recorded run {found.path}: held against what was asked {span}{short}; {clock}, no offset is estimated",
+        "what is proven holds for every run that stays as near to this one as this one to what was asked",
+    ]

@@ -1,0 +1,200 @@
+"""The points of a JointTrajectory message to a trajectory: positions [rad or m], times from its start [s], and
+velocities where all points have them.
+
+Not for: which trajectory of a file is meant (`joint_messages`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from clearance.errors import (
+    BadInput,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    MissingKey,
+    NotFinite,
+    UnknownKey,
+    at,
+    nearest_name,
+)
+from clearance.load.message.documents import Fields, told
+from clearance.load.message.times import NANO, nanoseconds_in
+from clearance.load.motion.joint_messages import JointMessage
+from clearance.load.motion.trajectory_request import ReadTrajectory
+from clearance.world.names import checked_name
+from clearance.world.trajectory import Trajectory
+
+_VALUES = ("positions", "velocities", "accelerations", "effort")
+_KEYS = (*_VALUES, "time_from_start")
+
+
+class _Point(NamedTuple):
+    time: float
+    values: dict[str, list[float]]
+    lacks_nanoseconds: bool = False
+
+
+def trajectory_of_message(
+    message: JointMessage, most: int, joints_needed: bool = True
+) -> ReadTrajectory:
+    """The trajectory that a message holds.
+
+    Args:
+        most: how many numbers there may be, so that aliases do not make more of a file than it holds.
+
+    Raises:
+        BadInput: with the line and the keys that lead to what is wrong.
+    """
+    given = message.trajectory
+    if message.n_other_points:
+        raise BadInput(
+            f"{message.n_other_points} points of joints with several degrees of freedom",
+            where=_place(given, message.place.rpartition(".")[0], "multi_dof_joint_trajectory"),
+            valid="robots have joints that turn or slide; a base that moves goes as a joint of the URDF",
+        )
+    with at(_place(given, message.place, "joint_names")):
+        names = _names(given["joint_names"], joints_needed)
+    listed = given["points"]
+    where = _place(given, message.place, "points")
+    if not isinstance(listed, list):
+        raise BadSyntax(f"{told(listed)} is given", where=where, valid="a list of points is needed")
+    if len(listed) * (len(names) + 1) > most:
+        raise BadShape("aliases repeat more than the file holds", where=where)
+    points = []
+    for i, one in enumerate(listed):
+        with at(_place(one, message.place, f"points[{i}]")):
+            points.append(_point(one, len(names)))
+            if i:
+                _refuse_standing(points[-2].time, points[-1].time)
+    with at(where):
+        return _assembled(names, points)
+
+
+def _place(nearest: Any, *keys: str) -> str:
+    """Keys, and the line of the mapping that they are in, if that is known."""
+    path = ".".join(key for key in keys if key)
+    line = nearest.line if isinstance(nearest, Fields) else None
+    return f"line {line}: {path}" if line else path
+
+
+def _names(given: Any, joints_needed: bool) -> tuple[str, ...]:
+    if not isinstance(given, list):
+        raise BadSyntax(f"{told(given)} is given", valid="a list of joint names is needed")
+    for i, name in enumerate(given):
+        if not isinstance(name, str) or not name:
+            raise BadSyntax(
+                f"{told(name)} is given", where=f"[{i}]", valid="a name, in quotes if need be"
+            )
+        checked_name(name)
+    if joints_needed and not given:
+        raise BadShape("there is no joint", valid="at least one joint is needed")
+    return tuple(given)
+
+
+def _point(given: Any, n_joints: int) -> _Point:
+    if not isinstance(given, Fields):
+        raise BadSyntax(
+            f"{told(given)} is given", valid=_WHOLE if given == "..." else "a point is needed"
+        )
+    for key in given:
+        if key not in _KEYS:
+            raise UnknownKey(f"unknown key {key!r:.60}", valid=nearest_name(key, _KEYS))
+    values = {key: _numbers(given[key], key, n_joints) for key in _VALUES if given.get(key)}
+    if "positions" not in values and n_joints:
+        raise MissingKey("'positions' is missing or empty", valid="a position of each joint")
+    if "time_from_start" not in given:
+        raise MissingKey("'time_from_start' is missing")
+    with at("time_from_start"):
+        time = given["time_from_start"]
+        return _Point(_seconds(time), values, isinstance(time, Fields) and len(time) == 1)
+
+
+def _numbers(given: Any, key: str, n_joints: int) -> list[float]:
+    if not isinstance(given, list):
+        raise BadSyntax(f"{told(given)} is given", where=key, valid="a list of numbers is needed")
+    for i, value in enumerate(given):
+        if type(value) not in (int, float):
+            raise BadSyntax(
+                f"{told(value)} is given",
+                where=f"{key}[{i}]",
+                valid=_WHOLE if value == "..." else "a number is needed",
+            )
+        if not math.isfinite(value):
+            raise NotFinite(f"{value} is given", where=f"{key}[{i}]", valid="a finite number")
+    if len(given) != n_joints:
+        raise BadShape(f"{len(given)} {key}", where=key, valid=f"there are {n_joints} joint_names")
+    return given
+
+
+def _seconds(given: Any) -> float:
+    """[s] the nearest double to what a number, or seconds and nanoseconds, say; without nanoseconds these are 0,
+    as for ROS's own commands.
+    """
+    if type(given) in (int, float):
+        if not math.isfinite(given):
+            raise NotFinite(f"{given} is given", valid="a finite number of seconds")
+        return float(given)
+    nanoseconds = nanoseconds_in(given)
+    if nanoseconds is not None:
+        return nanoseconds / NANO
+    raise BadTime(
+        f"{told(given)} is given",
+        valid="seconds, {sec, nanosec} or {secs, nsecs}, whole and fewer than 1e9 nanoseconds",
+    )
+
+
+def _refuse_standing(before: float, time: float) -> None:
+    if not time > before:
+        raise BadTime(
+            f"time {time} follows {before}",
+            where="time_from_start",
+            valid="times must increase from point to point",
+        )
+
+
+def _assembled(names: tuple[str, ...], points: list[_Point]) -> ReadTrajectory:
+    for key in ("velocities", "accelerations"):
+        without = [i for i, point in enumerate(points) if key not in point.values]
+        if 0 < len(without) < len(points):
+            raise BadShape(
+                f"point {without[0]} has no {key}, others have",
+                valid=f"{key} in all points, or in none",
+            )
+    shape = (len(points), len(names))
+    given = [key for key in ("positions", "velocities") if key in points[0].values]
+    columns = [np.array([point.values[key] for point in points], dtype=np.float64) for key in given]
+    times = np.array([point.time for point in points], dtype=np.float64)
+    trajectory = Trajectory(times, names, *(columns or [np.empty(shape)]))
+    return ReadTrajectory(trajectory, tuple(_notes(points)))
+
+
+def _notes(points: list[_Point]) -> list[str]:
+    """What a reader could take to be otherwise."""
+    notes = []
+    first = points[0]
+    if "accelerations" in first.values:
+        path = (
+            "cubics through positions and velocities" if "velocities" in first.values else "lines"
+        )
+        notes.append(
+            f"accelerations are not followed: between two points joints move on {path}, where ROS's joint "
+            "trajectory controller takes quintics"
+        )
+    if any("effort" in point.values for point in points):
+        notes.append("effort is not read")
+    n_whole = sum(point.lacks_nanoseconds for point in points)
+    if n_whole:
+        notes.append(f"{n_whole} times are seconds without nanoseconds, which are taken as 0")
+    if first.time > 0.0:
+        notes.append(
+            f"the first point is at {first.time:g} s; how the robot gets there is not in the file"
+        )
+    return notes
+
+
+_WHOLE = "all values; ros2 topic echo --full-length writes them"

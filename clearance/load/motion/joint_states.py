@@ -1,0 +1,135 @@
+"""Recorded joint states to a trajectory: what a robot did, as its drivers told it, each of its own joints.
+
+Not for: bags (`rosbag_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput, BadShape, BadTime
+from clearance.load.message.times import NANO
+from clearance.load.motion.trajectory_request import ReadTrajectory
+from clearance.world.names import checked_name
+from clearance.world.notice import listed
+from clearance.world.trajectory import Trajectory
+
+MOST_LEFT_OUT = 0.1
+"""Share of the recording in which some joint may be unknown."""
+
+
+class JointState(NamedTuple):
+    """A message: when, which joints, where; and whether velocities came along."""
+
+    nanoseconds: int
+    names: tuple[str, ...]
+    positions: list[float]
+    has_velocities: bool = False
+
+
+class _Joint(NamedTuple):
+    """Where a joint was at times [ns]."""
+
+    times: list[int]
+    positions: list[float]
+
+
+def trajectory_of_states(states: Sequence[JointState], turns: Mapping[str, bool]) -> ReadTrajectory:
+    """What the robot did, in seconds from when all of its joints were known.
+
+    Where several drivers tell of different joints, there is a sample at each time of each, and the other joints
+    are between their own samples.
+
+    Args:
+        turns: names the joints that the robot can move; empty where it is not known.
+
+    Raises:
+        BadInput: no joint that can be moved, or joints that are not known at one time. BadShape, BadTime: with the
+            message.
+    """
+    joints = _joints(states)
+    kept = [name for name in joints if name in turns or not turns]
+    if not kept:
+        raise BadInput(
+            f"none of the joints {listed([*joints], 8)} can be moved",
+            valid=f"the robot moves {listed([*turns], 8)}",
+        )
+    start, end = _known_span({name: joints[name] for name in kept})
+    every = np.unique(np.concatenate([np.array(joints[name].times) for name in kept]))
+    times = every[(every >= start) & (every <= end)] - start
+    positions = [_positions_at(joints[name], times, start) for name in kept]
+    trajectory = Trajectory(times / NANO, tuple(kept), np.column_stack(positions))
+    return ReadTrajectory(trajectory, tuple(_notes(states, joints, kept, (start, end))))
+
+
+def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
+    """By name, in the order in which they are first told of."""
+    joints: dict[str, _Joint] = {}
+    for i, state in enumerate(states):
+        where = f"message {i + 1}"
+        if len(state.names) != len(state.positions) or len(set(state.names)) != len(state.names):
+            raise BadShape(
+                f"{len(state.positions)} positions of {listed([*state.names], 4)}",
+                where=where,
+                valid="a position of each joint, each once",
+            )
+        for name, position in zip(state.names, state.positions, strict=True):
+            one = joints.setdefault(checked_name(name), _Joint([], []))
+            if one.times and state.nanoseconds <= one.times[-1]:
+                raise BadTime(
+                    f"its time is not after that of the one before that tells of {name!r}",
+                    where=where,
+                )
+            one.times.append(state.nanoseconds)
+            one.positions.append(position)
+    return joints
+
+
+def _known_span(joints: Mapping[str, _Joint]) -> tuple[int, int]:
+    """From when until when [ns] all joints are known.
+
+    Raises:
+        BadInput: that is never, or too little of the recording.
+    """
+    last_to_begin = max(joints, key=lambda name: joints[name].times[0])
+    first_to_end = min(joints, key=lambda name: joints[name].times[-1])
+    start, end = joints[last_to_begin].times[0], joints[first_to_end].times[-1]
+    times = [time for joint in joints.values() for time in (joint.times[0], joint.times[-1])]
+    whole = max(times) - min(times)
+    if end < start or whole - (end - start) > MOST_LEFT_OUT * whole:
+        raise BadInput(
+            f"joint {last_to_begin!r} is known from {(start - min(times)) / NANO:g} s on, {first_to_end!r} until "
+            f"{(end - min(times)) / NANO:g} s of {whole / NANO:g} s",
+            valid="states of all joints from begin to end, or a robot without those joints",
+        )
+    return start, end
+
+
+def _positions_at(joint: _Joint, times: np.ndarray, start: int) -> np.ndarray:
+    """(n,) where a joint is at times [ns] from a start: straight between its own samples, which stay."""
+    return np.interp(times, np.array(joint.times) - start, np.array(joint.positions))
+
+
+def _notes(
+    states: Sequence[JointState],
+    joints: Mapping[str, _Joint],
+    kept: Sequence[str],
+    span: tuple[int, int],
+) -> list[str]:
+    notes = ["recorded joint states: joints move linearly between them, from the first at 0 s"]
+    if any(state.has_velocities for state in states):
+        notes.append("recorded velocities are not followed: they are as measured, noise and all")
+    if len({tuple(joints[name].times) for name in kept}) > 1:
+        notes.append(
+            "different messages tell of different joints: each has a sample at the times of all"
+        )
+    n_out = sum(not span[0] <= state.nanoseconds <= span[1] for state in states)
+    if n_out:
+        notes.append(f"{n_out} messages at the ends are left out, where not all joints are known")
+    left = [name for name in joints if name not in kept]
+    if left:
+        notes.append(f"joints that cannot be set are left out: {listed(left, 8)}")
+    return notes

@@ -1,0 +1,127 @@
+"""The text of a case file, for people to edit: each key with what it says, and keys that are often wanted next.
+
+Not for: what stands in it (`files`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
+from typing import Any
+
+from clearance.errors import shown
+from clearance.late_dataclass import dataclass
+from clearance.load.text.yaml_text import flow
+
+
+@dataclass(frozen=True)
+class CaseText:
+    """What a new case file says.
+
+    Attributes:
+        name: of the case. made_from: the files, as they are shown.
+        robot: its keys and values, in order. link: its first with a shape, for examples.
+        resting: what stands under `joints`. states: of which one could stand there.
+        scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
+            read.
+        carry: parts that links carry, as a case has them. allow: pairs that are not measured.
+        remarks: why a key is as it is, by key.
+    """
+
+    name: str
+    made_from: Sequence[str]
+    robot: Mapping[str, Any]
+    link: str
+    resting: Mapping[str, Any]
+    states: Sequence[str]
+    scene: str | None
+    trajectory: str
+    motion: str
+    motion_notes: Sequence[str] = ()
+    carry: Sequence[Mapping[str, Any]] = ()
+    allow: Sequence[tuple[str, str]] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
+
+
+def text_of(case: CaseText) -> str:
+    """The case file."""
+    return "\n".join([*_lines(case), ""])
+
+
+def _lines(case: CaseText) -> Iterator[str]:
+    yield f"# Made by `clearance new` from {shown(', '.join(case.made_from))}; yours to edit."
+    yield "# Metres, radians, seconds. A key behind a # is one that is often wanted."
+    yield f"name: {flow(case.name)}"
+    yield "robot:"
+    yield from (f"  {line}" for line in _robot(case))
+    yield from _scene(case)
+    yield from (f"# {shown(note)}" for note in case.motion_notes)
+    yield f"trajectory: {flow(case.trajectory)}  # {shown(case.motion)}"
+    if case.carry:
+        yield "carry:  # from the scene's file, in which links hold them"
+        yield from (f"- {flow(one)}" for one in case.carry)
+    yield from _allow(case)
+    yield "limits:"
+    yield "  fail: 0.0  # assumed: contact alone is a violation; 0.005 asks for 5 mm"
+    yield "  # warn: 0.02  # closer than this is a near miss"
+    yield "  # joints: fail  # a joint beyond its limits is a violation, not a warning"
+    yield "# accept: [units]  # suspect input that is meant: units, limits, axis, inside"
+    yield "# report: {author: J. Doe, revision: A}  # shown on the page, with fields to sign"
+
+
+def _robot(case: CaseText) -> Iterator[str]:
+    for key, value in case.robot.items():
+        remark = case.remarks.get(key) or _REMARKS.get(key, "")
+        yield f"{key}: {flow(value)}" + (f"  # {remark}" if remark else "")
+    yield from _resting(case)
+    if "self_clearance" not in case.robot:
+        yield "# self_clearance: true  # links of the robot against each other, too"
+    if "srdf" not in case.robot:
+        yield "# srdf: robot.srdf  # with self_clearance: which pairs of links are excused, and why"
+    elif case.robot.get("self_clearance"):
+        yield "# trust_never: true  # pairs that the SRDF calls Never are excused too; now they are measured"
+    yield f"# exclude_links: [{flow(case.link)}]  # not measured, as a link that is bolted to what it stands on"
+
+
+def _resting(case: CaseText) -> Iterator[str]:
+    if not case.resting:
+        return
+    yield "joints:  # those that the trajectory does not move"
+    if case.states:
+        yield f"  # state: {flow(case.states[0])}  # where a state says; there are {flow(case.states)}"
+    for name, value in case.resting.items():
+        yield f"  {flow(name)}: {flow(value)}{_remark(case, name)}"
+
+
+def _scene(case: CaseText) -> Iterator[str]:
+    if case.scene is not None:
+        yield f"scene: {flow(case.scene)}" + _remark(case, "scene")
+        return
+    yield "scene:"
+    yield f"  obstacles: []{_remark(case, 'scene')}; in place of []:"
+    yield "  # - {name: table, box: {size: [1.0, 1.0, 0.02]}, pose: {xyz: [0.5, 0.0, -0.01]}}"
+    yield "  # - {name: fixture, mesh: {file: fixture.stl, scale: 0.001}, pose: {xyz: [0.6, 0.0, 0.0]}}"
+
+
+def _allow(case: CaseText) -> Iterator[str]:
+    if not case.allow:
+        yield f"# allow: [[{flow(case.link)}, table]]  # pairs that are not measured; wildcards in quotes"
+        return
+    yield "allow:  # pairs that are not measured; from the scene's file"
+    yield from (f"- {flow(list(pair))}" for pair in case.allow)
+
+
+def _remark(case: CaseText, key: str) -> str:
+    return f"  # {shown(case.remarks[key])}" if key in case.remarks else ""
+
+
+_REMARKS = {
+    "xacro": "xacro makes URDF of it, which evaluates the Python in it",
+    "package_dirs": "where package://x is looked for first",
+    "geometry": "or visual, or collision_or_visual: visual where a link has no other",
+    "self_clearance": "links of the robot against each other, too",
+    "srdf": "which pairs of links are excused, and why",
+    "joint_limits": "narrower than the robot's file; what goes beyond is a warning",
+    "controllers": "path tolerances, kept for notes",
+    "padding": "taken off the clearance of these links; from the scene's file",
+}

@@ -1,0 +1,31 @@
+"""Tolerances by name, each with its source: files in `presets`. Not for: what they are of (`block`)."""
+
+from __future__ import annotations
+
+from clearance.late_dataclass import dataclass
+from clearance.load.preset_files import FOLDER
+from clearance.load.schema.errors import validated
+from clearance.load.schema.strict_model import StrictModel
+from clearance.load.schema.tolerance import Tolerance
+from clearance.load.text.yaml_file import parse_yaml
+
+
+class _File(StrictModel):
+    source: str
+    tolerance: Tolerance
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Tolerances, and where their numbers come from, in one line."""
+
+    name: str
+    source: str
+    tolerance: Tolerance
+
+
+def preset(name: str) -> Preset:
+    """The preset of a name, which is there."""
+    path = FOLDER / f"{name}.yaml"
+    read = validated(_File, parse_yaml(path.read_bytes(), path.name), path.name)
+    return Preset(name, " ".join(read.source.split()), read.tolerance)
