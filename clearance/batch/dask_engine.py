@@ -42,7 +42,7 @@ CONNECTING = 20
 """[s] In which a scheduler must answer."""
 
 LOGGED = 100
-"""Entries of each log that Dask keeps in memory for people who look into it: of its own 1,000 to 10,000, 12 MB grow."""
+"""Entries of each log that Dask keeps for people who look into it; its own 1,000 to 10,000 take 12 MB."""
 
 
 @contextmanager
