@@ -40,7 +40,8 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
     for x in on_surface:
         assert not reached(is_in_ball)(packed, *(x * (1.0 - 1e-9)))
         assert reached(cell_of)(packed, *x)[1] >= 1.0 - 1e-13 - standing_out
-    if n == 300:
+    resolved = max(shape) / min(shape) < 1e8  # else its round frame is lost to rounding
+    if n == 300 and resolved:
         assert any(reached(is_in_ball)(packed, *(0.9 * x)) for x in on_surface)
 
 
