@@ -18,7 +18,7 @@ from clearance.load.motion.pose_table_request import PoseRequest, PoseSamples
 from clearance.load.motion.pose_writer import SUFFIXES, written_poses
 from tests.examples import examples
 from tests.load.making_cell import load_cell
-from tests.load.test_pose_formats import STAMPED, pose
+from tests.load.motion.test_pose_formats import STAMPED, pose
 
 TABLE = (
     "time,x,y,z,qx,qy,qz,qw\n"

@@ -12,7 +12,7 @@ from clearance.world.notice import Severity
 from tests.load.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.load.making_case import changed, load_small
 from tests.load.making_urdf import joint, link, robot
-from tests.load.test_collada_file import document
+from tests.load.mesh.test_collada_file import document
 
 BAR = CUBE * [0.1, 0.2, 1.0] + [0.0, 0.0, 0.5]
 """A bar that stands on its joint, one metre along z."""

@@ -76,7 +76,7 @@ def test_a_radius_in_millimetres_is_suspect(tmp_path, name):
 
 
 def test_the_public_names_and_the_guide_have_every_shape():
-    guide = (Path(__file__).resolve().parents[2] / "scripts" / "docs" / "case_file.md").read_text()
+    guide = (Path(__file__).resolve().parents[3] / "scripts" / "docs" / "case_file.md").read_text()
     for name, shape in SHAPES.items():
         assert getattr(cl, name) is shape.maker and name in cl.__all__
         rows = re.findall(rf"^\| `{name}` \| (.*) \| .* \|$", guide, flags=re.MULTILINE)

@@ -13,7 +13,7 @@ from tests.load.making_cell import DOOR
 from tests.load.making_messages import display_trajectory, robot_trajectory
 from tests.load.making_mjcf import mjcf
 from tests.load.making_sdf import sdf
-from tests.load.test_pose_formats import STAMPED, pose
+from tests.load.motion.test_pose_formats import STAMPED, pose
 
 OURS = "# what stands there, pose: none\nobstacles:\n- {name: a, sphere: {radius: 1}, pose: {xyz: [0, 0, 1]}}\n"
 STATE = {"joint_state": {"name": ["a"], "position": [0.0]}, "attached_collision_objects": []}

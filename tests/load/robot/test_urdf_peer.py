@@ -10,7 +10,7 @@ from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.robot.urdf.elements import numbers, parse_document, pose_of
 from clearance.load.robot.urdf.joints import joints_of
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 OURS = sorted((ROOT / "robots").rglob("*.urdf"))
 BROUGHT = ["pybullet_data:kuka_iiwa/model.urdf", "pybullet_data:franka_panda/panda.urdf",
            "pybullet_data:pr2_gripper.urdf", "pybullet_data:r2d2.urdf"]  # fmt: skip

@@ -9,7 +9,7 @@ from clearance.errors import BadInput
 from tests.examples import examples
 from tests.load.making import write_case
 from tests.load.making_sdf import BOX, at, collision, content_of, link, model, pose, sdf, world
-from tests.load.test_sdf_file import NAMED
+from tests.load.scene.test_sdf_file import NAMED
 
 SMALL = sdf(
     world(
