@@ -34,7 +34,7 @@ from .receipt.writing import write_receipt
 from .run import Question, Resources, Run, answer, check
 from .simulate.checker import Checker
 from .simulate.record import CrossCheck, Record
-from .simulate.workspace import Workspace, shared_workspace
+from .simulate.workspace.workspace import Workspace, shared_workspace
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
 from .world.carry import Carry

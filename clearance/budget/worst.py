@@ -27,8 +27,8 @@ from clearance.budget.sources import (
 )
 from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
+from clearance.simulate.contact.rows_on_demand import RowsOnDemand
 from clearance.simulate.moment import Moment, MomentQuery
-from clearance.simulate.rows_on_demand import RowsOnDemand
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between

@@ -119,7 +119,7 @@ class MoreFiles:
 
     def _write_still(self, run: Run) -> None:
         from clearance.report.folder import write_file
-        from clearance.simulate.replay import replay_of
+        from clearance.simulate.replay.replay import replay_of
 
         replay = replay_of(run.record, rows=run.rows)
         if self.glb is not None:

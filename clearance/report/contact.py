@@ -1,6 +1,6 @@
 """Overlaps in the summary and on the page: the deepest of the run, and the deepest of every pair.
 
-Not for: finding them (`simulate.contact`).
+Not for: finding them (`simulate.contact.contacts`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
-from clearance.simulate.contact_sequence import StepContact
+from clearance.simulate.contact.sequence import StepContact
 from clearance.simulate.record import Record
 
 

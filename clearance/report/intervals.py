@@ -10,7 +10,7 @@ import numpy as np
 from clearance.late_dataclass import dataclass
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.record import Record
-from clearance.simulate.replay_frames import codes_of
+from clearance.simulate.replay.frames import codes_of
 from clearance.simulate.row_status import RowStatus
 from clearance.simulate.status import STATUSES
 

@@ -27,8 +27,8 @@ from clearance.report.tables import (
 )
 from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.simulate.record import Record
-from clearance.simulate.replay import FILE_NAME, replay_of
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.replay.replay import FILE_NAME, replay_of
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 OWN = (
     "steps.parquet",

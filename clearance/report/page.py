@@ -28,8 +28,8 @@ from clearance.report.more_curves import PageCurve
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
 from clearance.report.wording import contact_text, count
-from clearance.simulate.replay import Replay
-from clearance.simulate.replay_bodies import LINK
+from clearance.simulate.replay.bodies import LINK
+from clearance.simulate.replay.replay import Replay
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.rules import DEFAULT
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Record
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 MOST_NUMBERS = 250_000
 """Numbers of all curves together: 1.3 MB on the page."""

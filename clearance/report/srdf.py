@@ -8,8 +8,8 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from clearance.report.wording import count, joint_value, mm
-from clearance.simulate.pair_audit import PairFinding, PairStatus
-from clearance.simulate.srdf_audit import ExcusedPair, ProposedPair
+from clearance.simulate.audit.pair import PairFinding, PairStatus
+from clearance.simulate.audit.srdf import ExcusedPair, ProposedPair
 from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.robot import Robot
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import pyarrow as pa
 
 from clearance.simulate.budget_columns import with_proven_between
-from clearance.simulate.contact_columns import with_contact_columns
-from clearance.simulate.contact_sequence import StepContact
+from clearance.simulate.contact.columns import with_contact_columns
+from clearance.simulate.contact.sequence import StepContact
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 CONTACTS = 10_000
 """Overlaps that are written at a time."""

@@ -26,7 +26,7 @@ from clearance.report.wording import (
 )
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.replay_frames import codes_of
+from clearance.simulate.replay.frames import codes_of
 from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case

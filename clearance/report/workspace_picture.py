@@ -13,7 +13,7 @@ from markupsafe import escape
 
 from clearance.geometry.polytope import Polytope
 from clearance.report.wording import litres
-from clearance.simulate.workspace import Workspace
+from clearance.simulate.workspace.workspace import Workspace
 
 WIDTH, HEIGHT, MARGIN = 1000.0, 720.0, 40.0
 COLOURS = ((92, 115, 144), (199, 125, 10), (43, 122, 75), (120, 80, 150))

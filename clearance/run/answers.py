@@ -17,7 +17,7 @@ from clearance.run.notices import notices_of
 from clearance.run.question import Question
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.contact_sequence import ContactSequence
+from clearance.simulate.contact.sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
@@ -29,7 +29,7 @@ from clearance.simulate.record import (
     Record,
     Samples,
 )
-from clearance.simulate.replay_bodies import notes_on_drawing
+from clearance.simulate.replay.bodies import notes_on_drawing
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.run_answer import RunAnswer, judged
@@ -119,7 +119,7 @@ def _motions(question: Question) -> tuple[Motion, ...]:
     case = question.case
     if question.motion != "simulated":
         return tuple(kinematic_motion(placed) for placed in case.robots)
-    from clearance.simulate.simulated import simulated_motions
+    from clearance.simulate.physics.motions import simulated_motions
 
     return simulated_motions(case)
 
@@ -161,7 +161,7 @@ def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Res
 
 def _of_section(question: Question, section: Section, own: Resources) -> SectionAnswer:
     if not section.tied:
-        from clearance.simulate.two_clock_rows import measure_two_clocks
+        from clearance.simulate.clocks.rows import measure_two_clocks
 
         gap = question.certify_gap if question.certify else None
         return SectionAnswer(section, *measure_two_clocks(section.of_two_clocks, gap, own))
@@ -222,7 +222,7 @@ def _contacts(plan: MeasurementPlan, found: Sequence[SectionAnswer]) -> ContactS
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((one.found.clearance[b] <= 0.0).any() for one in found for b in _blocks(one)):
         return ()
-    from clearance.simulate.contact_phases import contacts_of
+    from clearance.simulate.contact.phases import contacts_of
 
     return contacts_of(plan.question.case, found, plan.motions[0].times, plan.question.contact)
 

@@ -15,7 +15,7 @@ from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import SIDES, columns_of, sides_of
 from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 if TYPE_CHECKING:
     import pyarrow as pa

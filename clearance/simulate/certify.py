@@ -27,7 +27,7 @@ from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.resumable_rows import MeasuredRows
+from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.forest import joined_positions

@@ -1,6 +1,6 @@
 """Lays all measured bodies into one searchable surface, and says what moves them.
 
-Not for: the measuring (`measure`) and the motion itself (`kinematic`, `bullet`).
+Not for: the measuring (`measure`) and the motion itself (`world.motion`, `physics.bullet`).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
 interrupted; how the steps are parted depends on their number alone, and so does every result. Rows are kept in
-memory or on disk (`resumable_rows`). Not for: where the motion comes from (`kinematic`, `bullet`).
+memory or on disk (`rows.resumable`). Not for: where the motion comes from (`world.motion`, `physics.bullet`).
 """
 
 from __future__ import annotations

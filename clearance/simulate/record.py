@@ -14,7 +14,7 @@ import pyarrow as pa
 from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.contact_sequence import ContactSequence, StepContact
+from clearance.simulate.contact.sequence import ContactSequence, StepContact
 from clearance.simulate.every_pair import EveryPair
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import columns_of, sides_in
@@ -249,7 +249,7 @@ class Record(Samples):
         """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
         not exact, null at all others; with tolerances that of the motion too, as `with_proven_between` adds it."""
         from clearance.simulate.budget_columns import with_proven_between
-        from clearance.simulate.contact_columns import with_contact_columns
+        from clearance.simulate.contact.columns import with_contact_columns
 
         return with_proven_between(with_contact_columns(self.steps, self.contacts), self.budget)
 

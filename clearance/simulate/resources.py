@@ -8,7 +8,7 @@ from clearance.errors import BadInput
 from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.simulate.parts import usable_cores
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from functools import cached_property
 import numpy as np
 
 from clearance.late_dataclass import dataclass
+from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs

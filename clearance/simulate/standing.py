@@ -67,8 +67,8 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     rows = record.contacts
     if not len(rows):
         return []
-    from clearance.simulate.contact_phases import ContactsOfPhases
-    from clearance.simulate.contact_rows import ContactRows
+    from clearance.simulate.contact.phases import ContactsOfPhases
+    from clearance.simulate.contact.rows import ContactRows
 
     if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
         return []

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.contact_columns import no_contact_columns
+from clearance.simulate.contact.columns import no_contact_columns
 from clearance.simulate.every_pair import EveryPair
 from clearance.simulate.measure import Measurement
 from clearance.simulate.name_codes import names_of

@@ -22,8 +22,8 @@ import numpy as np
 from clearance.errors import MissingFile
 from clearance.extras import importing
 from clearance.simulate.record import Record
-from clearance.simulate.replay import FILE_NAME, Replay, load_replay, replay_of
-from clearance.simulate.replay_bodies import LINK, MOVING, PART, STANDING, DrawnBody
+from clearance.simulate.replay.bodies import LINK, MOVING, PART, STANDING, DrawnBody
+from clearance.simulate.replay.replay import FILE_NAME, Replay, load_replay, replay_of
 from clearance.simulate.status import STATUSES
 
 if TYPE_CHECKING:

@@ -34,9 +34,9 @@ from rows import write_csv
 from trajectory import steps_for
 
 import clearance as cl
-from clearance.simulate.pair_audit import PairStatus
+from clearance.simulate.audit.pair import PairStatus
+from clearance.simulate.audit.srdf import audit
 from clearance.simulate.resources import Resources
-from clearance.simulate.srdf_audit import audit
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Clock
 
@@ -213,7 +213,7 @@ def audited(asked: Arguments) -> list[dict]:
         {
             "what": "audit of excused pairs",
             "case": "panda",
-            "method": "clearance.simulate.srdf_audit",
+            "method": "clearance.simulate.audit.srdf",
             "pairs": len(found),
             "ms": seconds * 1e3,
             "ratio": seconds,

@@ -29,9 +29,9 @@ from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.formats import read_robot
 from clearance.load.robot.request import RobotRequest
+from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
+from clearance.simulate.clocks.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.simulate.resources import Resources
-from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
-from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion, kinematic_motion

@@ -8,7 +8,7 @@ import json
 import pytest
 
 from clearance.cli import run
-from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.contact.rows import ContactRows
 from tests.cli.test_check_command import URDF
 
 CASE = """name: rail

@@ -174,7 +174,7 @@ def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
-    from clearance.simulate.contact import find_contacts
+    from clearance.simulate.contact.contacts import find_contacts
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))

@@ -12,7 +12,7 @@ from clearance.report.page import page_of
 from clearance.report.summary import summary_of
 from clearance.report.verdict import verdict_of
 from clearance.simulate.record import Record
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from tests.load.making import CASE, write_case
 from tests.report.test_verdict import made
 

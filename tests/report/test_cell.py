@@ -21,7 +21,7 @@ from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.pair_judge import PairJudge
 from clearance.report.summary import summary_of
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
 from clearance.world.case import Clock, Limits, SelfClearance
 from clearance.world.rules import Allowance, Rule

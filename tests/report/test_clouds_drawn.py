@@ -12,7 +12,7 @@ from clearance.report.still.picture import png_of
 from clearance.report.still.points import MOST, as_solids
 from clearance.report.still.scene import still_of
 from clearance.report.summary import summary_of
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.view import play
 from tests.made_cases import flying
 from tests.report.browser import chromium, executable

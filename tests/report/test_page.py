@@ -15,7 +15,7 @@ from clearance.report.pair_curves import pair_curves
 from clearance.report.sections import MAX_EVENT_ROWS, events
 from clearance.report.summary import summary_of
 from clearance.simulate.every_pair import EveryPair
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import SignOff
 from tests.report.records import disagreeing, record
 

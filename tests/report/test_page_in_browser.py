@@ -11,7 +11,7 @@ from clearance.report.output import write
 from clearance.report.still.camera import overview
 from clearance.report.still.scene import still_of
 from clearance.report.wording import mm
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.robot import Joint, JointKind, Robot

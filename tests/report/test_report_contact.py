@@ -14,9 +14,9 @@ from clearance.report.output import write
 from clearance.report.page import page_of
 from clearance.report.summary import summary_of
 from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
-from clearance.simulate import replay_contact
 from clearance.simulate.record import Record
-from clearance.simulate.replay import load_replay, replay_of
+from clearance.simulate.replay import contact as replay_contact
+from clearance.simulate.replay.replay import load_replay, replay_of
 from tests.report.browser import chromium, executable
 from tests.report.records import record, with_contacts
 

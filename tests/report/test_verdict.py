@@ -18,7 +18,7 @@ from clearance.report.summary import summary_of
 from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 from tests.report.records import disagreeing, record, with_steps

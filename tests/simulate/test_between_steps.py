@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.simulate import measure, parts
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot

@@ -16,7 +16,7 @@ from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.formats import read_robot
 from clearance.load.robot.request import RobotRequest
-from clearance.simulate.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
+from clearance.simulate.physics.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses

@@ -10,8 +10,9 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
-from clearance.simulate import contact_events, contact_work
-from clearance.simulate.contact_events import deepest_of, events_of
+from clearance.simulate.contact import events as contact_events
+from clearance.simulate.contact import work as contact_work
+from clearance.simulate.contact.events import deepest_of, events_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot

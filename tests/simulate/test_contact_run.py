@@ -12,8 +12,9 @@ from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
-from clearance.simulate import contact, contact_rows
-from clearance.simulate.contact import find_contacts
+from clearance.simulate.contact import contacts as contact
+from clearance.simulate.contact import rows as contact_rows
+from clearance.simulate.contact.contacts import find_contacts
 from clearance.simulate.names import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -104,7 +105,7 @@ def test_what_stands_for_a_body_reaches_the_notes(shelf):
 def test_a_run_without_contact_does_not_look(monkeypatch):
     import clearance.run
 
-    monkeypatch.setitem(sys.modules, "clearance.simulate.contact", None)
+    monkeypatch.setitem(sys.modules, "clearance.simulate.contact.contacts", None)
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     run = clearance.run.check(case)
     assert run.record.contacts == () and run.record.deepest is None
@@ -112,7 +113,7 @@ def test_a_run_without_contact_does_not_look(monkeypatch):
 
 
 def test_a_pose_that_repeats_is_asked_once(monkeypatch):
-    import clearance.simulate.contact as room
+    import clearance.simulate.contact.contacts as room
 
     run = record()
     pairs = measured_pairs(run.case)[0]

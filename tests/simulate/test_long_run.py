@@ -20,9 +20,10 @@ import clearance as cl
 from clearance.errors import Unwritable
 from clearance.report.summary import summary_of
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
-from clearance.simulate import parts, resumable_rows
-from clearance.simulate.replay import replay_of
-from clearance.simulate.resumable_rows import open_resumable_rows
+from clearance.simulate import parts
+from clearance.simulate.replay.replay import replay_of
+from clearance.simulate.rows import resumable as resumable_rows
+from clearance.simulate.rows.resumable import open_resumable_rows
 from clearance.world.case import Case
 from tests.examples import first_fast
 
@@ -194,8 +195,9 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
 KILLED = """
 import os, pathlib, signal, sys
 import clearance as cl
-from clearance.simulate import parts, resumable_rows
-from clearance.simulate.resumable_rows import open_resumable_rows
+from clearance.simulate import parts
+from clearance.simulate.rows import resumable as resumable_rows
+from clearance.simulate.rows.resumable import open_resumable_rows
 resumable_rows.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
 def progress(done, total):
     calls.append(done)

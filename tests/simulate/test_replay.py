@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax, MissingFile
-from clearance.simulate.replay import kept_steps, load_replay, replay_of
+from clearance.simulate.replay.replay import kept_steps, load_replay, replay_of
 from tests.report.records import record
 
 

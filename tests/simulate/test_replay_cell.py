@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.replay import load_replay, replay_of
-from clearance.simulate.replay_bodies import FramePlace, bodies_of, placed_bodies
+from clearance.simulate.replay.bodies import FramePlace, bodies_of, placed_bodies
+from clearance.simulate.replay.replay import load_replay, replay_of
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.mount import Mount

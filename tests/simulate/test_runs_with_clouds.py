@@ -9,8 +9,8 @@ import clearance as cl
 from clearance.errors import BadInput, BadShape
 from clearance.profiles.sweep import swept_profile
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.replay import replay_of
-from clearance.simulate.replay_bodies import MOST_DRAWN
+from clearance.simulate.replay.bodies import MOST_DRAWN
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from tests.made_cases import flying
 
@@ -148,7 +148,7 @@ def test_the_cross_check_is_of_what_fcl_can_measure():
 
 def test_the_picture_has_points_and_says_how_many(monkeypatch):
     case = case_of(scan(998), way(5))
-    monkeypatch.setattr("clearance.simulate.replay_bodies.MOST_DRAWN", 300)
+    monkeypatch.setattr("clearance.simulate.replay.bodies.MOST_DRAWN", 300)
     record = cl.check(case).record
     (shape,) = [shape for shape in replay_of(record).shapes if not len(shape[1])]
     assert len(shape[0]) == 250

@@ -9,8 +9,8 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.simulate.bullet import simulated_motion
-from clearance.simulate.simulated import simulated_motions
+from clearance.simulate.physics.bullet import simulated_motion
+from clearance.simulate.physics.motions import simulated_motions
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance.errors import BadInput, BadTime
 from clearance.simulate.certify import certify_motion
+from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
+from clearance.simulate.clocks.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
-from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
-from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses

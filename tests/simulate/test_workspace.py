@@ -10,8 +10,8 @@ import pytest
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, Unavailable
 from clearance.geometry import boolean
-from clearance.simulate.swept_pieces import swept_pieces
-from clearance.simulate.workspace import shared_workspace
+from clearance.simulate.workspace.swept_pieces import swept_pieces
+from clearance.simulate.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.cubic import positions_along

@@ -14,8 +14,8 @@ from clearance.errors import BadInput
 from clearance.geometry import boolean
 from clearance.report.workspace import workspace_summary
 from clearance.report.workspace_picture import picture_of
-from clearance.simulate.swept_pieces import swept_pieces
-from clearance.simulate.workspace import shared_workspace
+from clearance.simulate.workspace.swept_pieces import swept_pieces
+from clearance.simulate.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot

@@ -16,7 +16,7 @@ import pytest
 
 from clearance.errors import BadSyntax, MissingFile
 from clearance.report.output import write
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.view import play, show
 from clearance.view.playback import line_tracks
 from tests.report.browser import Page, chromium, executable

@@ -17,7 +17,7 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from clearance.simulate.replay import replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.view.server import PageServer
 from tests.report.records import record
 

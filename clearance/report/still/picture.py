@@ -18,7 +18,7 @@ from clearance.report.still.scene import COLOURS, Still, still_of
 from clearance.report.verdict import Verdict, moment_line, verdict_of
 from clearance.report.wording import limits_text
 from clearance.simulate.record import Record
-from clearance.simulate.replay import Replay
+from clearance.simulate.replay.replay import Replay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

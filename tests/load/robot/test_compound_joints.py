@@ -6,7 +6,7 @@ import pytest
 from clearance.errors import BadInput, DuplicateName
 from clearance.geometry.pose import pose_from_rpy
 from clearance.load.robot.compound_joints import COMPOUND, chained
-from clearance.simulate.physics_model import write_physics_urdf
+from clearance.simulate.physics.model import write_physics_urdf
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from tests.load.making_case import changed, load_small

@@ -9,7 +9,7 @@ from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.formats import read_robot
 from clearance.load.robot.request import RobotRequest
-from clearance.simulate.physics_model import write_physics_urdf
+from clearance.simulate.physics.model import write_physics_urdf
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind
 from tests.load.making_case import changed, load_small

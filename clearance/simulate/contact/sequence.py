@@ -1,5 +1,5 @@
 """The pairs in contact at the steps of a run, worked out when they are looked at. Not for: finding them
-(`contact`).
+(`contacts`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.simulate.rows_on_demand import RowsOnDemand
+from clearance.simulate.contact.rows_on_demand import RowsOnDemand
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact

@@ -2,7 +2,7 @@
 
 Which pairs are in contact is asked when somebody looks, and so are depth, volume and way out: of the deepest
 moment of every event, of all, or of none. Any other row is worked out when it is looked at itself. Not for: how
-(`contact`), and which moment (`contact_events`).
+(`contacts`), and which moment (`events`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from clearance.geometry.boolean import ClosedMesh
 from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.query.contact import Contact
-from clearance.simulate.contact_sequence import ContactSequence, StepContact
-from clearance.simulate.rows_on_demand import RowsOnDemand
+from clearance.simulate.contact.rows_on_demand import RowsOnDemand
+from clearance.simulate.contact.sequence import ContactSequence, StepContact
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""

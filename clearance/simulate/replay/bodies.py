@@ -1,7 +1,7 @@
 """The bodies of a replay: what each is, where it is at every frame, and when it is not in the cell.
 
 Poses are those of the phase that a frame is in, so a part that is carried moves with what carries it, and what
-stands on something that moves rides with it. Not for: which frames there are (`replay_frames`).
+stands on something that moves rides with it. Not for: which frames there are (`frames`).
 """
 
 from __future__ import annotations

@@ -16,9 +16,9 @@ from clearance.simulate.moment import Moment
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
-from clearance.simulate.replay_bodies import FramePlace
-from clearance.simulate.resumable_rows import MeasuredRows
+from clearance.simulate.replay.bodies import FramePlace
 from clearance.simulate.row_status import RowStatus, codes_of_moments, rule_places
+from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.simulate.status import STATUSES
 from clearance.simulate.steps import between_of
 

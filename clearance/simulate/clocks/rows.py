@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.measure import SWEEP_COUNTERS, Measurement, Minima
-from clearance.simulate.resources import Resources
-from clearance.simulate.two_clocks import PairsOfTwoClocks
-from clearance.simulate.unsynchronised import (
+from clearance.simulate.clocks.pairs import PairsOfTwoClocks
+from clearance.simulate.clocks.unsynchronised import (
     UnsynchronisedAnswers,
     UnsynchronisedIntervals,
     least_of_all_steps,
     least_unsynchronised,
 )
+from clearance.simulate.measure import SWEEP_COUNTERS, Measurement, Minima
+from clearance.simulate.resources import Resources
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of the steps' clearances, which are right to the last place."""

@@ -1,7 +1,7 @@
 """Events of contact: unbroken stretches in which a pair overlaps, and the step of each that is worked out.
 
 What is rated is cheap: how far 26 directions and the normals of one body would have to part the hulls, or how much
-two solids share. Not for: how deep a pair is (`contact`).
+two solids share. Not for: how deep a pair is (`contacts`).
 """
 
 from __future__ import annotations

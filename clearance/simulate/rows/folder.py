@@ -1,7 +1,7 @@
 """The folder that resumable rows lie in: made by us, marked, ours alone, and taken away by nobody but us.
 
 Whatever else stands in its place, a link above all, is refused and left as it is: what an interrupted run has left
-is emptied where the next one asks something else. Not for: what lies in it (`resumable_rows`).
+is emptied where the next one asks something else. Not for: what lies in it (`resumable`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The overlaps that a replay draws: regions as surfaces, ways out as arrows, thinned where there are too many.
 
-Not for: finding them (`contact`).
+Not for: finding them (`contact.contacts`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.simulate.contact_sequence import StepContact
+from clearance.simulate.contact.sequence import StepContact
 from clearance.simulate.record import Record
 
 MOST_CONTACTS = 600

@@ -20,8 +20,8 @@ from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
 from clearance.late_dataclass import dataclass
 from clearance.query.common_point import common_point
-from clearance.simulate.robot_in_cell import RobotInCell, robots_in_cell
-from clearance.simulate.swept_pieces import SweptPiece, swept_pieces
+from clearance.simulate.workspace.robot_in_cell import RobotInCell, robots_in_cell
+from clearance.simulate.workspace.swept_pieces import SweptPiece, swept_pieces
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
 

@@ -1,5 +1,5 @@
-"""The contacts of a run in phases, as one sequence. Not for: finding them (`contact`), and keeping them
-(`contact_rows`).
+"""The contacts of a run in phases, as one sequence. Not for: finding them (`contacts`), and keeping them
+(`rows`).
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
-from clearance.simulate.contact import find_contacts
-from clearance.simulate.contact_rows import ContactRows
-from clearance.simulate.contact_sequence import ContactSequence, StepContact
+from clearance.simulate.contact.contacts import find_contacts
+from clearance.simulate.contact.rows import ContactRows
+from clearance.simulate.contact.sequence import ContactSequence, StepContact
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.world.case import Case
 

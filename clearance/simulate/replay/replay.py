@@ -19,7 +19,7 @@ from clearance.errors import BadSyntax, MissingFile
 from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import Record
-from clearance.simulate.replay_bodies import (
+from clearance.simulate.replay.bodies import (
     LINK,
     DrawnBody,
     DrawnCarry,
@@ -30,10 +30,10 @@ from clearance.simulate.replay_bodies import (
     placed_bodies,
     shape_index,
 )
-from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
-from clearance.simulate.replay_frames import ReplayFrames, kept_moments, least_of
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.replay.contact import DrawnContact, drawn_contacts
+from clearance.simulate.replay.frames import ReplayFrames, kept_moments, least_of
 from clearance.simulate.row_status import rule_places
+from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 

@@ -1,13 +1,13 @@
 """All excused pairs of a robot held against its geometry, and a proposal of which to excuse.
 
-Not for: one pair (`pair_audit`), nor how it is reported (`report.srdf`).
+Not for: one pair (`pair`), nor how it is reported (`report.srdf`).
 """
 
 from __future__ import annotations
 
 from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
-from clearance.simulate.pair_audit import PairFinding, PairStatus, audit_pair
+from clearance.simulate.audit.pair import PairFinding, PairStatus, audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import Robot
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs

@@ -43,12 +43,12 @@ from clearance.simulate.certify import (
     no_finer_than_rounding,
     with_turning_balls,
 )
+from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.simulate.layout import lay_out, with_whole_faces
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.notice import Notice
 from clearance.world.pairs import BodyIndex

@@ -22,7 +22,7 @@ import numpy as np
 from clearance.errors import BadInput, NotFinite
 from clearance.extras import importing
 from clearance.late_dataclass import dataclass
-from clearance.simulate.physics_model import notes_on_masses, write_obj, write_physics_urdf
+from clearance.simulate.physics.model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import positions_along

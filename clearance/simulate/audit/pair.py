@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
-from clearance.simulate.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
+from clearance.simulate.audit.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.robot import Joint, JointKind, Robot
 

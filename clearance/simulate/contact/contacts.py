@@ -21,15 +21,15 @@ from clearance.progress import Progress
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
-from clearance.simulate.contact_events import (
+from clearance.simulate.contact.events import (
     MOST_RATED,
     ContactEvent,
     deepest_of,
     events_of,
     hull_depths,
 )
-from clearance.simulate.contact_rows import ContactRows
-from clearance.simulate.contact_work import ContactWork
+from clearance.simulate.contact.rows import ContactRows
+from clearance.simulate.contact.work import ContactWork
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.names import pair_names
