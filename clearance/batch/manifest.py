@@ -21,7 +21,7 @@ from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import read_bytes
-from clearance.load.schema.manifest import Manifest, Reading, is_manifest, load_manifest
+from clearance.load.schema.manifest import Manifest, TrajectoryOptions, is_manifest, load_manifest
 from clearance.load.tolerance.tolerance_file import tolerance_digest
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
@@ -165,8 +165,8 @@ def _options(given: Manifest, changes: Changes) -> CaseOptions:
     )
 
 
-def _reading(given: Reading | None) -> str:
-    return (given or Reading.model_validate({})).model_dump_json(
+def _reading(given: TrajectoryOptions | None) -> str:
+    return (given or TrajectoryOptions.model_validate({})).model_dump_json(
         exclude_defaults=True, exclude={"file"}
     )
 

@@ -24,7 +24,7 @@ from clearance.late_dataclass import dataclass
 from clearance.load.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.files.mesh_paths import variables_of
 from clearance.load.robot.urdf.xacro_variables import variables_asked
-from clearance.load.schema.manifest import Reading
+from clearance.load.schema.manifest import TrajectoryOptions
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 
@@ -180,7 +180,7 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
         case = load_case(item.file)
         return ReadItem(case, case.sources)
     cell, since = _cell(item.file, batch)
-    reading = Reading.model_validate(json.loads(given.reading))
+    reading = TrajectoryOptions.model_validate(json.loads(given.reading))
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
     if case.waivers:

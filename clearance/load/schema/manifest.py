@@ -32,7 +32,7 @@ Files = Annotated[list[Name], BeforeValidator(_listed), Field(min_length=1)]
 """Paths or patterns (`*`, `?`, `**`), one or a list."""
 
 
-class Reading(TrajectoryFile):
+class TrajectoryOptions(TrajectoryFile):
     """How every trajectory is read and followed: as `trajectory` of a case file, but without `file`."""
 
     @model_validator(mode="before")
@@ -63,7 +63,7 @@ class Manifest(StrictModel):
     cases: Files | None = None
     cell: Name | None = None
     trajectories: Files | None = None
-    read_as: Reading | None = None
+    read_as: TrajectoryOptions | None = None
     robot: Name | None = None
     need: Literal["steps", "limit", "minimum"] | None = None
     samples_only: bool | None = None
