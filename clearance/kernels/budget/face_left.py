@@ -74,7 +74,7 @@ class SearchState(NamedTuple):
     Attributes:
         views: along the direction of the nearest points, tilted by the errors. u: that direction (frame of a).
         nearest: [m] the distance of those points.
-        lower_bound, target, least: [m] as in `PairLeft` and `Aim`. enough: [m] at a step, what is `REFINED`
+        lower_bound, target, least: [m] as in `PairRemainder` and `Aim`. enough: [m] at a step, what is `REFINED`
             below what occurs.
     """
 
@@ -87,7 +87,7 @@ class SearchState(NamedTuple):
     enough: float
 
 
-class FacePairLeft(NamedTuple):
+class FacePairRemainder(NamedTuple):
     """What a search has come to after two faces; True where it must be given up."""
 
     search: SearchState
@@ -268,7 +268,7 @@ def look_at_faces(lent, faces, bound, slack, search, aim, thin, tally):
     if whole.apart <= 0.0:  # they may touch
         reach = _reach_of_both(lent, faces)
         search = with_value(search, -reach, reach, aim, thin)
-        return FacePairLeft(with_bound(search, max(bound, -reach), aim), False)
+        return FacePairRemainder(with_bound(search, max(bound, -reach), aim), False)
     bound = max(bound, whole.bound)
     point = taken_at(lent, near.p, near.q, direction, m, bodies, aim)
     value = length - point.taken
@@ -292,4 +292,4 @@ def look_at_faces(lent, faces, bound, slack, search, aim, thin, tally):
             bound = max(bound, cut.lower_bound)
             search = with_value(search, cut.least, point.taken, aim, thin)
         gives_up = bound < search.target and not still
-    return FacePairLeft(with_bound(search, bound, aim), gives_up)
+    return FacePairRemainder(with_bound(search, bound, aim), gives_up)

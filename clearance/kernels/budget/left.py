@@ -80,7 +80,7 @@ class Start(NamedTuple):
     are_known: bool
 
 
-class PairLeft(NamedTuple):
+class PairRemainder(NamedTuple):
     """What is left of a pair.
 
     Attributes:
@@ -154,7 +154,7 @@ class _Reaches(NamedTuple):
     sin_turn: float
 
 
-class _Waiting(NamedTuple):
+class _GroupOutcome(NamedTuple):
     """What has become of the marked nodes of a group.
 
     Attributes:
@@ -199,7 +199,7 @@ def _let_wait(scene, nodes, marks, views, reaches, target, n_waiting, tally):
         else:
             marks ^= 1 << i
         n_waiting = wait(work.scratch, n_waiting, node_a, node_b, bound, first)
-    return _Waiting(n_waiting, marks, low, passed)
+    return _GroupOutcome(n_waiting, marks, low, passed)
 
 
 class _Queue(NamedTuple):
@@ -352,8 +352,8 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         search = looked.search
         if looked.gives_up:
             forget(scene.state.fronts, pair)
-            return PairLeft(-math.inf, search.least - thin, -math.inf, False, search.u)
+            return PairRemainder(-math.inf, search.least - thin, -math.inf, False, search.u)
     if moved < math.inf:
         keep(scene.state.fronts, pair, first.n_kept, scratch.left, scratch.lower_bounds, n_left)
     lower_bound = min(lower_bound, search.lower_bound) - thin
-    return PairLeft(lower_bound, search.least - thin, search.enough - thin, True, search.u)
+    return PairRemainder(lower_bound, search.least - thin, search.enough - thin, True, search.u)

@@ -14,7 +14,7 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, turn
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.budget.face_left import Aim
-from clearance.kernels.budget.left import PairLeft, Start, least_left
+from clearance.kernels.budget.left import PairRemainder, Start, least_left
 from clearance.kernels.budget.sweep_state import (
     BudgetScene,
     fill_body,
@@ -43,7 +43,7 @@ class Look(NamedTuple):
     goes_on: bool
 
 
-_NOTHING_LEFT = PairLeft(-math.inf, math.inf, -math.inf, False, Vec3(0.0, 0.0, 0.0))
+_NOTHING_LEFT = PairRemainder(-math.inf, math.inf, -math.inf, False, Vec3(0.0, 0.0, 0.0))
 
 
 def _scene_like():

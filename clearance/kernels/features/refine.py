@@ -191,8 +191,8 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
     features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
 
 
-class Outlook(NamedTuple):
-    """What is known of all faces when some are refined.
+class RefineBounds(NamedTuple):
+    """What bounds the distances of all faces when some are refined.
 
     Attributes:
         direction: along which the bodies are farthest apart, as far as is known. slack: [m] its rounding.
@@ -205,13 +205,13 @@ class Outlook(NamedTuple):
 
 
 @inline(force=True)
-def settle(table, bodies, waiting, n_waiting, cutoff, outlook, best):
+def settle(table, bodies, waiting, n_waiting, cutoff, bounds, best):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
         bodies: any parts of the surfaces that the faces are of.
         cutoff: of `FeatureCutoff`, for the faces nearest so far.
-        outlook: of `Outlook`.
+        bounds: of `RefineBounds`.
     """
     a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
     margin = cutoff.margin
@@ -223,11 +223,11 @@ def settle(table, bodies, waiting, n_waiting, cutoff, outlook, best):
             continue
         if near_sq > limit * limit:
             along_direction = (
-                lower_bound_faces_along_direction(a, face_a, b, face_b, outlook.direction)
-                - outlook.slack
+                lower_bound_faces_along_direction(a, face_a, b, face_b, bounds.direction)
+                - bounds.slack
             )
             if along_direction > limit or not may_hide(
-                a, face_a, b, face_b, bodies.frames.m, margin, limit, outlook.least
+                a, face_a, b, face_b, bodies.frames.m, margin, limit, bounds.least
             ):
                 continue
         features = waiting.features

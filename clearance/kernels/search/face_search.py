@@ -20,7 +20,7 @@ from clearance.kernels.features.face_pair import (
 from clearance.kernels.features.meeting import Meeting, meeting_of
 from clearance.kernels.features.refine import (
     N_WAITING,
-    Outlook,
+    RefineBounds,
     RefinedDistance,
     put,
     settle,
@@ -111,10 +111,10 @@ def _nearest_last(scratch, n_waiting):
 def settle_waiting(table, bodies, search, limits, least, scratch):
     """The best after all face pairs that wait; no two are nearer than `least` [m] but for rounding."""
     near, progress = search.near, search.progress
-    outlook = Outlook(near.views.a.direction, limits.slack, least)
+    refine_bounds = RefineBounds(near.views.a.direction, limits.slack, least)
     cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin_of(limits.slack))
     return settle(
-        table, bodies, scratch.waiting, progress.n_waiting, cutoff, outlook, progress.refined
+        table, bodies, scratch.waiting, progress.n_waiting, cutoff, refine_bounds, progress.refined
     )
 
 
