@@ -122,7 +122,7 @@ def own_time(timing: Timing, times: np.ndarray, t: float, *, left: bool) -> floa
 
 def positions_at(placed: PlacedRobot, t: float, *, left: bool) -> np.ndarray:
     """(2,) the joints of a robot at a time."""
-    asked = placed.asked
+    asked = placed.given_trajectory
     u = own_time(placed.timing, asked.times, t, left=left)
     if asked.velocities is None:
         return np.array([np.interp(u, asked.times, column) for column in asked.positions.T])

@@ -181,7 +181,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     after = found.state.case.robots[i_robot]
     return replace(
         told,
-        joint_names=before.asked.joint_names,
+        joint_names=before.given_trajectory.joint_names,
         tool_path=tool_path_error(before, after, way.tool),
     )
 
@@ -248,7 +248,9 @@ def _by_path(case: Case, request: Request) -> Gain:
     change = offsets.offsets(found.state.x)
     told = _gain(case, request, found, change, offsets, at_least, who, blocked)
     moves = () if offsets.tool_poses is None else tuple(offsets.tool_poses.moves(found.state.x))
-    names = tuple(name for part in offsets.parts for name in part.placed.asked.joint_names)
+    names = tuple(
+        name for part in offsets.parts for name in part.placed.given_trajectory.joint_names
+    )
     return replace(told, joint_names=names, tool_moves=moves)
 
 

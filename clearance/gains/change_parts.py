@@ -58,7 +58,8 @@ def joint_parts(gain: Gain) -> list[ChangePart]:
     """The joints of a robot whose base is moved and whose tool path is kept."""
     i_robot = index_of_robot(gain.case.robots, gain.who)
     before, after = (
-        one.record.case.robots[i_robot].asked.positions for one in (gain.before, gain.after)
+        one.record.case.robots[i_robot].given_trajectory.positions
+        for one in (gain.before, gain.after)
     )
     return _joints(gain.case.robots[i_robot], after - before)
 
@@ -71,9 +72,9 @@ def changed_robots(gain: Gain) -> list[PlacedRobot]:
 
 def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[ChangePart]:
     kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
-    times = placed.timing.run_times(placed.asked.times)
+    times = placed.timing.run_times(placed.given_trajectory.times)
     found = []
-    for name, offsets in zip(placed.asked.joint_names, change.T, strict=True):
+    for name, offsets in zip(placed.given_trajectory.joint_names, change.T, strict=True):
         rows = np.flatnonzero(np.abs(offsets) > STILL)
         if len(rows):
             most = int(np.argmax(np.abs(offsets)))
@@ -112,7 +113,7 @@ def _kinds(gain: Gain) -> set[str]:
     found = set[str]()
     for placed in changed_robots(gain):
         kinds = {joint.name: joint.kind for joint in placed.robot.moving_joints}
-        found |= {str(kinds[name]) for name in placed.asked.joint_names}
+        found |= {str(kinds[name]) for name in placed.given_trajectory.joint_names}
     return found
 
 

@@ -109,7 +109,7 @@ class _Files:
         for plain in (TRAJECTORY, MESSAGE):
             stem, kind = plain.split(".")
             name = f"{stem}{suffix}.{kind}"
-            text, notes = written(placed.asked, name)
+            text, notes = written(placed.given_trajectory, name)
             self.contents[name] = text
             self.notes += [f"{name}: {note}" for note in notes]
         self._table({"file": TRAJECTORY.replace(".", f"{suffix}.")}, i_robot)

@@ -98,7 +98,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> TimingR
     def longer(state: State, approach: Approach, ways: np.ndarray) -> np.ndarray:
         now, times = state.case.robots[i_robot], _times(approach)
         known = is_told_by(state.case, i_robot, times)
-        since = times - now.timing.run_times(now.asked.times)[0]
+        since = times - now.timing.run_times(now.given_trajectory.times)[0]
         return np.where(known, _over(ways, speed), np.minimum(_over(ways, speed), since))
 
     return _least(
@@ -114,7 +114,7 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
     """
     _require_another(case, i_robot)
     placed = case.robots[i_robot]
-    if placed.asked.times[0] < 0.0:
+    if placed.given_trajectory.times[0] < 0.0:
         raise BadInput(
             f"the table of robot {placed.robot.name!r} begins before its time 0, about which it would be slowed",
             valid="a table that begins at 0 or later",
@@ -127,7 +127,7 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
         at = np.maximum((times - now.timing.start) * now.timing.rate, 0.0)
         then = np.maximum(at - _over(ways, speed), 0.0)
         known = is_told_by(state.case, i_robot, times)
-        then = np.where(known, then, np.maximum(then, now.asked.times[0]))
+        then = np.where(known, then, np.maximum(then, now.given_trajectory.times[0]))
         slower = np.divide(at, then, out=np.full(len(at), np.inf), where=then > 0.0)
         taken = placed.timing.rate / now.timing.rate
         return np.maximum(slower - 1.0, 0.0) * taken
@@ -189,7 +189,7 @@ def greatest_speed(case: Case, i_robot: int) -> float:
     On a cubic a velocity lies between the least and the greatest of the Bernstein coefficients of its parabola.
     """
     placed = case.robots[i_robot]
-    asked = placed.asked
+    asked = placed.given_trajectory
     mean = np.diff(asked.positions, axis=0) / np.diff(asked.times)[:, None]
     rates = [mean]
     if asked.velocities is not None:

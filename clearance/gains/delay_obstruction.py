@@ -102,7 +102,7 @@ def _timing(case: Case, thing: Thing) -> Timing:
 def _begins(case: Case, thing: Thing) -> float:
     """[s of the run] When a path begins."""
     is_obstacle, i = thing
-    moves = case.obstacles[i].moves if is_obstacle else case.robots[i].asked
+    moves = case.obstacles[i].moves if is_obstacle else case.robots[i].given_trajectory
     assert moves is not None
     return float(_timing(case, thing).run_times(moves.times)[0])
 

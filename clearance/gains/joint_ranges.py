@@ -45,7 +45,7 @@ class JointRange:
 def joint_ranges(placed: PlacedRobot) -> Iterator[JointRange]:
     """What is left of each limit of the joints that a robot's table names: places at its samples, greatest speeds
     and accelerations between them."""
-    asked, rate = placed.asked, placed.timing.rate
+    asked, rate = placed.given_trajectory, placed.timing.rate
     joints = {joint.name: joint for joint in placed.robot.moving_joints}
     times = asked.times
     for i, name in enumerate(asked.joint_names):

@@ -37,7 +37,7 @@ def joint_rows(placed: PlacedRobot, basis: Basis) -> Inequalities:
     """What offsets of all columns of a robot's table keep, by splines, those of a column together."""
     from scipy.sparse import csr_array, kron, vstack
 
-    n_joints = len(placed.asked.joint_names)
+    n_joints = len(placed.given_trajectory.joint_names)
     parts, most = [], []
     for column, rows, levels in _rows(placed, basis):
         one = np.zeros((1, n_joints))
@@ -52,7 +52,7 @@ def joint_rows(placed: PlacedRobot, basis: Basis) -> Inequalities:
 
 def _rows(placed: PlacedRobot, basis: Basis) -> Iterator[tuple[int, np.ndarray, np.ndarray]]:
     """(column, (k, m) what the splines add, (k,) how much they may) for each limit of each joint, either way."""
-    places, *rates = _quantities(placed.asked, basis)
+    places, *rates = _quantities(placed.given_trajectory, basis)
     rate = placed.timing.rate
     for course in joint_courses(placed):
         if course.i_column is None or course.factor == 0.0:

@@ -23,9 +23,13 @@ def with_moments(case: Case, moments: np.ndarray) -> Case:
         return case
     robots = list(case.robots)
     for i, placed in enumerate(robots):
-        if placed.trajectory is None or placed.asked.n_steps < 2 or placed.timing.after == "loop":
+        if (
+            placed.trajectory is None
+            or placed.given_trajectory.n_steps < 2
+            or placed.timing.after == "loop"
+        ):
             continue
-        start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
+        start, end = placed.timing.run_times(placed.given_trajectory.times)[[0, -1]]
         own = moments[(moments > start) & (moments < end)]
         robots[i] = _with_samples(placed, (own - placed.timing.start) * placed.timing.rate)
         moments = np.setdiff1d(moments, own)
@@ -34,7 +38,7 @@ def with_moments(case: Case, moments: np.ndarray) -> Case:
 
 def _with_samples(placed: PlacedRobot, times: np.ndarray) -> PlacedRobot:
     """The robot with samples at some more times of its table [s]."""
-    asked = placed.asked
+    asked = placed.given_trajectory
     more = np.setdiff1d(times, asked.times)
     order = np.argsort(np.concatenate([asked.times, more]), kind="stable")
     at = values_between(asked, more, asked.positions, asked.velocities)

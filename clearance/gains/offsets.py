@@ -68,7 +68,7 @@ class JointOffsets:
 
     def __post_init__(self) -> None:
         kinds = {joint.name: joint.kind for joint in self.placed.robot.moving_joints}
-        named = (kinds[name] for name in self.placed.asked.joint_names)
+        named = (kinds[name] for name in self.placed.given_trajectory.joint_names)
         slides = np.array([SLIDE if kind == "prismatic" else 1.0 for kind in named])
         object.__setattr__(self, "weights", slides)
 
@@ -103,12 +103,12 @@ class JointOffsets:
 
     @cached_property
     def _samples(self) -> np.ndarray:
-        return self.basis.at(self.placed.asked.times)
+        return self.basis.at(self.placed.given_trajectory.times)
 
     @cached_property
     def _sized(self) -> np.ndarray:
         """(r, m) what no offset exceeds: samples and, on cubics, the Bernstein coefficients between."""
-        asked, samples = self.placed.asked, self._samples
+        asked, samples = self.placed.given_trajectory, self._samples
         if asked.velocities is None:
             return samples
         thirds = np.diff(asked.times)[:, None] / 3.0
@@ -140,7 +140,7 @@ class JointOffsets:
 
     def placed_of(self, x: np.ndarray) -> PlacedRobot:
         """The robot with the path that is changed."""
-        asked = self.placed.asked
+        asked = self.placed.given_trajectory
         velocities = asked.velocities
         if velocities is not None:
             rates = self.basis.at(asked.times, 1)
@@ -176,7 +176,7 @@ class JointOffsets:
 
     def _between_samples(self, times: np.ndarray) -> np.ndarray:
         """(k, m) what a spline adds at times of the table (k,) [s], on the lines or cubics between its samples."""
-        asked = self.placed.asked
+        asked = self.placed.given_trajectory
         rates = None if asked.velocities is None else self.basis.at(asked.times, 1)
         return values_between(asked, times, self._samples, rates)
 
@@ -203,7 +203,7 @@ class JointOffsets:
         """What is kept of the tool's poses; None for nothing."""
         if not self.tool_keeps:
             return None
-        placed, asked = self.placed, self.placed.asked
+        placed, asked = self.placed, self.placed.given_trajectory
         times = np.array([one.time for one in self.tool_keeps])
         own = (times - placed.timing.start) * placed.timing.rate
         positions = values_between(asked, own, asked.positions, asked.velocities)
@@ -293,7 +293,7 @@ def joint_offsets(
             valid="a path that ends",
         )
     return JointOffsets(
-        case, i_robot, Basis(placed.asked.times, n_intervals, kept), tool_keeps, tool
+        case, i_robot, Basis(placed.given_trajectory.times, n_intervals, kept), tool_keeps, tool
     )
 
 
@@ -301,4 +301,6 @@ def columns_of(case: Case, i_robot: int) -> list[int]:
     """The column of the case's forest of each joint of a robot's table."""
     before = sum(len(one.robot.moving_joints) for one in case.robots[:i_robot])
     names = [joint.name for joint in case.robots[i_robot].robot.moving_joints]
-    return [before + names.index(name) for name in case.robots[i_robot].asked.joint_names]
+    return [
+        before + names.index(name) for name in case.robots[i_robot].given_trajectory.joint_names
+    ]

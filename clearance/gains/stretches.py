@@ -37,7 +37,7 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
     """
     if placed.trajectory is None:
         return
-    start, end = placed.timing.run_times(placed.asked.times)[[0, -1]]
+    start, end = placed.timing.run_times(placed.given_trajectory.times)[[0, -1]]
     for one in keeps:
         if not start <= one.time <= end:
             raise BadInput(
@@ -49,7 +49,7 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
 def kept_of(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, float], ...]:
     """The windows of the robot's table [s] in which its path stays as it is: from sample to sample, since those
     next to a window draw the path in it."""
-    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
     kept = []
     for window in request.keep:
         start, end = ((time - timing.start) * timing.rate for time in window)
@@ -64,7 +64,7 @@ def kept_of(case: Case, i_robot: int, request: Request) -> tuple[tuple[float, fl
 def windows_of(case: Case, i_robot: int, request: Request) -> list[tuple[float, float]]:
     """The same in times of the run; before its path begins and after it ends the robot stands at an end that may
     be kept."""
-    timing, times = case.robots[i_robot].timing, case.robots[i_robot].asked.times
+    timing, times = case.robots[i_robot].timing, case.robots[i_robot].given_trajectory.times
     found = []
     for start, end in kept_of(case, i_robot, request):
         first = -np.inf if start <= times[0] else timing.start + start / timing.rate

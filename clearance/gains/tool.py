@@ -45,7 +45,7 @@ class Tool:
 
     def all_poses(self, positions: np.ndarray) -> np.ndarray:
         """(n, links, 4, 4) `root_from_link` [m] with the table's joints at (n, k) [rad or m]."""
-        named = self.placed.asked.joint_names
+        named = self.placed.given_trajectory.joint_names
         return poses_by_link(self.links, moving_positions(self.placed, named, positions))
 
     def poses(self, positions: np.ndarray) -> np.ndarray:
@@ -84,7 +84,7 @@ def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
                 f"no joint of the path moves link {name!r}", valid="a link that the path moves"
             )
         return Tool(placed, link)
-    n_joints = len(placed.asked.joint_names)
+    n_joints = len(placed.given_trajectory.joint_names)
     for link in range(len(names)):
         if len({column for _, column in _movers(placed, link)}) == n_joints:
             return Tool(placed, link)
@@ -97,7 +97,7 @@ def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
 def _movers(placed: PlacedRobot, link: int) -> tuple[tuple[int, int], ...]:
     links = links_of_robot(placed.robot)
     moving = [joint.name for joint in placed.robot.moving_joints]
-    columns = {moving.index(name): i for i, name in enumerate(placed.asked.joint_names)}
+    columns = {moving.index(name): i for i, name in enumerate(placed.given_trajectory.joint_names)}
     found = []
     while link != NO_PARENT:
         column = columns.get(int(links.columns[link]))

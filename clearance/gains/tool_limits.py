@@ -69,7 +69,7 @@ def _places(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
 
 
 def _rates(placed: PlacedRobot, followed: np.ndarray) -> Iterator[_Room]:
-    asked, rate = placed.asked, placed.timing.rate
+    asked, rate = placed.given_trajectory, placed.timing.rate
     lengths = np.diff(asked.times)[:, None]
     for one in joint_ranges(placed):
         if one.what not in (SPEED, OWN_SPEED, ACCELERATION):

@@ -112,7 +112,7 @@ class ToolPathKept:
         return self._known[key]
 
     def _solution(self, base: np.ndarray) -> FollowedPath:
-        asked, left, rates_kept = self.placed.asked, 0.0, None
+        asked, left, rates_kept = self.placed.given_trajectory, 0.0, None
         if not np.array_equal(base, self.placed.world_from_base):
             at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
             rates_kept = asked.velocities
@@ -131,12 +131,14 @@ class ToolPathKept:
     def world_from_tool(self) -> np.ndarray:
         """(n, 4, 4) [m] what is kept."""
         placed = self.placed
-        return np.asarray(placed.world_from_base @ self.tool.poses(placed.asked.positions))
+        return np.asarray(
+            placed.world_from_base @ self.tool.poses(placed.given_trajectory.positions)
+        )
 
     @cached_property
     def _twists(self) -> np.ndarray:
         """(n, 6) how fast the tool moves and turns at the samples, in the table's time, world."""
-        placed, asked = self.placed, self.placed.asked
+        placed, asked = self.placed, self.placed.given_trajectory
         assert asked.velocities is not None
         rates = _seen_from_world(
             self.tool.poses_and_rates(asked.positions)[1], placed.world_from_base
@@ -165,7 +167,9 @@ class ToolPathKept:
         own = (times - timing.start) * timing.rate
         n_samples, *each = solved.followed.shape
         flat = solved.followed.reshape(n_samples, -1)
-        followed = values_between(self.placed.asked, own, flat, None).reshape(len(own), *each)
+        followed = values_between(self.placed.given_trajectory, own, flat, None).reshape(
+            len(own), *each
+        )
         found = np.einsum("kj,kjm->km", self._by_joint(approach), followed)
         by_base = self.shift.gradient(approach)
         if by_base is not None:

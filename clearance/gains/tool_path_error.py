@@ -48,7 +48,7 @@ class _Rates(NamedTuple):
 
 def tool_path_error(before: PlacedRobot, after: PlacedRobot, tool: Tool) -> ToolPathError:
     """How far the tool of a robot with another base and path is off, both tables at the same times."""
-    times = before.asked.times
+    times = before.given_trajectory.times
     shares = np.arange(PARTS) / PARTS
     moments = np.append((times[:-1, None] + np.diff(times)[:, None] * shares).ravel(), times[-1])
     off = _off(before, after, tool, moments)
@@ -71,7 +71,12 @@ def _off(before: PlacedRobot, after: PlacedRobot, tool: Tool, times: np.ndarray)
     """(k, 2) how far the origins are apart [m], and how long the difference of the matrices of the turns is."""
     poses = []
     for one in (before, after):
-        at = values_between(one.asked, times, one.asked.positions, one.asked.velocities)
+        at = values_between(
+            one.given_trajectory,
+            times,
+            one.given_trajectory.positions,
+            one.given_trajectory.velocities,
+        )
         poses.append(one.world_from_base @ tool.poses(at))
     off = poses[1] - poses[0]
     turned = np.linalg.norm(off[:, :3, :3], axis=(1, 2))
@@ -81,13 +86,13 @@ def _off(before: PlacedRobot, after: PlacedRobot, tool: Tool, times: np.ndarray)
 def _accelerations(placed: PlacedRobot, tool: Tool) -> _Rates:
     """Bounds in the table's time."""
     courses = {one.joint.child: one for one in joint_courses(placed)}
-    swift = turning = bent = bent_turning = np.zeros(placed.asked.n_steps - 1)
+    swift = turning = bent = bent_turning = np.zeros(placed.given_trajectory.n_steps - 1)
     arm, link = 0.0, tool.link
     while tool.links.parents[link] != NO_PARENT:
         course = courses.get(placed.robot.link_names[link])
         slides = tool.links.kinds[link] == SLIDING
         if course is not None and course.i_column is not None:
-            speed, acceleration = greatest_rates(course, placed.asked)
+            speed, acceleration = greatest_rates(course, placed.given_trajectory)
             swift, bent = (
                 was + (1.0 if slides else arm) * more
                 for was, more in ((swift, speed), (bent, acceleration))

@@ -41,7 +41,7 @@ def _is_of(record: Record, placed: PlacedRobot, finding: Finding) -> bool:
 
 def sample_at(placed: PlacedRobot, time: float) -> int:
     """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
-    times, timing = placed.asked.times, placed.timing
+    times, timing = placed.given_trajectory.times, placed.timing
     own = (time - timing.start) * timing.rate
     span = float(times[-1] - times[0])
     if timing.after == "loop" and span > 0.0 and own > times[-1]:

@@ -200,8 +200,8 @@ class PlacedRobot:
         return tuple(name for name in names if name not in self.fixed_positions)
 
     @property
-    def asked(self) -> Trajectory:
-        """The trajectory.
+    def given_trajectory(self) -> Trajectory:
+        """The trajectory of a robot that has one.
 
         Raises:
             NoTrajectory: there is none.

@@ -62,7 +62,7 @@ def kinematic_motion(placed: PlacedRobot) -> Motion:
     if placed.trajectory is None:
         stand = moving_positions(placed, (), np.zeros((1, 0)))
         return Motion(placed, np.zeros(1), stand, np.zeros(1))
-    asked = placed.asked
+    asked = placed.given_trajectory
     velocities = None
     if asked.velocities is not None:
         velocities = moving_velocities(placed, asked.joint_names, asked.velocities)

@@ -70,7 +70,7 @@ def _large_positions(placed: PlacedRobot, before: str) -> list[str]:
 
 def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
     """Velocities that mean a way that is many times what the positions go."""
-    asked = placed.asked
+    asked = placed.given_trajectory
     if asked.velocities is None:
         return []
     joints = _moving(placed)
@@ -95,7 +95,7 @@ def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
 
 def _creeping(placed: PlacedRobot, before: str) -> list[str]:
     """A motion that gets somewhere, but never faster than creeping."""
-    asked, joints = placed.asked, _moving(placed)
+    asked, joints = placed.given_trajectory, _moving(placed)
     if asked.n_steps < 2:
         return []
     moves = False

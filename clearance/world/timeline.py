@@ -200,7 +200,7 @@ def _span(case: Case, tables: Sequence[_Table]) -> tuple[float, float]:
     """[s] From the first sample to the last of all that do not loop; what loops may have begun before."""
     moving = [table for table in tables if table.moves]
     if not moving:
-        _ = case.robots[0].asked  # refuses a case in which nothing moves
+        _ = case.robots[0].given_trajectory  # refuses a case in which nothing moves
     once = [table for table in moving if table.timing.after != "loop"] or moving
     return min(table.once[0] for table in once), max(table.once[1] for table in once)
 

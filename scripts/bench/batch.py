@@ -240,7 +240,7 @@ def scene_batch(folder: Path, scene: str, n_cases: int, n_steps: int = 300) -> P
     lines = (source / "case.yaml").read_text().splitlines()
     cell = [line for line in lines if not line.startswith("trajectory:")]
     (folder / "cell.yaml").write_text("\n".join(cell) + "\n")
-    given = load_case(source / "case.yaml").robots[0].asked
+    given = load_case(source / "case.yaml").robots[0].given_trajectory
     times = np.linspace(given.times[0], given.times[-1], n_steps)
     moves = [np.interp(times, given.times, column) for column in given.positions.T]
     header = ",".join(["time", *given.joint_names])

@@ -137,7 +137,7 @@ def _extent(case: Case, one: CaseOnDisk) -> tuple[int, int]:
     if one.kind != "waypoints":
         steps = max(p.trajectory.n_steps for p in case.robots if p.trajectory)
         return steps, 0
-    path = case.robots[index_of_robot(case.robots, one.who)].asked
+    path = case.robots[index_of_robot(case.robots, one.who)].given_trajectory
     return path.n_steps, len(path.joint_names)
 
 

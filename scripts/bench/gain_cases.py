@@ -126,7 +126,7 @@ def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Perturbation
     if kind != "waypoints":
         return (obstacle_shift if kind == "obstacle" else base_shift)(case, who)
     i_robot = index_of_robot(case.robots, who)
-    times = case.robots[i_robot].asked.times
+    times = case.robots[i_robot].given_trajectory.times
     return joint_offsets(case, i_robot, n_intervals, ((times[0], times[0]), (times[-1], times[-1])))
 
 
@@ -135,7 +135,7 @@ def intervals_of(case: Case, found: Gain) -> int:
     for n_intervals in INTERVALS if found.kept and found.request.kind == "waypoints" else ():
         change = change_of(case, "waypoints", found.who, n_intervals)
         assert isinstance(change, JointOffsets)
-        splines = change.basis.at(change.placed.asked.times)
+        splines = change.basis.at(change.placed.given_trajectory.times)
         x = np.linalg.lstsq(splines, found.change, rcond=None)[0]
         if np.abs(splines @ x - found.change).max() < 1e-9:
             return n_intervals

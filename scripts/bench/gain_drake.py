@@ -110,7 +110,7 @@ def _program(case: Case, offsets: JointOffsets, known: float) -> tuple[Any, np.n
     from pydrake.multibody.inverse_kinematics import MinimumDistanceLowerBoundConstraint
     from pydrake.planning import KinematicTrajectoryOptimization
 
-    cell, asked = _Cell(case), offsets.placed.asked
+    cell, asked = _Cell(case), offsets.placed.given_trajectory
     table, n = asked.positions[:, cell.columns], asked.n_steps
     trajopt = KinematicTrajectoryOptimization(table.shape[1], n, spline_order=2)
     program, points = trajopt.get_mutable_prog(), trajopt.control_points()
@@ -185,7 +185,7 @@ class _Cell:
         self.plant.WeldFrames(self.plant.world_frame(), links[root].body_frame(), _rigid(at[root]))
         for joint in robot.joints:
             parent, child = links[joint.parent], links[joint.child]
-            if joint.name in self.placed.asked.joint_names:
+            if joint.name in self.placed.given_trajectory.joint_names:
                 self._moving(joint, parent, child)
             else:
                 fixed = _rigid(np.linalg.inv(at[joint.parent]) @ at[joint.child])
@@ -193,7 +193,7 @@ class _Cell:
 
     def _columns(self) -> list[int]:
         """The column of the table of each position."""
-        names = self.placed.asked.joint_names
+        names = self.placed.given_trajectory.joint_names
         starts = [self.plant.GetJointByName(name).position_start() for name in names]
         return [int(column) for column in np.argsort(starts)]
 

@@ -110,7 +110,7 @@ def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
     """Other times, other coordinates, more samples: the same names."""
     before = run("iiwa_pipe_rack", RACK, "limit").record
     (placed,) = before.case.robots
-    given = placed.asked
+    given = placed.given_trajectory
     n = 2 * given.n_steps - 1
     at = np.linspace(0, given.n_steps - 1, n)
     columns = [np.interp(at, np.arange(given.n_steps), c) for c in given.positions.T]

@@ -130,7 +130,7 @@ def test_a_stretch_that_is_kept_is_kept_between_samples_too(keep, is_kept):
     found = cl.gain(cl.Case("post", (placed,), (post,), cl.Limits(fail=0.03)), keep=(keep,))
     assert found.kept == is_kept
     assert is_kept or "is to be kept" in str(found.blocked)
-    before, after = (one.asked for one in (placed, found.case.robots[0]))
+    before, after = (one.given_trajectory for one in (placed, found.case.robots[0]))
     at = [np.interp(keep, one.times, one.positions[:, 1]) for one in (before, after)]
     assert at[1] == pytest.approx(at[0], abs=1e-12)
 

@@ -145,7 +145,7 @@ def test_limits_of_joints_are_kept():
     held = replace(case, robots=(replace(along_x(bar, y=0.03)),))
     found = gain(held, "waypoints")
     assert not found.kept
-    assert (found.case.robots[0].asked.positions[:, 1] >= 0.015 - 1e-9).all()
+    assert (found.case.robots[0].given_trajectory.positions[:, 1] >= 0.015 - 1e-9).all()
 
 
 @pytest.mark.parametrize(
@@ -242,14 +242,15 @@ def test_speeds_of_the_robots_own_file_are_kept(speed, is_kept):
 
 def test_what_is_too_fast_for_its_own_file_is_told_and_made_no_faster():
     case = quick(41, 1.0)
-    at = case.robots[0].asked.positions.copy()
-    at[:, 1] = 0.02 * np.sin(20.0 * case.robots[0].asked.times)
-    path = cl.Trajectory(case.robots[0].asked.times, ("x", "y"), at)
+    at = case.robots[0].given_trajectory.positions.copy()
+    at[:, 1] = 0.02 * np.sin(20.0 * case.robots[0].given_trajectory.times)
+    path = cl.Trajectory(case.robots[0].given_trajectory.times, ("x", "y"), at)
     case = replace(case, robots=(replace(case.robots[0], trajectory=path),))
     case = with_own_speed(case, 0.3)
     found = gain(case, "waypoints")
     speeds = [
-        np.abs(np.diff(one.robots[0].asked.positions[:, 1])) / 0.05 for one in (case, found.case)
+        np.abs(np.diff(one.robots[0].given_trajectory.positions[:, 1])) / 0.05
+        for one in (case, found.case)
     ]
     assert speeds[0].max() > 0.3 and (speeds[1] <= np.maximum(speeds[0], 0.3) + 1e-9).all()
     assert any(label == "note" and "y by " in line for label, line in lines_of(found))
@@ -267,7 +268,7 @@ def test_a_joint_that_follows_is_kept_within_its_limits():
     low = standing("low", cl.box((0.5, 0.4, 2.0)), (0.0, -0.26, 0.0))
     case = replace(case, robots=(replace(case.robots[0], robot=jawed),), obstacles=(low,))
     found = gain(case, "waypoints")
-    jaw = 0.005 - 2.0 * found.case.robots[0].asked.positions[:, 1]
+    jaw = 0.005 - 2.0 * found.case.robots[0].given_trajectory.positions[:, 1]
     assert not found.kept and np.abs(jaw).max() <= 0.02 + 1e-9
 
 

@@ -15,7 +15,7 @@ def leaping(y=0.07, n=4, rates=False, timing=None):
     """A block goes past a thin post in one leap: at all samples it is far from it."""
     placed = along_x(gantry(), np.linspace(0.0, 3.0, n), start=-0.9, end=0.9)
     if rates:
-        asked = placed.asked
+        asked = placed.given_trajectory
         speeds = np.tile([0.6, 0.0], (n, 1))
         placed = replace(placed, trajectory=replace(asked, velocities=speeds))
     if timing is not None:
@@ -45,11 +45,11 @@ def test_moments_are_steps_of_the_same_motion(rates):
     case = leaping(rates=rates, timing=Timing(0.5, 0.8))
     moments = np.array([0.2, 1.0, 2.03, 9.0])
     finer = with_moments(case, moments)
-    assert finer.robots[0].asked.n_steps == 6
+    assert finer.robots[0].given_trajectory.n_steps == 6
     times = np.linspace(0.5, 4.2, 100)
     for one in (case, finer):
         placed = one.robots[0]
         own = (times - 0.5) * 0.8
-        at = np.interp(own, placed.asked.times, placed.asked.positions[:, 0])
+        at = np.interp(own, placed.given_trajectory.times, placed.given_trajectory.positions[:, 0])
         assert at == pytest.approx(-0.9 + 0.6 * np.clip(own, 0.0, 3.0), abs=1e-12)
     assert with_moments(case, np.zeros(0)) is case

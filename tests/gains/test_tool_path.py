@@ -25,7 +25,7 @@ def footed(x_range=(-np.inf, np.inf), rates=False):
     robot = cl.Robot(plain.name, plain.link_names, joints, (foot, *plain.bodies))
     placed = along_x(robot, start=-1.0, end=-0.5, y=1.0)
     if rates:
-        asked = placed.asked
+        asked = placed.given_trajectory
         speeds = np.gradient(asked.positions, asked.times, axis=0)
         placed = replace(placed, trajectory=replace(asked, velocities=speeds))
     wall = standing("wall", cl.box((0.1, 0.4, 0.4)), (0.18, 0.0, 0.0))
@@ -38,7 +38,7 @@ def test_a_foot_steps_back_and_slides_make_up_for_it(rates):
     found = cl.gain(case, "base", tool_path="kept")
     assert found.kept and found.change == pytest.approx([-0.02, 0.0, 0.0], abs=1e-6)
     assert found.lower_bound == pytest.approx(0.02, rel=1e-4)
-    before, after = (one.robots[0].asked for one in (case, found.case))
+    before, after = (one.robots[0].given_trajectory for one in (case, found.case))
     assert after.positions - before.positions == pytest.approx(
         np.tile([0.02, 0.0], (41, 1)), abs=1e-6
     )
@@ -54,14 +54,20 @@ def test_a_foot_steps_back_and_slides_make_up_for_it(rates):
 def test_a_base_with_its_joints_as_they_are_moves_the_tool():
     found = cl.gain(footed(), "base", tool_path="moved")
     assert found.kept and found.tool_path is None
-    assert np.array_equal(found.case.robots[0].asked.positions, footed().robots[0].asked.positions)
+    assert np.array_equal(
+        found.case.robots[0].given_trajectory.positions,
+        footed().robots[0].given_trajectory.positions,
+    )
 
 
 def test_limits_of_slides_bind():
     found = cl.gain(
         footed(x_range=(-1.0, -0.49)), "base", tool_path="kept", within=(0.03, 0.0, 0.0)
     )
-    assert not found.kept and found.case.robots[0].asked.positions[:, 0].max() <= -0.49 + 2e-4
+    assert (
+        not found.kept
+        and found.case.robots[0].given_trajectory.positions[:, 0].max() <= -0.49 + 2e-4
+    )
     assert any("joint x is at its upper limit" in line for line in found.binding)
 
 
@@ -131,7 +137,11 @@ def test_an_arm_leans_away_and_its_tool_stays():
     for one in (case, found.case):
         placed = one.robots[0]
         joints = np.stack(
-            [np.interp(moments, placed.asked.times, q) for q in placed.asked.positions.T], 1
+            [
+                np.interp(moments, placed.given_trajectory.times, q)
+                for q in placed.given_trajectory.positions.T
+            ],
+            1,
         )
         at.append(link_poses(placed, joints)[:, -1, :3, 3])
     assert np.linalg.norm(at[1] - at[0], axis=1).max() <= error.far_between

@@ -71,7 +71,7 @@ def chain():
 
 def test_rates_of_a_tool_are_those_of_differences():
     placed = chain()
-    tool, at = tool_of(placed, "l5"), placed.asked.positions
+    tool, at = tool_of(placed, "l5"), placed.given_trajectory.positions
     rates = tool.poses_and_rates(at)[1]
     for column in range(3):
         step = np.eye(3)[column] * 1e-6

@@ -99,7 +99,7 @@ def test_a_sample_is_that_at_or_before_a_time_of_the_run():
 
 
 def test_a_trajectory_of_no_file_has_no_row(run):
-    given = run.record.case.robots[0].asked
+    given = run.record.case.robots[0].given_trajectory
     case = run.record.case.with_trajectory(
         given.times, given.positions, joint_names=given.joint_names
     )

@@ -36,7 +36,7 @@ NEAR_ORIGIN, FAR_OFF = (0.0, 0.0, 0.0), (700.0, -1300.0, 400.0)
 
 def exact_poses(placed_robot: PlacedRobot, step: int) -> dict:
     """Of all links of a robot that stands in the world, at a step."""
-    asked = placed_robot.asked
+    asked = placed_robot.given_trajectory
     values = dict(zip(asked.joint_names, asked.positions[step].tolist(), strict=True))
     return link_poses(placed_robot.robot, values, placed_robot.world_from_base)
 
@@ -191,7 +191,7 @@ def exact_part(case: cl.Case, time: float):
 
 def exact_poses_at(arm: PlacedRobot, time: float) -> dict:
     """Of all links; between samples the joints are interpolated in rational numbers."""
-    asked = arm.asked
+    asked = arm.given_trajectory
     after = int(np.clip(np.searchsorted(asked.times, time), 1, asked.n_steps - 1))
     first, last = (Fraction(float(t)) for t in asked.times[after - 1 : after + 1])
     share = (Fraction(float(time)) - first) / (last - first)

@@ -26,7 +26,7 @@ def finer(case: cl.Case, times: np.ndarray) -> cl.Case:
     """The case with samples at these times of all robots, which move linearly between their own."""
     robots = []
     for robot in case.robots:
-        asked = robot.asked
+        asked = robot.given_trajectory
         columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
         path = Trajectory(times, asked.joint_names, np.stack(columns, axis=1))
         robots.append(replace(robot, trajectory=path))

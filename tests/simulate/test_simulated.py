@@ -109,7 +109,7 @@ def test_gravity_turns_with_a_base_that_turns(tmp_path):
 
 def test_a_table_that_is_followed_faster_is_simulated_faster(tmp_path):
     placed = cart(tmp_path, effort=3.0)
-    asked = placed.asked
+    asked = placed.given_trajectory
     quick = replace(asked, times=asked.times / 2.0)
     (found,) = simulated_motions(
         Case("made", (replace(placed, timing=Timing(start=5.0, rate=2.0)),), (post(),))

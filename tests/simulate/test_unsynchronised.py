@@ -97,7 +97,7 @@ def moments_of(n_steps: int, finer: int) -> np.ndarray:
 
 
 def times_of(case: cl.Case, moments: np.ndarray) -> np.ndarray:
-    times = case.robots[0].asked.times
+    times = case.robots[0].given_trajectory.times
     step = moments[:, 0].astype(int)
     return times[step] + moments[:, 1] * (times[step + 1] - times[step])
 
@@ -126,7 +126,7 @@ def test_against_a_dense_grid_of_both_times(seed, slack, cubic):
 def test_each_step_has_the_least_of_all_steps_in_the_band(seed, away, slack):
     case = two_robots(seed, away=away)
     moments = np.array([(min(i, 7), float(i == 8)) for i in range(9)])
-    times = case.robots[0].asked.times
+    times = case.robots[0].given_trajectory.times
     near = np.abs(times[:, None] - times[None]) <= slack
     every = distances(case, moments, moments, near)
     steps = asked(case, slack).steps
@@ -147,7 +147,7 @@ def test_the_moment_of_an_interval_has_its_upper_bound(cubic, slack):
     found = asked(case, slack)
     for i in range(8):
         moment = found.moment_of(i)
-        times = case.robots[0].asked.times
+        times = case.robots[0].given_trajectory.times
         assert times[i] <= moment.time <= times[i + 1]
         assert abs(moment.time - moment.time_b) <= slack + 1e-12
         assert moment.clearance == pytest.approx(found.intervals.upper_bound[i], abs=1e-9)
@@ -209,7 +209,7 @@ def test_a_thin_plate_that_is_crossed_between_two_steps_is_contact():
 def test_one_robot_may_rest(still):
     case = two_robots(2)
     robots = list(case.robots)
-    resting = robots[still].asked
+    resting = robots[still].given_trajectory
     same = np.repeat(resting.positions[:1], 9, axis=0)
     robots[still] = replace(
         robots[still], trajectory=Trajectory(resting.times, resting.joint_names, same)

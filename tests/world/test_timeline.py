@@ -64,7 +64,7 @@ def test_steps_are_all_samples_and_the_ends_of_windows(seed):
     case = cell(seed)
     times = timeline(case).times
     assert (np.diff(times) > 0.0).all()
-    asked = [placed.timing.run_times(placed.asked.times) for placed in case.robots]
+    asked = [placed.timing.run_times(placed.given_trajectory.times) for placed in case.robots]
     asked += [np.array(carry.window.ends) for carry in case.carries]
     for wanted in asked:
         inside = wanted[(wanted >= times[0]) & (wanted <= times[-1])]

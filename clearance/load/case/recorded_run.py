@@ -46,7 +46,7 @@ def with_recorded(
     with at(f"recorded: {shown}"):
         driven = replace(read, times=Timing(start=offset).run_times(read.times))
         resting = placed.fixed_positions
-        found = recording_of(shown, offset, driven, placed.asked, placed.timing, resting)
+        found = recording_of(shown, offset, driven, placed.given_trajectory, placed.timing, resting)
         budget = _with_tracking(case.tolerance or Budget(), placed, found)
     robots = [*case.robots]
     robots[i_robot] = _as_driven(placed, driven, found, str(path))

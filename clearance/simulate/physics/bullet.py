@@ -100,7 +100,7 @@ def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) times [s] of the trajectory, (n, k) positions and (n, k) rates asked for at each simulation step."""
-    trajectory, rate = placed.asked, placed.timing.rate
+    trajectory, rate = placed.given_trajectory, placed.timing.rate
     start, end = trajectory.times[0], trajectory.times[-1]
     n_steps = int(np.ceil(((end - start) / rate + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
     times = start + rate * (np.arange(n_steps) / STEPS_PER_SECOND)

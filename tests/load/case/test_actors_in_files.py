@@ -20,7 +20,7 @@ def test_robots_of_one_file_share_their_bodies(tmp_path):
     left, right = load_cell(tmp_path).robots
     assert (left.robot.name, right.robot.name) == ("left", "right")
     assert left.robot.bodies is right.robot.bodies
-    assert left.asked.times.tolist() == [0, 0.5, 1] and right.trajectory is None
+    assert left.given_trajectory.times.tolist() == [0, 0.5, 1] and right.trajectory is None
     assert right.fixed_positions == {"shoulder": 0.2}
     assert right.world_from_base[:3, 3].tolist() == [6, 0, 0]
 
@@ -94,7 +94,7 @@ TIMED = "trajectory: {file: path.csv, start: 0.5, rate: 2, after: loop}"
 )
 def test_a_trajectory_stands_at_the_top_or_in_its_robot(tmp_path, case):
     placed = load_small(tmp_path, case).robots[0]
-    assert placed.timing == Timing(0.5, 2, "loop") and placed.asked.n_steps == 3
+    assert placed.timing == Timing(0.5, 2, "loop") and placed.given_trajectory.n_steps == 3
 
 
 def test_one_robot_may_be_named_and_padded(tmp_path):

@@ -28,7 +28,7 @@ def test_a_cell_with_a_trajectory_is_the_case_with_it(folder):
         case.name, case.limits, case.notes, case.notices)  # fmt: skip
     assert {s.path for s in made.sources} == {
         s.path.replace("case.yaml", "cell.yaml") for s in case.sources}  # fmt: skip
-    one, other = made.robots[0].asked, case.robots[0].asked
+    one, other = made.robots[0].given_trajectory, case.robots[0].given_trajectory
     assert one.joint_names == other.joint_names and (one.positions == other.positions).all()
 
 

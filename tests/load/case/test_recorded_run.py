@@ -96,7 +96,10 @@ def test_its_errors_become_the_tracking(tmp_path):
     assert joints["shoulder"].tracking == pytest.approx(0.06 + 0.238 / 3 - 0.1)
     assert joints["lift"].tracking == pytest.approx(0.01 - 0.006 - 0.004 / 3)
     assert found.tolerance.sources == ("tracking: the greatest errors of the run run.csv",)
-    assert found.robots[0].asked.n_steps == 4 and found.robots[0].recording.commanded.n_steps == 3
+    assert (
+        found.robots[0].given_trajectory.n_steps == 4
+        and found.robots[0].recording.commanded.n_steps == 3
+    )
     told = " | ".join(found.notes)
     assert (
         "recorded run run.csv: held against what was asked from 0.000 to 2.000 s; its clock is taken"
