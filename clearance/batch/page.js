@@ -15,7 +15,7 @@
     b: data.b.map((i) => text(data.bodies, i)),
     rule: data.rule.map((i) => text(data.rules, i)),
   };
-  let order = [], sortedBy = null, descending = false, chosen = -1;
+  let order = [], sortedBy = "status", descending = true, chosen = -1;
 
   const fill = (select, values) => {
     for (const value of values) select.append(new Option(value, value));
@@ -36,16 +36,21 @@
 
   function compare(i, j) {
     const one = columns[sortedBy][i], other = columns[sortedBy][j];
-    if (one === other) return i - j;
+    if (one === other) return sortedBy === "status" ? leastFirst(i, j) : i - j;
     if (one === null) return 1;
     if (other === null) return -1;
     return (one < other ? -1 : 1) * (descending ? -1 : 1);
   }
 
+  function leastFirst(i, j) {
+    const one = data.clearance[i], other = data.clearance[j];
+    return one === null || other === null ? i - j : one - other || i - j;
+  }
+
   function arrange() {
     order = [];
     for (let i = 0; i < n; i++) if (isShown(i)) order.push(i);
-    if (sortedBy) order.sort(compare);
+    order.sort(compare);
     byId("space").style.height = `${order.length * height}px`;
     byId("shown").textContent = `${order.length.toLocaleString("en")} of ${n.toLocaleString("en")} cases`;
     draw();
@@ -96,10 +101,10 @@
     const tag = cell("");
     const badge = document.createElement("b");
     badge.className = `tag ${status}`;
-    badge.textContent = status;
+    badge.textContent = data.waived[i] ? `${status}, waived` : status;
     tag.append(badge);
     made.append(
-      cell(data.names[i]), tag, cell(shown(data.clearance[i], 1), "number"), cell(shown(data.bound[i], 1), "number"),
+      cell(data.names[i]), tag, cell(shown(data.clearance[i], 3), "number"), cell(shown(data.bound[i], 3), "number"),
       cell(shown(data.time[i], 3), "number"), cell(columns.a[i]), cell(columns.b[i]), cell(columns.rule[i]), curve(i),
     );
     made.addEventListener("click", () => choose(i));

@@ -61,6 +61,7 @@ def page_data(answer: BatchAnswer, place: Path) -> Members:
     yield "rules", [_json(rules.texts)]
     yield "reasons", rows.listed(lambda found: [lines or [] for lines in found], "reasons")
     yield "beside", rows.listed(lambda *both: [*map(_beside, *both)], "warnings", "waived")
+    yield "waived", rows.listed(lambda found: [int(bool(lines)) for lines in found], "waived")
     yield "levels", rows.listed(_levels, "fail", "warn")
     yield "curves", _base64(map(_curves, rows.parts("curve", "warn")))
     yield "n_curve", [_json(CURVE)]

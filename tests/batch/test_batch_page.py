@@ -50,9 +50,31 @@ def shown(page, column=0):
     return page.run(cells)
 
 
+def test_what_fails_stands_first(page):
+    assert set(shown(page, 1)) == {"error"}
+    page.run("document.getElementById('view').scrollTop = 32 * 1700")
+    page.settle()
+    assert set(shown(page, 1)) == {"contact"}
+    page.run("document.getElementById('view').scrollTop = 0")
+    page.settle()
+
+
+def test_lengths_are_not_rounded_up(page):
+    """4.9999 mm shown as 5.0 would be taken for kept."""
+    page.run("document.querySelector('[data-key=bound]').click()")
+    page.settle()
+    told = page.run("JSON.parse(document.getElementById('data').textContent)")
+    number = {name: i for i, name in enumerate(told["names"])}
+    rows = [(number[name], text) for name, text in zip(shown(page), shown(page, 3), strict=True)]
+    known = [(told["bound"][i], text) for i, text in rows if told["bound"][i] is not None]
+    assert known and all(float(text) <= bound for bound, text in known)
+    assert {len(text.partition(".")[2]) for _, text in known} == {3}
+
+
 def test_only_what_is_in_view_is_drawn(page):
     assert page.run("document.getElementById('shown').value") == "10,000 of 10,000 cases"
     assert 10 < page.run("document.querySelectorAll('.row').length") < 60
+    page.run("document.querySelector('[data-key=name]').click()")
     page.run("document.getElementById('view').scrollTop = 32 * 9000")
     page.settle()
     assert "it's 09000" in shown(page)
@@ -63,7 +85,7 @@ def test_only_what_is_in_view_is_drawn(page):
 def test_it_sorts_by_a_column(page):
     page.run("document.querySelector('[data-key=clearance]').click()")
     page.settle()
-    assert set(shown(page, 2)) == {"0.0"} and set(shown(page, 1)) == {"contact"}
+    assert set(shown(page, 2)) == {"0.000"} and set(shown(page, 1)) == {"contact"}
     page.run("document.querySelector('[data-key=clearance]').click()")
     page.settle()
     assert set(shown(page, 1)) == {"clear"}

@@ -100,6 +100,7 @@ def test_what_is_waived_stays_in_sight(folder):
     (folder / "waivers.yaml").write_text(waiver())
     assert batch("--quiet") == 0
     row = pq.read_table(folder / "store" / "cases.parquet").to_pylist()[2]
+    assert '"waived": [0, 0, 1]' in (folder / "store" / "batch.html").read_text()
     assert row["text"] == "clear with 1 waiver" and "39.99 mm" in row["waived"][0]
     assert row["waivers"] == ["waiver slider - wall (waivers.yaml: waivers[0])"]
     (told,) = valid_suite(folder / "store" / "junit.xml").iter("system-out")
