@@ -13,6 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
+MOST_NAMES, NEAREST_NAMES = 40, 5
+"""Valid names that a message lists in full, and those that it lists of more."""
+
+
 def shown(text: str) -> str:
     """The text with everything escaped that a terminal would not show as it is."""
     if text.isprintable():
@@ -160,9 +164,12 @@ def unwritable(place: Path) -> Iterator[None]:
 
 
 def nearest_name(given: str, valid: Iterable[str]) -> str:
-    """The remedy for a misspelt name: the nearest valid one, or the list of all."""
+    """The remedy for a misspelt name: the nearest valid one, or the list of all, of many the nearest."""
     names = sorted(valid)
     close = difflib.get_close_matches(given, names, n=1, cutoff=0.6)
     if close:
         return f"did you mean {close[0]!r}?"
+    if len(names) > MOST_NAMES:
+        nearest = difflib.get_close_matches(given, names, n=NEAREST_NAMES, cutoff=0.0)
+        return f"valid are {len(names):,} names, the nearest: {', '.join(nearest)}"
     return f"valid: {', '.join(names)}" if names else "there are none"

@@ -8,9 +8,11 @@ written of it (`output`).
 from __future__ import annotations
 
 import heapq
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import field
 from functools import cached_property
+from itertools import zip_longest
+from operator import itemgetter
 from typing import Any
 
 import pyarrow as pa
@@ -30,7 +32,11 @@ STATUSES = ("clear", "near", STALE, NOT_PROVEN, "violated", "contact", "suspect"
 """As a case's status can be, the better before the worse."""
 
 MOST_WORST = 10
-"""Failing cases that a summary has in full."""
+"""Failing cases that a summary names."""
+
+
+_Standing = tuple[tuple[float, int], dict[str, Any]]
+"""Clearance and number of a case, and its row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,8 +109,10 @@ class BatchAnswer:
 
     @property
     def worst(self) -> list[dict[str, Any]]:
-        """The first of the cases that do not pass, the worst first: by exit code, then by clearance."""
-        return [row for _, row in self._summary.worst]
+        """Some of the cases that do not pass: the first of each status in turn, so that none hides another; the worst
+        status first, then by clearance.
+        """
+        return self._summary.listed
 
 
 @dataclass(eq=False)
@@ -118,7 +126,7 @@ class _Summary:
     n_warned: int = 0
     n_failing: int = 0
     least: dict[str, Any] | None = None
-    worst: list[tuple[tuple[int, float, int], dict[str, Any]]] = field(default_factory=list)
+    worst: dict[str, list[_Standing]] = field(default_factory=dict)
     _n: int = 0
 
     COLUMNS = (
@@ -135,6 +143,15 @@ class _Summary:
         "warnings",
         "waived",
     )
+
+    @property
+    def listed(self) -> list[dict[str, Any]]:
+        """What `BatchAnswer.worst` says."""
+        statuses = [status for status in reversed(STATUSES) if status in self.worst]
+        turns = zip_longest(*(self.worst[status] for status in statuses))
+        taken = [one for turn in turns for one in turn if one is not None][:MOST_WORST]
+        by_status = sorted(taken, key=lambda one: statuses.index(one[1]["status"]))
+        return [row for _, row in by_status]
 
     def add(self, part: pa.Table) -> None:
         """Takes some rows in, which come after those before."""
@@ -158,10 +175,19 @@ class _Summary:
         failing = [i for i, code in enumerate(exit_code) if code]
         self.n_failing += len(failing)
         self.exit_code = max([self.exit_code, *(exit_code[i] for i in failing)])
-        standing = [(-exit_code[i], clearance[i] or 0.0, self._n + i) for i in failing]
-        least = heapq.nsmallest(MOST_WORST, standing)
-        found = [*self.worst, *((one, _row(part, one[2] - self._n)) for one in least)]
-        self.worst = sorted(found, key=lambda pair: pair[0])[:MOST_WORST]
+        for status, numbers in _by_status(part, failing).items():
+            standing = [(clearance[i] or 0.0, self._n + i) for i in numbers]
+            least = heapq.nsmallest(MOST_WORST, standing)
+            found = [(one, _row(part, one[1] - self._n)) for one in least]
+            before = self.worst.get(status, [])
+            self.worst[status] = sorted([*before, *found], key=itemgetter(0))[:MOST_WORST]
+
+
+def _by_status(part: pa.Table, numbers: list[int]) -> dict[str, list[int]]:
+    statuses, found = part["status"].to_pylist(), defaultdict[str, list[int]](list)
+    for i in numbers:
+        found[statuses[i]].append(i)
+    return found
 
 
 def _row(part: pa.Table, i: int) -> dict[str, Any]:

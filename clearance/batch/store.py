@@ -149,11 +149,20 @@ class Store:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Alone among the batches that write over something here."""
+        """Alone among the batches that write over something here.
+
+        Raises:
+            Unwritable: there is no way to write here.
+        """
         from filelock import FileLock
 
-        with FileLock(self.place / _LOCK, fallback_to_soft=False):
+        lock = FileLock(self.place / _LOCK, fallback_to_soft=False)
+        with unwritable(self.place):
+            lock.acquire()
+        try:
             yield
+        finally:
+            lock.release()
 
     def _names(self) -> list[str]:
         """All segments, the latest generation first."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import click
 
 from clearance.batch.answer import BatchAnswer
@@ -79,8 +81,14 @@ def _print_facts(answer: BatchAnswer) -> None:
 
 def _print_worst(answer: BatchAnswer) -> None:
     for row in answer.worst:
-        reason = row["reasons"][0] if row["reasons"] else row["text"]
-        click.echo(shown(f"  {row['status']:<10}  {row['case']}: {reason}"))
+        click.echo(shown(f"  {row['status']:<10}  {row['case']}: {_reason(row)}"))
     if answer.n_failing > len(answer.worst):
         n_more = answer.n_failing - len(answer.worst)
         click.echo(f"              and {n_more:,} more, see the page")
+
+
+def _reason(row: dict[str, Any]) -> str:
+    """Why a case does not pass: of suspect input what is suspect, whatever is measured with it."""
+    reasons = row["reasons"] or [row["text"]]
+    decisive = (one for one in reasons if one.startswith(f"{row['status']} "))
+    return next(decisive, reasons[0])

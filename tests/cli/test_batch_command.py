@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.cli import run
-from tests.batch.batches import write_cell
+from tests.batch.batches import write_cell, write_path
 
 
 @pytest.fixture
@@ -80,6 +80,39 @@ def test_bad_input_among_others_is_one_only_if_asked(folder, capsys):
     assert batch("batch.yaml", "--out", "store") == 1
     assert "  error       t002: cell.yaml: trajectory.file: t002.csv" in capsys.readouterr().out
     assert batch("batch.yaml", "--out", "store", "--strict") == 2
+
+
+def test_no_kind_of_failure_hides_another(folder, capsys):
+    """A dozen contacts, and a table that was cut off, and degrees for radians: each is named."""
+    for i in range(3, 15):
+        write_path(folder / f"t{i:03d}.csv", -0.01)
+    (folder / "t015.csv").write_text("time,rail\n0,0\n1,")
+    (folder / "t016.csv").write_text("time,rail\n0,0\n1,-90\n")
+    assert batch("batch.yaml", "--out", "store") == 2
+    lines = capsys.readouterr().out.splitlines()
+    failing = [line.split() for line in lines if line.startswith("  ") and ": " in line[14:]]
+    listed = [words[0] for words in failing if words[0] in ("error", "suspect", "contact", "violated")]
+    assert listed == ["error", "suspect", *["contact"] * 7, "violated"]
+    assert any("  suspect     t016: suspect " in line for line in lines)
+    assert run(["batch", "status", "store"]) == 2
+    assert "  error       t015: " in capsys.readouterr().out
+
+
+def test_a_store_that_cannot_be_written_is_one_line(folder, capsys, monkeypatch):
+    batch("batch.yaml", "--out", "store", "--quiet")
+    (folder / "store" / ".lock").unlink()
+    (folder / "store" / ".lock").mkdir()
+    assert batch("batch.yaml", "--out", "store") == 2
+    told = capsys.readouterr().err
+    assert told.startswith("error: store: cannot write here: ") and told.count("\n") == 1
+
+
+def test_of_many_names_the_nearest_are_told(folder, capsys):
+    write_cell(folder, [0.5] * 60)
+    batch("batch.yaml", "--out", "store", "--quiet")
+    assert run(["view", "store", "weld"]) == 2
+    told = capsys.readouterr().err
+    assert "there is no case 'weld'; valid are 60 names, the nearest: t" in told and len(told) < 200
 
 
 def test_status_tells_what_is_missing(folder, capsys):
