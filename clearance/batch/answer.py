@@ -21,7 +21,12 @@ from clearance.batch.case_rows import VIOLATED, CaseRows, StoredRows
 from clearance.batch.cases import Cases
 from clearance.batch.outcome import Outcome
 from clearance.batch.rows import ERROR
-from clearance.batch.shared_waivers import any_of_cells, stale_waivers, stale_waivers_of_cells
+from clearance.batch.shared_waivers import (
+    any_of_cells,
+    expired_waivers,
+    stale_waivers,
+    stale_waivers_of_cells,
+)
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
 from clearance.late_dataclass import dataclass
@@ -201,13 +206,17 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
         strict: a case that cannot be read or answered is bad input of the batch.
     """
     rows = StoredRows(outcome, store, outcome.tried, strict)
-    return BatchAnswer(rows, _stale(outcome, rows) if outcome.is_answered else ())
+    return BatchAnswer(rows, _stale(outcome, rows) if outcome.whole else ())
 
 
 def _stale(outcome: Outcome, rows: StoredRows) -> tuple[str, ...]:
-    """What is wrong with waivers that cases share; rows are read only where there are some."""
+    """What is wrong with waivers that cases share; rows are read only where there are some. While a case has no row
+    it may be the one that needs a waiver: then only those that are expired are wrong.
+    """
     items = outcome.items
     assert isinstance(items, Cases)  # a part has no answer
+    if not outcome.is_answered:
+        return expired_waivers(items, outcome.waivers)
     if not outcome.waivers and not any_of_cells(items):
         return ()
     needed = (

@@ -6,6 +6,7 @@ Not for: what they waive in a case (`findings.judgement`).
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from datetime import date
 
@@ -61,11 +62,30 @@ def stale_waivers(
     """
     told = []
     for waiver in given:
-        if today is not None and waiver.is_expired(today):
-            told.append(f"{waiver} has expired on {waiver.until}")
+        if expired := _expired(waiver, today):
+            told.append(expired)
         elif str(waiver) not in needed:
             told.append(f"{waiver} is not needed: {_why_not(items, waiver)}")
     return tuple(told)
+
+
+def expired_waivers(items: Cases, given: Iterable[Waiver]) -> tuple[str, ...]:
+    """Of the waivers that cells name, and of those given beside, why the expired ones fail a batch, one line each; a
+    cell that cannot be read fails its cases by itself.
+    """
+    told = []
+    for file in items.cells:
+        with suppress(ClearanceError):
+            day = items.of_cell(file)[0].options.day
+            told += [_expired(waiver, day) for waiver in waivers_of_cell(file)]
+    day = items[0].options.day if items else None
+    told += [_expired(waiver, day) for waiver in given]
+    return tuple(dict.fromkeys(line for line in told if line))
+
+
+def _expired(waiver: Waiver, today: date | None) -> str:
+    gone = today is not None and waiver.is_expired(today)
+    return f"{waiver} has expired on {waiver.until}" if gone else ""
 
 
 def _why_not(items: Sequence[Item], waiver: Waiver) -> str:
