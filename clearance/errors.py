@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-
 MOST_NAMES, NEAREST_NAMES = 40, 5
 """Valid names that a message lists in full, and those that it lists of more."""
 

@@ -114,8 +114,8 @@ class BatchAnswer:
 
     @property
     def worst(self) -> list[dict[str, Any]]:
-        """Some of the cases that do not pass: the first of each status in turn, so that none hides another; the worst
-        status first, then by clearance.
+        """Some of the cases that do not pass: the first of each status in turn, so that none hides another; the
+        worst status first, then by clearance.
         """
         return self._summary.listed
 
@@ -210,8 +210,8 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
 
 
 def _stale(outcome: Outcome, rows: StoredRows) -> tuple[str, ...]:
-    """What is wrong with waivers that cases share; rows are read only where there are some. While a case has no row
-    it may be the one that needs a waiver: then only those that are expired are wrong.
+    """What is wrong with waivers that cases share; rows are read only where there are some. While a case has no
+    row it may be the one that needs a waiver: then only those that are expired are wrong.
     """
     items = outcome.items
     assert isinstance(items, Cases)  # a part has no answer

@@ -12,8 +12,11 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from clearance.findings.doubts import doubts_of
 from clearance.findings.finding import Finding
+from clearance.findings.findings_file import conditions_text
 from clearance.findings.judgement import judgement_of
+from clearance.findings.measurement_conditions import conditions_of
 from clearance.findings.of_record import why_incomplete
 from clearance.report.tolerances import least_expected
 from clearance.run import Run
@@ -53,9 +56,13 @@ FINDING = pa.schema(
         ("point_b", pa.list_(pa.float64())),
         ("text", pa.string()),
         ("waived", pa.string()),
+        ("accepted", pa.bool_()),
     ]
 )
 """What is kept of a `findings.finding.Finding`; of what waives it, the reason and by whom."""
+
+DOUBT = pa.struct([("kind", pa.string()), ("about", pa.string()), ("text", pa.string())])
+"""A `findings.doubts.Doubt`."""
 
 MOST_FINDINGS = 200
 """Of one case, the worst."""
@@ -90,6 +97,8 @@ VERDICT = pa.schema(
         ("curve", pa.list_(pa.float32())),
         ("n_findings", pa.int64()),
         ("incomplete", pa.string()),
+        ("conditions", pa.string()),
+        ("doubts", pa.list_(DOUBT)),
         ("findings", pa.list_(pa.struct(FINDING))),
     ]
 )
@@ -133,6 +142,10 @@ def row_of(run: Run) -> dict[str, Any]:
         "curve": curve_of(record),
         "n_findings": len(findings),
         "incomplete": _incomplete(record, len(findings)),
+        "conditions": conditions_text(conditions_of(record)),
+        "doubts": [
+            {"kind": one.kind, "about": one.about, "text": one.text} for one in doubts_of(record)
+        ],
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
 

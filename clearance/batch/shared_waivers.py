@@ -70,8 +70,8 @@ def stale_waivers(
 
 
 def expired_waivers(items: Cases, given: Iterable[Waiver]) -> tuple[str, ...]:
-    """Of the waivers that cells name, and of those given beside, why the expired ones fail a batch, one line each; a
-    cell that cannot be read fails its cases by itself.
+    """Of the waivers that cells name, and of those given beside, why the expired ones fail a batch, one line each;
+    a cell that cannot be read fails its cases by itself.
     """
     told = []
     for file in items.cells:

@@ -20,6 +20,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from clearance.batch.known_hashes import KnownHashes
+from clearance.batch.mark import MARK
 from clearance.batch.row_index import RowIndex
 from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
@@ -27,7 +28,6 @@ from clearance.errors import Incomplete, Unwritable, unwritable
 from clearance.late_dataclass import dataclass
 from clearance.report.folder import write_file, written_file
 
-MARK = "store.json"
 FORMAT = 1
 _SEGMENTS, _HASHES, _LOCK = "segments", "files.parquet", ".lock"
 _INDEX = ("key", "file", "inputs")
@@ -230,7 +230,9 @@ def _require_store(place: Path, make: bool) -> None:
         found = None
     if found != FORMAT:
         raise Unwritable(
-            f"is a store of format {found!r}", where=str(place), valid="one of this version's"
+            f"is a store of format {found!r}",
+            where=str(place),
+            valid=f"one of format {FORMAT}, or a new folder",
         )
 
 

@@ -61,13 +61,16 @@ def print_comparison(comparison: Comparison) -> None:
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write a page with both curves here.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
-    """Compares two runs of a case: report folders, or their findings.json.
+    """Compares two runs of a case, or two batches: report folders, their findings.json, or stores.
 
     Says what is new, worse, unchanged, better, gone, or not comparable and why. Exit code: 1 if B
     breaks a rule, without a waiver, that it is not known to have broken as much in A, if its input
     is suspect, not checked or warned of as that of A was not, or if less is proven or measured;
-    else 0. 2 bad input, 4 if the run into A or B was interrupted.
+    else 0. 2 bad input, 4 if the run into A or B was interrupted. Of two stores every case is
+    compared with the one of its name; one that A has and B has not is one of which less is known.
     """
+    if _are_stores(before, now):
+        return _compare_batches(before, now, out, quiet)
     from clearance.cli.run_rows import require_finished
     from clearance.findings.comparison import compared
     from clearance.findings.findings_file import read_findings
@@ -80,6 +83,34 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     if not quiet:
         print_comparison(comparison)
     return ExitCode.CLEAR if comparison.passed else ExitCode.VIOLATED
+
+
+def _are_stores(before: Path, now: Path) -> bool:
+    """True if both are stores.
+
+    Raises:
+        click.UsageError: one is.
+    """
+    from clearance.batch.mark import is_store
+
+    both = [is_store(place) for place in (before, now)]
+    if any(both) and not all(both):
+        raise click.UsageError("one is a store, the other is a run; two of a kind can be compared")
+    return all(both)
+
+
+def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
+    from clearance.batch.compared import compared_batches
+    from clearance.cli.batch_comparison import print_batch_comparison
+
+    if out is not None:
+        raise click.UsageError(
+            "--out is of two runs; `clearance view STORE CASE` writes that of a case, of either store"
+        )
+    found = compared_batches(before, now)
+    if not quiet:
+        print_batch_comparison(found)
+    return ExitCode.CLEAR if found.passed else ExitCode.VIOLATED
 
 
 def _write(comparison: Comparison, before: Path, now: Path, out: Path) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict
+from functools import lru_cache
 from pathlib import Path
 
 from clearance.errors import BadInput, BadSyntax
@@ -78,6 +79,20 @@ def findings_text(found: FindingList) -> str:
         if not finding["accepted"]:
             del finding["accepted"]
     return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+
+@lru_cache(maxsize=64)
+def conditions_text(measured: MeasurementConditions) -> str:
+    """Measurement conditions as JSON, as many runs of one cell share them."""
+    return json.dumps(asdict(measured), sort_keys=True, allow_nan=False)
+
+
+@lru_cache(maxsize=64)
+def conditions_in(text: str) -> MeasurementConditions:
+    """The conditions that `conditions_text` wrote."""
+    from pydantic import TypeAdapter
+
+    return TypeAdapter(MeasurementConditions).validate_json(text, strict=True)
 
 
 def read_findings(path: str | Path) -> FindingList:

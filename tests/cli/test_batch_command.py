@@ -91,7 +91,9 @@ def test_no_kind_of_failure_hides_another(folder, capsys):
     assert batch("batch.yaml", "--out", "store") == 2
     lines = capsys.readouterr().out.splitlines()
     failing = [line.split() for line in lines if line.startswith("  ") and ": " in line[14:]]
-    listed = [words[0] for words in failing if words[0] in ("error", "suspect", "contact", "violated")]
+    listed = [
+        words[0] for words in failing if words[0] in ("error", "suspect", "contact", "violated")
+    ]
     assert listed == ["error", "suspect", *["contact"] * 7, "violated"]
     assert any("  suspect     t016: suspect " in line for line in lines)
     assert run(["batch", "status", "store"]) == 2

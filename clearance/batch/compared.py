@@ -1,0 +1,193 @@
+"""Two batches held against each other, case by case: what is new, worse, better, gone or not comparable.
+
+Each case's findings are compared as those of two runs are (`findings.comparison`); beside them stand cases that
+only one of the batches has, and cases without an answer. Not for: how it is shown (`cli.batch_comparison`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+
+from clearance.batch.rows import ERROR
+from clearance.batch.tables import CASES, FINDINGS, written_answer
+from clearance.errors import BadInput, Incomplete
+from clearance.findings.comparison import Comparison, FindingChange, compared
+from clearance.findings.doubts import Doubt
+from clearance.findings.finding import AppliedWaiver, Finding
+from clearance.findings.findings_file import FindingList, conditions_in
+from clearance.late_dataclass import dataclass
+
+_COLUMNS = (
+    "case",
+    "status",
+    "exit_code",
+    "text",
+    "n_findings",
+    "incomplete",
+    "conditions",
+    "doubts",
+)
+
+
+@dataclass(frozen=True)
+class ComparedCase:
+    """A case of one or both of two batches.
+
+    Attributes:
+        comparison: of its findings; None where one of the two has no answer of it.
+        why: then, what became of it, one line.
+        alarms: then, whether it fails as it was not known to do, or is not known any more.
+    """
+
+    name: str
+    comparison: Comparison | None = None
+    why: str = ""
+    alarms: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing of it alarms."""
+        return self.comparison.passed if self.comparison is not None else not self.alarms
+
+
+@dataclass(frozen=True, eq=False)
+class BatchComparison:
+    """Two batches held against each other.
+
+    Attributes:
+        cases: in the order of now, then those that only before has.
+        stale: what is wrong now with waivers that cases share, and was not before, one line each.
+    """
+
+    cases: tuple[ComparedCase, ...]
+    stale: tuple[str, ...] = ()
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """How many findings there are of each change, of all cases."""
+        found: Counter[str] = Counter()
+        for one in self.cases:
+            found.update(one.comparison.counts if one.comparison is not None else {})
+        return {str(change): found[change] for change in FindingChange if found[change]}
+
+    @property
+    def failing(self) -> tuple[ComparedCase, ...]:
+        """The cases that alarm, or of which less is known."""
+        return tuple(one for one in self.cases if not one.passed)
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing alarms, and as much is known as before."""
+        return not (self.failing or self.stale)
+
+
+def compared_batches(before: Path, now: Path) -> BatchComparison:
+    """The answer of a store held against that of another one.
+
+    Raises:
+        Incomplete: one has no answer. BadInput: one's is of a version that compared none.
+    """
+    old, new = _Answer.of(before), _Answer.of(now)
+    cases = [_compared_case(name, old, new) for name in new.numbers]
+    gone = [
+        ComparedCase(name, None, "gone: the batch has no such case any more", True)
+        for name in old.numbers
+        if name not in new.numbers
+    ]
+    stale = tuple(line for line in new.stale if line not in old.stale)
+    return BatchComparison((*cases, *gone), stale)
+
+
+def _compared_case(name: str, old: _Answer, new: _Answer) -> ComparedCase:
+    now = new.row(name)
+    before = old.row(name) if name in old.numbers else None
+    fails = bool(now["exit_code"])
+    if now["status"] == ERROR:
+        is_known = (
+            before is not None and before["status"] == ERROR and before["text"] == now["text"]
+        )
+        what = "no answer, as before" if is_known else "no answer"
+        return ComparedCase(name, None, f"{what}: {now['text']}", not is_known)
+    if before is None:
+        return ComparedCase(name, None, f"new case: {now['text']}", fails)
+    if before["status"] == ERROR:
+        return ComparedCase(name, None, f"answered, and was not before: {now['text']}", fails)
+    return ComparedCase(name, compared(old.list_of(name), new.list_of(name)))
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """The tables of a store.
+
+    Attributes:
+        numbers: of the cases, by name. begins: of each case's findings, and the end of the last.
+    """
+
+    cases: pa.Table
+    findings: pa.Table
+    stale: tuple[str, ...]
+    numbers: dict[str, int] = field(default_factory=dict)
+    begins: np.ndarray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+
+    @staticmethod
+    def of(place: Path) -> _Answer:
+        """That of a store's folder."""
+        answer = written_answer(place)
+        if answer is None or not (place / FINDINGS).is_file():
+            raise Incomplete(
+                "this batch has no answer yet",
+                where=str(place),
+                valid="`clearance batch` without --shard writes it once all cases are tried",
+            )
+        if "conditions" not in pq.read_schema(place / CASES).names:
+            raise BadInput(
+                "an answer of another version",
+                where=str(place),
+                valid="the same `clearance batch` writes it anew",
+            )
+        cases = pq.read_table(place / CASES, columns=[*_COLUMNS])
+        findings = pq.read_table(place / FINDINGS)
+        names = cases["case"].to_pylist()
+        whose = pc.index_in(findings["case"], pa.array(names, type=pa.string())).to_numpy()
+        begins = np.searchsorted(whose, np.arange(len(names) + 1))
+        return _Answer(
+            cases, findings, answer.stale, {name: i for i, name in enumerate(names)}, begins
+        )
+
+    def row(self, name: str) -> dict[str, Any]:
+        """The columns of a case."""
+        found: list[dict[str, Any]] = self.cases.slice(self.numbers[name], 1).to_pylist()
+        return found[0]
+
+    def list_of(self, name: str) -> FindingList:
+        """The findings of a case that has an answer, and what is needed to compare them."""
+        row, number = self.row(name), self.numbers[name]
+        begin, end = int(self.begins[number]), int(self.begins[number + 1])
+        findings = tuple(_findings(self.findings.slice(begin, end - begin).to_pylist()))
+        return FindingList(
+            case=name,
+            incomplete=row["incomplete"],
+            not_listed=row["n_findings"] - len(findings),
+            measured=conditions_in(row["conditions"]),
+            doubts=tuple(Doubt(**one) for one in row["doubts"]),
+            findings=findings,
+        )
+
+
+def _findings(rows: list[dict[str, Any]]) -> Iterator[Finding]:
+    for row in rows:
+        waived = row.pop("waived")
+        of = {key: tuple(row[key]) if row[key] else None for key in ("point_a", "point_b")}
+        told = {key: value for key, value in row.items() if key != "case"} | of
+        excuse = None if waived is None else AppliedWaiver(at_least=0.0, reason=waived, by="")
+        yield Finding(**told, waived=excuse)
