@@ -10,9 +10,9 @@ import pytest
 
 from clearance.errors import BadSyntax
 from clearance.geometry import kept_shapes as room
-from clearance.geometry import open_faces, tree
+from clearance.geometry import open_faces, polyhedron, tree
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes import box, cylinder
+from clearance.geometry.shapes import box, cylinder, pipe
 from clearance.kept_files import cache_root
 from clearance.load import mesh_store
 from clearance.load.files.input_files import InputFiles
@@ -150,6 +150,24 @@ def test_of_a_whole_surface_nothing_open_is_kept(folder):
 def test_small_shapes_leave_no_file(folder):
     _surface([box((1.0, 1.0, 1.0)), box((1.0, 1.0, 2.0))])
     assert not folder.exists()
+
+
+def _bent(height=0.5, inner_radius=0.04):
+    path = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, height], [0.4, 0.0, 0.5]])
+    return pipe(path=path, bend_radius=0.1, inner_radius=inner_radius, outer_radius=0.05)
+
+
+def test_a_bent_pipe_is_merged_once_and_has_the_same_bits(folder, monkeypatch):
+    made = _bent()
+    assert len(list(folder.glob("bent-*"))) == 1
+    monkeypatch.setattr(polyhedron, "merge_coplanar", None)
+    taken = _bent()
+    for name in ("vertices", "face_starts", "face_vertices"):
+        a, b = getattr(made, name), getattr(taken, name)
+        assert a.dtype == b.dtype and a.tobytes() == b.tobytes() and not b.flags.writeable
+    assert (made.excess, made.volume) == (taken.excess, taken.volume)
+    with pytest.raises(TypeError):
+        _bent(inner_radius=0.03)  # another pipe, which is merged
 
 
 def _stl(folder, name="a.stl", size=1.0):
