@@ -313,16 +313,18 @@ def _within_limit(work: _Sweep, limit: float) -> Measurement:
 def _pair_minima(work: _Sweep, rows: KeptRows, most: int | None) -> Minima:
     """The least of each pair: a first look at few steps, then only what could be nearer.
 
-    If only the nearest pairs are wanted, and as many have been the nearest of a step, what is farther is left out.
+    If only the nearest pairs are wanted, what is farther than as many of them is left out; and if as many have
+    been the nearest of a step, so is the first look.
     """
-    if most is not None:
-        seen = _least_as_nearest(work, rows)
-        if np.isfinite(seen).sum() >= most:
-            within = np.minimum(seen, np.partition(seen, most - 1)[most - 1]) * NOT_LESS
-            return work.aside.least_rows("nearest", range(work.n_steps), within)
     infinite = np.full(work.n_pairs, np.inf)
-    seen = work.aside.least_rows("first", _first_steps(work.n_steps), infinite).clearance
-    return work.least_rows("minima", range(work.n_steps), seen * NOT_LESS)
+    seen = infinite if most is None else _least_as_nearest(work, rows)
+    if most is None or np.isfinite(seen).sum() < most:
+        first = work.aside.least_rows("first", _first_steps(work.n_steps), infinite)
+        seen = np.minimum(seen, first.clearance)
+    if most is None or most >= work.n_pairs:
+        return work.least_rows("minima", range(work.n_steps), seen * NOT_LESS)
+    within = np.minimum(seen, np.partition(seen, most - 1)[most - 1]) * NOT_LESS
+    return work.aside.least_rows("nearest", range(work.n_steps), within)
 
 
 def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:

@@ -37,11 +37,10 @@ def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, c
 
 def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> None:
     lazy, known = runs["steps"].record.pair_minima, runs["pairs"].record.pair_minima
-    first = [
-        lazy[:most] for most in (1, 2, 5, 1000)
-    ]  # before all are known: only these are measured
+    numbers = (1, 2, 5, 20, 60, 1000)
+    first = [lazy[:most] for most in numbers]  # before all are known: only these are measured
     assert list(lazy) == list(known)
-    assert first == [known[:most] for most in (1, 2, 5, 1000)]
+    assert first == [known[:most] for most in numbers]
     every = runs["pairs"].pairs.to_pydict()
     least: dict[tuple[str, str], float] = {}
     for link, obstacle, clearance in zip(
@@ -49,6 +48,25 @@ def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> Non
     ):
         least[link, obstacle] = min(clearance, least.get((link, obstacle), np.inf))
     assert {(m.link, m.obstacle): m.clearance for m in lazy} == least
+
+
+def test_the_nearest_pairs_are_found_without_the_least_of_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Four pairs are the nearest of a step, and five are asked for: of the others only what could be the fifth."""
+    run = cl.check(SCENES / "iiwa_pipe_rack" / "case.yaml", certify=False)
+    real, asked = measure._Sweep.least_rows, {}
+
+    def least_rows(self, name, steps, within):
+        asked[name] = within
+        return real(self, name, steps, within)
+
+    monkeypatch.setattr(measure._Sweep, "least_rows", least_rows)
+    few = run.record.pair_minima[:5]
+    assert list(asked) == ["first", "nearest"]
+    fifth = few[-1].clearance
+    assert fifth <= asked["nearest"].max() < 2.0 * fifth
+    assert few == tuple(run.record.pair_minima)[:5]
 
 
 def test_the_minimum_is_that_of_all_steps(runs: dict[str, cl.Run]) -> None:
