@@ -9,6 +9,7 @@ skipped; boxes and their gaps are integers, so that this is exact as well.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -68,11 +69,14 @@ def fan(corners: list[Point]) -> Fan:
 
 def fans_sq(a: Fan, b: Fan, best: Fraction | None = None) -> Fraction:
     """The squared distance of two fans, or `best` where that is less."""
+    if best is not None and gap_sq(a.box, b.box) >= best:
+        return best
     if _any_pierces(a, b) or _any_pierces(b, a):
         return Fraction(0)
     best = _least(a.corners, b.triangles, lambda x, t: point_triangle_sq(x, *t), best)
     best = _least(b.corners, a.triangles, lambda x, t: point_triangle_sq(x, *t), best)
-    return _least(a.edges, b.edges, lambda e, f: segments_sq(*e, *f), best)
+    edges_a, edges_b = _nearer(a.edges, b.box, best), _nearer(b.edges, a.box, best)
+    return _least(edges_a, edges_b, lambda e, f: segments_sq(*e, *f), best)
 
 
 def box_of(points: Iterable[Point]) -> Box:
@@ -83,20 +87,29 @@ def box_of(points: Iterable[Point]) -> Box:
 
 def gap_sq(one: Box, other: Box) -> int:
     """Squared distance of two boxes: nothing in them is nearer."""
-    total = 0
-    for low, high, other_low, other_high in zip(*one, *other, strict=True):
-        gap = max(other_low - high, low - other_high, 0)
-        total += gap * gap
-    return total
+    (low_x, low_y, low_z), (high_x, high_y, high_z) = one
+    (from_x, from_y, from_z), (to_x, to_y, to_z) = other
+    x = max(from_x - high_x, low_x - to_x, 0)
+    y = max(from_y - high_y, low_y - to_y, 0)
+    z = max(from_z - high_z, low_z - to_z, 0)
+    return x * x + y * y + z * z
+
+
+def _nearer(ones: list, box: Box, best: Fraction) -> list:
+    """Those whose boxes are nearer to a box than `best`."""
+    beyond = math.ceil(best)
+    return [one for one in ones if gap_sq(one[0], box) < beyond]
 
 
 def _least(ones: list, others: list, measure: Callable, best: Fraction | None) -> Fraction:
-    """The least of `best` and all candidates."""
+    """The least of `best` and all candidates; an integer is less than `best` where it is less than its ceiling."""
+    beyond = math.inf if best is None else math.ceil(best)
     for box, one in ones:
         for other_box, other in others:
-            if best is None or gap_sq(box, other_box) < best:
+            if gap_sq(box, other_box) < beyond:
                 found = measure(one, other)
-                best = found if best is None else min(best, found)
+                if best is None or found < best:
+                    best, beyond = found, math.ceil(found)
     return best
 
 

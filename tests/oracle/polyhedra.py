@@ -16,7 +16,7 @@ import numpy as np
 
 from tests.oracle.polygons import Fan, fan, fans_sq
 from tests.oracle.rationals import Point, cross, dot, exact_points, minus, on_grid, posed
-from tests.oracle.simplices import point_triangle_sq, volume
+from tests.oracle.simplices import point_triangle_sq
 
 Faces = Sequence[Sequence[int]]
 
@@ -103,7 +103,7 @@ def contains(
     """
     _, ((x,), grid) = on_grid(exact_points([point]), posed(verts, pose))
     triangles = _triangles(grid, faces)
-    return any(point_triangle_sq(x, *t) == 0 for t in triangles) or _winding(x, triangles) != 0
+    return any(_touches(x, t) for t in triangles) or _winding(x, triangles) != 0
 
 
 def winding_number(
@@ -119,6 +119,13 @@ def winding_number(
     return _winding(x, _triangles(grid, faces))
 
 
+def _touches(x: Point, triangle: tuple[Point, ...]) -> bool:
+    """True if the point lies on the triangle."""
+    axes = zip(x, *triangle, strict=True)
+    is_near = all(min(a, b, c) <= at <= max(a, b, c) for at, a, b, c in axes)
+    return is_near and point_triangle_sq(x, *triangle) == 0
+
+
 def _winding(x: Point, triangles: list[tuple[Point, ...]]) -> int:
     """Signed crossings of rays from x that meet no edge; three rays must agree."""
     crossings = (_crossings(x, direction, triangles) for direction in _directions())
@@ -131,15 +138,22 @@ def _winding(x: Point, triangles: list[tuple[Point, ...]]) -> int:
 def _crossings(x: Point, direction: Point, triangles: list[tuple[Point, ...]]) -> int | None:
     """Crossings outwards less crossings inwards, None if the ray meets an edge or lies in a
     plane."""
-    beyond = (x[0] + direction[0], x[1] + direction[1], x[2] + direction[2])
+    corners = {corner for triangle in triangles for corner in triangle}
+    from_x = {corner: minus(corner, x) for corner in corners}
+    beside = {corner: cross(direction, seen) for corner, seen in from_x.items()}
     total = 0
     for a, b, c in triangles:
+        turns = (
+            dot(beside[a], from_x[b]),
+            dot(beside[b], from_x[c]),
+            dot(beside[c], from_x[a]),
+        )  # six times the volumes of the ray and each edge
+        if min(turns) < 0 < max(turns):
+            continue  # the whole line passes beside the triangle
         normal = cross(minus(b, a), minus(c, a))
-        height = dot(normal, minus(a, x))
-        slope = dot(normal, direction)
-        turns = (volume(x, beyond, a, b), volume(x, beyond, b, c), volume(x, beyond, c, a))
-        if not any(normal) or min(turns) < 0 < max(turns):
-            continue  # no area, or the whole line passes beside the triangle
+        if not any(normal):
+            continue  # no area
+        height, slope = dot(normal, from_x[a]), dot(normal, direction)
         if 0 in turns or slope == 0:
             return None
         if (height > 0) == (slope > 0) and height != 0:
@@ -167,12 +181,13 @@ def _surfaces_sq(fans_a: list[Fan], fans_b: list[Fan], scale: int) -> Fraction:
 
 def _by_lower_bound(
     fans_a: list[Fan], fans_b: list[Fan], scale: int
-) -> Iterable[tuple[int, int, Fraction]]:
+) -> Iterable[tuple[int, int, int]]:
     """All pairs of faces and what their squared distance is not below, least first."""
     bounds = _lower_bounds(fans_a, fans_b, scale)
     for flat in np.argsort(bounds, axis=None, kind="stable"):
         i, j = divmod(int(flat), len(fans_b))
-        yield i, j, Fraction(float(bounds[i, j])) ** 2 * scale**2
+        n, d = float(bounds[i, j]).as_integer_ratio()
+        yield i, j, (n * scale // d) ** 2
 
 
 def _lower_bounds(fans_a: list[Fan], fans_b: list[Fan], scale: int) -> np.ndarray:
@@ -215,14 +230,17 @@ def _triangles(grid: list[Point], faces: Faces) -> list[tuple[Point, ...]]:
 
 def _one_each(points: Sequence, faces: Faces) -> list:
     """One corner of each component; corners at one place are one corner."""
-    parent: dict = {points[int(i)]: points[int(i)] for face in faces for i in face}
+    numbers = {point: i for i, point in enumerate(dict.fromkeys(points))}
+    own = [[numbers[points[int(i)]] for i in face] for face in faces]
+    parent = {i: i for face in own for i in face}
 
-    def top(x):
-        while parent[x] != x:
-            parent[x] = x = parent[parent[x]]
-        return x
+    def top(i):
+        while parent[i] != i:
+            parent[i] = i = parent[parent[i]]
+        return i
 
-    for face in faces:
-        for i in face[1:]:
-            parent[top(points[int(i)])] = top(points[int(face[0])])
-    return sorted({top(x) for x in parent})
+    for first, *others in own:
+        for i in others:
+            parent[top(i)] = top(first)
+    places = list(numbers)
+    return sorted(places[i] for i in {top(i) for i in parent})

@@ -27,8 +27,20 @@ def posed(
     exact = exact_points(points)
     if pose is None:
         return exact
+    scale, (grid,) = on_grid(exact)
+    turn_scale, (*rows, shift) = _whole_rows(pose)
+    step = scale * turn_scale
+    return [
+        tuple(Fraction(dot(row, v) + t * scale, step) for row, t in zip(rows, shift, strict=True))
+        for v in grid
+    ]
+
+
+def _whole_rows(pose: Iterable[Iterable]) -> tuple[int, list[Point]]:
+    """A scale, and multiplied by it the rows of R and, after them, t."""
     rows = [[_fraction(entry) for entry in row] for row in list(pose)[:3]]
-    return [tuple(r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + r[3] for r in rows) for v in exact]
+    scale, (turn, (shift,)) = on_grid([tuple(row[:3]) for row in rows], [tuple(r[3] for r in rows)])
+    return scale, [*turn, shift]
 
 
 def on_grid(*groups: list[tuple[Fraction, ...]]) -> tuple[int, list[list[Point]]]:

@@ -40,20 +40,22 @@ def point_segment_sq(x: Point, a: Point, b: Point) -> Fraction:
 
 @once
 def segments_sq(p0: Point, p1: Point, q0: Point, q1: Point) -> Fraction:
-    """Squared distance of two segments: both feet inside, or one of the four ends takes part."""
-    ends = min(
-        point_segment_sq(p0, q0, q1),
-        point_segment_sq(p1, q0, q1),
-        point_segment_sq(q0, p0, p1),
-        point_segment_sq(q1, p0, p1),
-    )
+    """Squared distance of two segments: both feet inside, or one of the four ends takes part.
+
+    Where both feet are inside, nothing on the two lines is nearer.
+    """
     u, v, r = minus(p1, p0), minus(q1, q0), minus(q0, p0)
     uu, uv, vv, ur, vr = dot(u, u), dot(u, v), dot(v, v), dot(u, r), dot(v, r)
     det = uu * vv - uv * uv  # = |u x v|^2, zero for parallel lines and for points
     foot_p, foot_q = ur * vv - vr * uv, ur * uv - vr * uu  # both times 1 / det
     if det and 0 <= foot_p <= det and 0 <= foot_q <= det:
-        return min(ends, Fraction(dot(r, cross(u, v)) ** 2, det))
-    return ends
+        return Fraction(dot(r, cross(u, v)) ** 2, det)
+    return min(
+        point_segment_sq(p0, q0, q1),
+        point_segment_sq(p1, q0, q1),
+        point_segment_sq(q0, p0, p1),
+        point_segment_sq(q1, p0, p1),
+    )
 
 
 @once
