@@ -74,7 +74,11 @@ def _compiled(function: Callable, files: Callable[[], KernelFiles], counts: bool
 
 
 def inline(
-    function: Callable | None = None, *, force: bool = False, one_caller: bool = False
+    function: Callable | None = None,
+    *,
+    force: bool = False,
+    one_caller: bool = False,
+    reference_counts: bool | None = None,
 ) -> Any:
     """A function compiled into each kernel that calls it; it has no cache entry and no way in from Python.
 
@@ -85,23 +89,28 @@ def inline(
             it makes no array.
         one_caller: True for a large function with one caller, which takes its place before anything is compiled.
             Each level of calls is optimised again with all that lies below it; this takes a level out.
+        reference_counts: as with `kernel`; None: as its first caller does.
     """
     assert not (force and one_caller), "either of them merges"
     if function is None:
-        return functools.partial(inline, force=force, one_caller=one_caller)
+        return functools.partial(
+            inline, force=force, one_caller=one_caller, reference_counts=reference_counts
+        )
     if DISABLED:
         return function
-    make = functools.partial(_merged, function, force, one_caller)
+    make = functools.partial(_merged, function, force, one_caller, reference_counts)
     return defer(function.__globals__, make)
 
 
-def _merged(function: Callable, force: bool, one_caller: bool) -> Callable:
+def _merged(
+    function: Callable, force: bool, one_caller: bool, reference_counts: bool | None
+) -> Callable:
     from clearance.compile.numba_private import KernelForKernels, kernel_of
 
     options: dict[str, object] = {"inline": "always"} if one_caller else {}
     if force:
-        options = {"forceinline": True, "reference_counts": False}
-    return kernel_of(function, KernelForKernels, **options)
+        options, reference_counts = {"forceinline": True}, False
+    return kernel_of(function, KernelForKernels, reference_counts=reference_counts, **options)
 
 
 def shared(function: Callable) -> Callable:

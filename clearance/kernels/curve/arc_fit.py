@@ -109,7 +109,7 @@ def joint_parameter(pieces, i, row, ax, ay, bx, by, steps):
     return s0 + u * (s1 - s0) if 0.01 < u < 0.99 else math.nan
 
 
-@kernel
+@inline(reference_counts=True)
 def fit_biarc(pieces, i, s0, s1, flat, steps, work, pair):
     """Writes the biarc of piece `i` on [s0, s1] into the two rows of `pair` and returns how many it used.
 

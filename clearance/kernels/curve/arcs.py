@@ -141,7 +141,7 @@ def _set_cell_arc(points, n, shift_x, shift_y, work, row):
     row[Y0], row[Y1], row[CY] = row[Y0] + shift_y, row[Y1] + shift_y, row[CY] + shift_y
 
 
-@kernel
+@inline(reference_counts=True)
 def cells_apart(p, n, q, m, shift_x, shift_y, work, rows):
     """A lower bound of the distance of two cells by their arcs, and how much of what it lacks is rounding.
 

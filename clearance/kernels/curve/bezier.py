@@ -136,7 +136,7 @@ def keep_left(points, n, t):
                 points[k, c] = points[k - 1, c] + t * (points[k, c] - points[k - 1, c])
 
 
-@kernel
+@inline(reference_counts=True)
 def cut(pieces, i, t0, t1, out):
     """Writes the control points of piece `i` on [t0, t1] into `out` and returns the degree.
 

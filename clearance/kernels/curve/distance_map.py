@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.bezier import hypotenuse, jet
@@ -33,7 +33,7 @@ class DistanceMap(NamedTuple):
     deepest_at: float
 
 
-@kernel
+@inline(reference_counts=True)
 def nearest_arc(leaves, x, y, hint, enough, stack):
     """The distance from (x, y) to the nearest arc, and its index: the lowest cone at one pixel.
 
@@ -70,7 +70,7 @@ def _samples(row, pixel):
     return max(1, math.ceil(1.2 * hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel))
 
 
-@kernel
+@inline(reference_counts=True)
 def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
     """The `DistanceMap` of the curve `other` along this curve, moved by the shift into the other's frame."""
     arcs = leaves.arcs
@@ -107,7 +107,7 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
     return DistanceMap(depth[:used], arc[:used], first, deepest, deepest_leaf, deepest_at)
 
 
-@kernel
+@inline(reference_counts=True)
 def lower_bound_of_map(drawn, own, other, pixel):
     """Equation (2): the greatest depth less the errors of biarcs, cones and pixels; a true lower bound.
 

@@ -140,7 +140,7 @@ def _slopes(pieces, i, x, y, t):
     return ex * here.dx + ey * here.dy, speed_sq + ex * here.ddx + ey * here.ddy, speed_sq
 
 
-@kernel
+@inline(reference_counts=True)
 def slide_to_foot(pieces, i, x, y, t, low, high):
     """A local minimum of the distance from (x, y) to piece `i` on [low, high], from `t` on.
 
@@ -215,7 +215,7 @@ def _foot_where_rising(pieces, i, x, y, a, b, slope, points, n):
     return t, distance, math.sqrt(max(0.0, distance * distance - defect))
 
 
-@kernel
+@inline(reference_counts=True)
 def closest_on(pieces, i, s0, s1, x, y, best, work):
     """The nearest point of piece `i` on [s0, s1]: (distance, lower bound, parameter), if below `best`.
 

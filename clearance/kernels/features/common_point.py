@@ -5,7 +5,7 @@ Not for: whether they meet (`predicates`).
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import COMMON_POINT, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import (
     ZERO3,
@@ -33,7 +33,7 @@ class CommonPointPair(NamedTuple):
     q: Wide3
 
 
-@kernel
+@inline(reference_counts=True)
 def _of_edge_and_triangle(p, q, x, y, z):
     """The points of an edge p q and a triangle x y z nearest to coinciding."""
     n = cross3(minus3(y, x), minus3(z, x))

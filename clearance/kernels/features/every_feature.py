@@ -7,7 +7,7 @@ the usual case, in which one feature pair and its lower bound suffice (`refine`)
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.double_double import Wide, less, lesser, minus, wide
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
 from clearance.kernels.features.face_pair import has_plane, height, may_be_over
@@ -151,7 +151,7 @@ def _between_segments(a, face_a, b, face_b, frames, cutoff, best, table):
     return best
 
 
-@kernel
+@inline(reference_counts=True)
 def nearest_of_every(a, face_a, b, face_b, frames, cutoff, table):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
     best = NearestFeatures(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))

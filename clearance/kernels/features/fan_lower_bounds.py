@@ -4,7 +4,7 @@ Where two faces bent by rounding lie parallel over each other, no one direction 
 apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
 """
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import FANS, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import less, lesser
 from clearance.kernels.features.face_lower_bounds import CornerRange, corners_of, lower_bound_along
@@ -32,7 +32,7 @@ def _start(n, triangle):
     return Simplex(n, triangle.u, triangle.u if n == 1 else triangle.v, triangle.w)
 
 
-@kernel
+@inline(reference_counts=True)
 def _nearest_of_triangles(frames, one, two):
     """The nearest pair of points of two triangles that do not meet, and so its direction."""
     best = wide_feature(frames, _start(1, one), _start(1, two))

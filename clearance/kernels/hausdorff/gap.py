@@ -84,7 +84,7 @@ def _apart_at(curves, i, t, j, s):
     return hypotenuse(a.x + curves.shift_x - b.x, a.y + curves.shift_y - b.y)
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _closest_in(curves, part, other):
     """A pair of parameters near the least distance of two parts, ends and corners of the cell among them.
 
@@ -130,7 +130,7 @@ def _push_quarters(cells, top, part, other, long_a, long_b):
     return top
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _search_leaves(curves, part, other, gap, best, scratch):
     """Lowers `best` by the least distance of the parts of two leaves.
 
@@ -170,7 +170,7 @@ def _search_leaves(curves, part, other, gap, best, scratch):
         top = _push_quarters(cells, top, part, other, _extent(p, n), _extent(q, m))
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _polish(curves, la, lb, best, work):
     """Lowers `best` from foot to foot, to and fro, to a local minimum: most leaves are then never opened."""
     shift_x, shift_y = curves.shift_x, curves.shift_y

@@ -152,7 +152,7 @@ def _first_span(lines, i, hint, state, open_nodes):
     return Span(0.0, near0, d0, 1.0, near1, d1)
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _solve_segment(lines, i, hint, aim, state, work):
     """Raises the lower bound to the greatest distance of segment `i` of A to B, proven; returns a hint."""
     spans, first = work.spans, _first_span(lines, i, hint, state, work.open_nodes)

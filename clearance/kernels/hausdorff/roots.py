@@ -5,7 +5,7 @@ Not for: proving that a root is the only one (`hausdorff.single_roots`).
 
 import math
 
-from clearance.compile.jit import kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.nearest import slide_to_foot
 from clearance.kernels.hausdorff.bracket import (
@@ -17,7 +17,7 @@ from clearance.kernels.hausdorff.bracket import (
 )
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def slide_from(curves, i, t, j, s):
     """The foot of A's point at (i, t) on piece `j` of B, followed from the parameter `s`: (s, distance)."""
     here = jet(curves.a, i, t)

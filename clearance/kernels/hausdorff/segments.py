@@ -74,7 +74,7 @@ def distance_to(control, k, x, y):
     return math.sqrt(foot_on(control, k, x, y)[0])
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def nearest_segment(segments, x, y, hint, open_nodes):
     """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
     control, boxes, (nodes, gaps) = segments.control, segments.boxes, open_nodes

@@ -57,7 +57,7 @@ class BoxScratch(NamedTuple):
     room: np.ndarray
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _leave(pair, part, state, work):
     """Bounds an interval whose systems stay open: by its middle and extent, or side by side with B."""
     curves, i = pair.curves, part.piece
@@ -90,7 +90,7 @@ def _settle_normals(systems, part, table, level, n, boxes, state, work):
     return cost
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
     """Whether system (13) for two cells has no root in T, or one, which is then found; and what that cost.
 
@@ -154,7 +154,7 @@ def _settle_level(systems, da, part, table, level, boxes, state, work):
     return n > 0, fits, cost
 
 
-@kernel
+@inline(reference_counts=True)
 def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
     """Finds all candidates on one part of A; see the module.
 

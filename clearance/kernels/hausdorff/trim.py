@@ -97,7 +97,7 @@ def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
     return distance <= enough, hint
 
 
-@kernel
+@inline(reference_counts=True)
 def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack):
     """Clears `kept` for whole nodes of the tree that lie within the lower bound of one arc of the other.
 

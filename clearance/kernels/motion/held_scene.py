@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.heap import HeapHandle
-from clearance.compile.jit import DISABLED, kernel, lie_on_heap
+from clearance.compile.jit import DISABLED, inline, kernel, lie_on_heap
 from clearance.compile.kernel_table import lend
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
@@ -82,7 +82,7 @@ def nearest_at_positions(held, positions, rows, tally, table):
         )  # fmt: skip
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally, table):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step.
 

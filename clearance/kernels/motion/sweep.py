@@ -65,7 +65,7 @@ def sweep(surface, world, path, goal, first, found, tally, table):
     _sweep(surface, world, path, goal, TO_THE_END, state, found, tally, table)
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _sweep(surface, world, path, goal, effort, state, found, tally, table):
     """`sweep`, with the arrays of its state. The rows after a first look are overwritten.
 

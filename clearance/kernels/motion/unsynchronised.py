@@ -215,7 +215,7 @@ def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
     _end(clocks, bounds, state)
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _certify(surface, clocks, aim, bounds, state, table):
     """`certify_unsynchronised`, with the arrays of its state."""
     lent = lend(surface)

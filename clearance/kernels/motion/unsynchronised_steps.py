@@ -332,7 +332,7 @@ def least_of_unsynchronised_steps(surface, clocks, least_only, found, tally, tab
     _least_of_steps(surface, clocks, least_only, state, found, tally, table)
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _least_of_steps(surface, clocks, least_only, state, found, tally, table):
     """The same, with the arrays of its state."""
     lent = lend(surface)

@@ -188,7 +188,7 @@ def nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts, table
     return -1
 
 
-@kernel(reference_counts=False)
+@inline(reference_counts=False)
 def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts, table):
     """Fills a row for each pose.
 

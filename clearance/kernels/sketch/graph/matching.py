@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 
 
 class Matching(NamedTuple):
@@ -96,7 +96,7 @@ def _move_payment(e, before, node, paid):
     paid[0, node] = e
 
 
-@kernel
+@inline(reference_counts=True)
 def match(order, ends, live, hold, capacity):
     """Assigns the live edges, in `order`, each to the first of its nodes with freedom left.
 
@@ -133,7 +133,7 @@ def _rows_of_nodes(live, owner, n_nodes):
     return start, rows
 
 
-@kernel
+@inline(reference_counts=True)
 def ordered_parts(ends, live, hold, owner, n_nodes, present):
     """Strongly connected parts of "is placed from" in the order of placing.
 

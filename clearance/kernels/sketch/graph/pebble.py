@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.graph.graph import POINT
 
 ENOUGH = 4
@@ -230,7 +230,7 @@ def _append_circuit(game, row, rows, filled):
     return rows, filled + 1
 
 
-@kernel
+@inline(reference_counts=True)
 def play(kind, ends, absolute, live):
     """The live edges that depend on others, with their circuits; see `Circuits`.
 

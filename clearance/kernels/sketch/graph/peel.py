@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
 
 
@@ -231,7 +231,7 @@ def _take_off(graph, peeling, v, partner, edges):
                 _wait(peeling, u)
 
 
-@kernel
+@inline(reference_counts=True)
 def peel(graph, live, removed):
     """Takes off what can be, in the order of taking off; clears `live` and sets `removed` in place."""
     n = graph.kind.shape[0]
