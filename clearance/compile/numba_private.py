@@ -8,6 +8,7 @@ tests ran with. Not for: `numba.extending` and `numba.types`, which are document
 | `own_level` | `config.OPT` is read where LLVM's passes are chosen, under the compiler's lock |
 | `Kernel` | `CPUDispatcher`: `compile`, `get_call_template`; the flags of the caller; the option `_nrt` |
 | `KernelForKernels` | `CPUDispatcher`: `_insert`, `_compile_for_args` |
+| `LinkedCode` | `JITCodeLibrary`: `_finalize_final_module`, what `get_executable` asks of it; environments |
 | `KernelCache` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
 | `entry_of` | `CompileResult`: the object file, the names of its functions, environments |
 | `entry_address`, `call_at`, `stop_if` | the calling convention |
@@ -29,8 +30,10 @@ from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
 from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.environment import lookup_environment
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
@@ -90,6 +93,46 @@ def _no_collections() -> Iterator[None]:
             gc.enable()
 
 
+class LinkedCode(JITCodeLibrary):
+    """What is compiled of a function that only kernels call: optimised, and linked into its callers.
+
+    Nobody calls it at an address of its own, so no machine code is written of it: numba would do so for each
+    function of a kernel, and for each again within its callers.
+    """
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """No address."""
+        return 0
+
+    @property
+    def codegen(self) -> LinkedCode:
+        """What is told the function's environment."""
+        return self
+
+    def set_env(self, name: str, environment: object) -> None:
+        """The kernel that it is linked into is told it (`_tell_environments`)."""
+
+
+class _CompilerOfLinkedCode(Compiler):
+    def compile_extra(self, func: Callable) -> CompileResult:
+        self.state.library = LinkedCode(self.state.targetctx.codegen(), func.__qualname__)
+        return super().compile_extra(func)
+
+
+def _tell_environments(compiled: CompileResult) -> None:
+    """Tells the code of a kernel the environments of the functions that are linked into it."""
+    library = compiled.library
+    for one in library._final_module.global_variables:
+        environment = lookup_environment(one.name)
+        if environment is not None and not one.is_declaration:
+            library.codegen.set_env(one.name, environment)
+
+
 class Kernel(CPUDispatcher):
     """A function compiled at our level, in one form for all values of its arguments.
 
@@ -101,6 +144,11 @@ class Kernel(CPUDispatcher):
     def compile(self, signature: object) -> object:
         with own_level(), _no_collections():
             return with_room_for_frames(super().compile, signature)
+
+    def add_overload(self, cres: CompileResult) -> None:
+        if not isinstance(cres.library, LinkedCode):
+            _tell_environments(cres)
+        super().add_overload(cres)
 
     def get_call_template(self, args: tuple, named: dict) -> tuple:
         found = super().get_call_template(tuple(map(_whatever_its_value, args)), named)
@@ -142,11 +190,13 @@ def kernel_of(
     """
     options |= {"nopython": True, "boundscheck": None, "nogil": True, "error_model": "numpy"}
     options["no_cfunc_wrapper"] = True
+    compiler: type[Compiler] = Compiler
     if kind is KernelForKernels:
         options["no_cpython_wrapper"] = True
+        compiler = _CompilerOfLinkedCode
     if reference_counts is not None:
         options["_nrt"] = reference_counts
-    return kind(function, targetoptions=options)
+    return kind(function, targetoptions=options, pipeline_class=compiler)
 
 
 def _whatever_its_value(kind: types.Type) -> types.Type:

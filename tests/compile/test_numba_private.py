@@ -191,7 +191,11 @@ def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
 
 
 @compiled_only
-@pytest.mark.parametrize("options", [{"force": True}, {}], ids=["forced", "left to the compiler"])
+@pytest.mark.parametrize(
+    "options",
+    [{"force": True}, {"reference_counts": False}, {}],
+    ids=["forced", "not counting", "left to the compiler"],
+)
 def test_what_counts_no_references_makes_no_array(options):
     made = inline(**options)(lambda n: np.zeros(n).sum())
     calling = numba.njit(lambda n: made(n))
@@ -200,6 +204,37 @@ def test_what_counts_no_references_makes_no_array(options):
             calling(3)
     else:
         assert calling(3) == 0.0
+
+
+@compiled_only
+def test_what_counts_makes_arrays_whoever_calls_it():
+    summed = inline(reference_counts=True)(lambda n: np.ones(n).sum())
+    calling = numba_private.kernel_of(lambda n: summed(n) + 1.0, reference_counts=False)
+    assert calling(3) == 4.0
+
+
+def refusing(n):
+    if n > 1:
+        raise ValueError("too large", n)
+    return n
+
+
+@compiled_only
+def test_of_what_is_linked_into_kernels_no_machine_code_is_written(monkeypatch):
+    """Once in the kernel is enough; what it raises needs its environment, which the kernel's code is told."""
+    written, write = [], codegen.JITCodeLibrary._finalize_specific
+    monkeypatch.setattr(
+        codegen.JITCodeLibrary,
+        "_finalize_specific",
+        lambda library: [written.append(library.name), write(library)],
+    )
+    inner = kernel_of(refusing, numba_private.KernelForKernels)
+    calling = kernel_of(lambda n: inner(n) + 1)
+    assert calling(1) == 2
+    with pytest.raises(ValueError, match="too large") as raised:
+        calling(5)
+    assert raised.value.args == ("too large", 5)
+    assert len(inner.overloads) == 1 and written and "refusing" not in written
 
 
 @compiled_only
