@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from tests.docs.code_blocks import ROOT
@@ -71,28 +71,35 @@ def is_name(shown: str) -> bool:
 
 
 def _names(path: Path) -> Iterator[str]:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    prose = {id(doc) for node in ast.walk(tree) for doc in _docstrings(node)}
-    for node in ast.walk(tree):
-        match node:
-            case ast.FunctionDef() | ast.ClassDef():
-                yield node.name
-            case ast.Name():
-                yield node.id
-            case ast.Attribute():
-                yield node.attr
-            case ast.arg() | ast.keyword():
-                yield node.arg or "**"
-            case ast.alias():
-                yield from node.name.split(".")
-            case ast.Constant(value=str(text)) if id(node) not in prose:
-                yield from re.findall(r"\w+", text)
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+    prose = {id(doc) for node in nodes for doc in _docstrings(node)}
+    for node in nodes:
+        of_kind = _OF_KIND.get(type(node))
+        if of_kind is not None and id(node) not in prose:
+            yield from of_kind(node)
+
+
+def _words(node: ast.Constant) -> list[str]:
+    return re.findall(r"\w+", node.value) if isinstance(node.value, str) else []
+
+
+_OF_KIND: dict[type, Callable] = {
+    ast.FunctionDef: lambda node: (node.name,),
+    ast.ClassDef: lambda node: (node.name,),
+    ast.Name: lambda node: (node.id,),
+    ast.Attribute: lambda node: (node.attr,),
+    ast.arg: lambda node: (node.arg,),
+    ast.keyword: lambda node: (node.arg or "**",),
+    ast.alias: lambda node: node.name.split("."),
+    ast.Constant: _words,
+}
+"""The names of a node, by its type; quicker to look up than to match."""
 
 
 def _docstrings(node: ast.AST) -> Iterator[ast.Constant]:
     """The strings that stand alone in a body: docstrings of modules, functions, classes and constants."""
-    body = getattr(node, "body", [])
-    for statement in body if isinstance(body, list) else []:
-        match statement:
-            case ast.Expr(value=ast.Constant(value=str()) as text):
-                yield text
+    body = getattr(node, "body", None)
+    for statement in body if isinstance(body, list) else ():
+        if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
+            if isinstance(statement.value.value, str):
+                yield statement.value
