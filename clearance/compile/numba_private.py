@@ -1,14 +1,14 @@
-"""What we use of numba beyond its documented interface, all of it, with a test each (`tests/compile`).
+"""What we use of numba beyond its documented interface, with a test each (`tests/compile`).
 
 A new numba may change any of this in a minor version, so `pyproject.toml` bounds numba to the versions that these
-tests ran with. Not for: `numba.extending` and `numba.types`, which are documented.
+tests ran with. Not for: code without an address (`linked_code`); `numba.extending` and `numba.types`, which are
+documented.
 
 | here | of numba |
 |---|---|
 | `own_level` | `config.OPT` is read where LLVM's passes are chosen, under the compiler's lock |
 | `Kernel` | `CPUDispatcher`: `compile`, `get_call_template`; the flags of the caller; the option `_nrt` |
 | `KernelForKernels` | `CPUDispatcher`: `_insert`, `_compile_for_args` |
-| `LinkedCode` | `JITCodeLibrary`: `_finalize_final_module`, what `get_executable` asks of it; environments |
 | `KernelCache` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
 | `entry_of` | `CompileResult`: the object file, the names of its functions, environments |
 | `entry_address`, `call_at`, `stop_if` | the calling convention |
@@ -30,10 +30,8 @@ from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
 from numba.core.caching import _Cache
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.environment import lookup_environment
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
@@ -46,6 +44,7 @@ from numba.np.numpy_support import as_dtype
 from clearance.compile.frames import with_room_for_frames
 from clearance.compile.heap import HeapHandle
 from clearance.compile.kernel_files import KernelFiles
+from clearance.compile.linked_code import CompilerOfLinkedCode, LinkedCode, tell_environments
 from clearance.compile.machine_code import Entry
 
 OWN_LEVEL = 1
@@ -93,46 +92,6 @@ def _no_collections() -> Iterator[None]:
             gc.enable()
 
 
-class LinkedCode(JITCodeLibrary):
-    """What is compiled of a function that only kernels call: optimised, and linked into its callers.
-
-    Nobody calls it at an address of its own, so no machine code is written of it: numba would do so for each
-    function of a kernel, and for each again within its callers.
-    """
-
-    def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
-        self._finalized = True
-
-    def get_pointer_to_function(self, name: str) -> int:
-        """No address."""
-        return 0
-
-    @property
-    def codegen(self) -> LinkedCode:
-        """What is told the function's environment."""
-        return self
-
-    def set_env(self, name: str, environment: object) -> None:
-        """The kernel that it is linked into is told it (`_tell_environments`)."""
-
-
-class _CompilerOfLinkedCode(Compiler):
-    def compile_extra(self, func: Callable) -> CompileResult:
-        self.state.library = LinkedCode(self.state.targetctx.codegen(), func.__qualname__)
-        return super().compile_extra(func)
-
-
-def _tell_environments(compiled: CompileResult) -> None:
-    """Tells the code of a kernel the environments of the functions that are linked into it."""
-    library = compiled.library
-    for one in library._final_module.global_variables:
-        environment = lookup_environment(one.name)
-        if environment is not None and not one.is_declaration:
-            library.codegen.set_env(one.name, environment)
-
-
 class Kernel(CPUDispatcher):
     """A function compiled at our level, in one form for all values of its arguments.
 
@@ -147,7 +106,7 @@ class Kernel(CPUDispatcher):
 
     def add_overload(self, cres: CompileResult) -> None:
         if not isinstance(cres.library, LinkedCode):
-            _tell_environments(cres)
+            tell_environments(cres)
         super().add_overload(cres)
 
     def get_call_template(self, args: tuple, named: dict) -> tuple:
@@ -193,7 +152,7 @@ def kernel_of(
     compiler: type[Compiler] = Compiler
     if kind is KernelForKernels:
         options["no_cpython_wrapper"] = True
-        compiler = _CompilerOfLinkedCode
+        compiler = CompilerOfLinkedCode
     if reference_counts is not None:
         options["_nrt"] = reference_counts
     return kind(function, targetoptions=options, pipeline_class=compiler)
