@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.receipt.proof.error_terms import along_of
-from clearance.receipt.proof.halving import farthest, farthest_points
+from clearance.receipt.proof.halving import farthest_points, over_corners
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.placing import PlacedViews
 from clearance.receipt.proof.separation import Sides, across, dot
@@ -59,7 +59,7 @@ def _by_errors(stage: Stage, at: PlacedViews, side: Sides, u: np.ndarray) -> np.
     turn, place = at.turn[:, :, side.place], at.at[:, side.place]
     errors = along_of(at.terms, turn, place, side.place, u)
     nothing = np.zeros((3, 1, len(side.place)))
-    return farthest(stage.halves, side.body, side.node, nothing, errors)[0]
+    return over_corners(stage.halves, side.body, side.node, nothing, errors)[0]
 
 
 def _directions(

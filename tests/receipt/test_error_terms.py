@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from clearance.receipt.case_data import case_data
+from clearance.receipt.proof.error_terms import along_of, most_of_balls
 from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.motion_data import UNIT
-from clearance.receipt.proof.separation import along, as_balls
+from clearance.receipt.proof.separation import Sides, centre_of
+from clearance.receipt.proof.stage import by_balls, by_directions
 from clearance.receipt.proof.views import links_above
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.forest import forest_of
@@ -20,6 +22,8 @@ from tests.receipt.receipts import stage_of, turning_arm
 
 ROUNDING = 1e-12
 SAMPLES = 12
+FAR = 100.0
+"""[m] What no bound comes to, so that parts are looked at as closely as can be."""
 
 
 def rows_of(stage, node: int, rng: np.random.Generator):
@@ -91,17 +95,45 @@ def test_no_error_brings_parts_nearer_than_a_direction_proves(seed):
     case, rng = random_case(seed), np.random.default_rng(seed)
     data = case_data(case)
     assert len(data.stretches) == 2 and data.stretches[1].errors is not None
-    with_errors, without = stage_of(data, 1), stage_of(data, 0)
-    wanted = {id(s): s.stretch.padding[:, None] + UNIT for s in (with_errors, without)}
+    easily, with_errors, without = stage_of(data, 1), stage_of(data, 1, FAR), stage_of(data, 0, FAR)
     for node in (0, 1, 4):
         items, u = rows_of(with_errors, node, rng)
         least = left_of(with_errors, items, u, case, rng)
-        bounds = {}
-        for stage in (with_errors, without):
-            beyond = stage.bounds(items, along, u)
-            bounds[id(stage)] = beyond + wanted[id(stage)][items.pair, 0]
-        assert (bounds[id(with_errors)] <= least + ROUNDING).all()
-        assert (bounds[id(without)] > least).any()
+        at_once, closest, nominal = (
+            by_directions(stage, items, u) + stage.wanted[items.pair, items.start]
+            for stage in (easily, with_errors, without)
+        )
+        assert (at_once <= closest + ROUNDING).all()
+        assert (closest <= least + ROUNDING).all()
+        assert (nominal > least).any()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_errors_do_no_more_to_any_corner_than_is_said_of_its_ball(seed):
+    data, rng = case_data(random_case(seed)), np.random.default_rng(seed)
+    stage = stage_of(data, 1)
+    n = stage.stretch.n_intervals
+    for node in (0, 1, 4):
+        items, u = rows_of(stage, node, rng)
+        body = stage.stretch.pairs[:, 0]
+        place = stage.views.pairs[:, 0] * n + items.start
+        side, at = Sides(place, body, items.node_a), stage.whole
+        turn, origin = at.turn[:, :, place], at.at[:, place]
+        exact = along_of(at.terms, turn, origin, place, u)
+        nodes = stage.halves.first_node[body] + node
+        half = 0.5 * (stage.halves.high[:, nodes] - stage.halves.low[:, nodes])
+        centre = centre_of(stage.halves, at, side)
+        most = most_of_balls(at.terms, place, u, centre, np.sqrt((half * half).sum(axis=0)))
+        for i in range(len(body)):
+            corners = corners_of(stage, body[i], node).T[:, :, None]
+            found = exact.of(np.array([i])).at(corners).max()
+            assert found <= most[i] + ROUNDING
+        terms = [part[..., place] for part in at.terms]
+        own = dict(zip(at.terms._fields, terms, strict=True))
+        turned = np.cross(own["bars"], centre - own["pins"], axis=1)
+        by_axes = [np.abs((u * part).sum(axis=1)).sum(axis=0) for part in (turned, own["slides"])]
+        at_centre = most_of_balls(at.terms, place, u, centre, np.zeros(len(place)))
+        assert np.allclose(at_centre, sum(by_axes) + own["anyway"], rtol=1e-11, atol=0.0)
 
 
 @pytest.mark.parametrize("seed", (0, 3))
@@ -109,7 +141,7 @@ def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
     case, rng = random_case(seed), np.random.default_rng(seed)
     stage, names, machine = stage_of(case_data(case), 1), names_in(case), SampledMachine(case)
     items, _ = rows_of(stage, 0, rng)
-    bounds = stage.bounds(items, as_balls) + stage.stretch.padding + UNIT
+    bounds = by_balls(stage, items) + stage.stretch.padding + UNIT
     for i, (a, b) in enumerate(stage.stretch.pairs.tolist()):
         poses = machine.poses(float(stage.stretch.times[items.start[i]]), machine.random(rng))
         shapes = [machine.shapes[names[body]].at(poses[names[body]]) for body in (a, b)]
@@ -128,6 +160,6 @@ def test_the_bound_of_a_single_turn_is_that_of_its_arc():
     zero = np.zeros(2, dtype=np.int64)
     items = Items(zero, halves, zero, zero, zero + 1, zero, zero)
     u = np.repeat([[0.0], [1.0], [0.0]], 2, axis=1)
-    nominal, left = (stage_of(data, i).bounds(items, along, u).min() for i in (0, 1))
+    nominal, left = (by_directions(stage_of(data, i, FAR), items, u).min() for i in (0, 1))
     exact = 0.8 * np.sin(e) + 0.05 * (np.cos(e) - 1.0) + 0.002
     assert exact <= nominal - left <= exact + e * e

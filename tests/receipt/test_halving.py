@@ -3,7 +3,7 @@
 import numpy as np
 
 import clearance as cl
-from clearance.receipt.proof.halving import farthest, farthest_points, halves_of
+from clearance.receipt.proof.halving import farthest_points, halves_of, over_boxes, over_corners
 from clearance.receipt.proof.motion_data import Shape
 
 
@@ -37,7 +37,7 @@ def test_no_point_of_a_node_is_farther_than_what_is_said_of_it():
     halves, rng = halves_of([shape_of(solid)]), np.random.default_rng(3)
     nodes = np.repeat(np.arange(63), 5)
     along = rng.normal(size=(3, 2, len(nodes)))
-    found = farthest(halves, np.zeros_like(nodes), nodes, along)
+    found = over_corners(halves, np.zeros_like(nodes), nodes, along)
     for i, node in enumerate(nodes):
         own = halves.corners[:, :, halves.start[node] : halves.stop[node]].reshape(3, -1)
         for t in (0, 1):
@@ -45,5 +45,6 @@ def test_no_point_of_a_node_is_farther_than_what_is_said_of_it():
             assert true <= found[t, i]
             if own.shape[1] <= 24:
                 assert true == found[t, i] or abs(true - found[t, i]) < 1e-15
+    assert (over_boxes(halves, np.zeros_like(nodes), nodes, along) >= found).all()
     points = farthest_points(halves, np.zeros_like(nodes), nodes, along[:, 0])
     assert np.allclose((points * along[:, 0]).sum(axis=0), found[0], atol=1e-12)

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from clearance.receipt.proof.items import cut, first_items
+from clearance.receipt.proof.items import CUT_A, CUT_B, cut, first_items
 from clearance.receipt.proof.motion_data import Stretch
 
 EIGHTHS = 3
-"""Cuts below a node that its bound looks at (`halving.farthest`)."""
+"""Cuts below a node that its bound looks at (`halving.over_corners`)."""
 
 MOST_CUTS = 40
 """Of a body; more than any has that fits in memory."""
@@ -28,9 +28,10 @@ def depths_reached(
     for stretch in stretches:
         items = first_items(len(stretch.pairs), stretch.n_intervals)
         while len(items.pair) and found.max() < MOST_CUTS:
-            for k, nodes in enumerate((items.node_a, items.node_b)):
-                depth = np.frexp(nodes + 1.0)[1] - 1
-                np.maximum.at(found, stretch.pairs[items.pair, k], depth)
             done = deeds(len(items.pair))
+            for k, nodes, deed in ((0, items.node_a, CUT_A), (1, items.node_b, CUT_B)):
+                rows = np.flatnonzero(done == deed)
+                depth = np.frexp(nodes[rows] + 1.0)[1]  # of the halves
+                np.maximum.at(found, stretch.pairs[items.pair[rows], k], depth)
             items = cut(items, done)
     return found + EIGHTHS

@@ -40,6 +40,8 @@ class Terms(NamedTuple):
         bars: (t, 3, k) size times axis of turns. pins: (t, 3, k) [m] where. slides: (s, 3, k) [m].
         centres: (f, 3, k) [m] of turns about any axis. angles: (f, k) [rad]. shift: (k,) [m] in any direction.
         turns: (k,) True where something turns.
+        moments: (t, 3, k) bars x pins. angle: (k,) [rad] of all turns about an axis.
+        anyway: (k,) [m] at most what shifts and turns about any axis do to the body in any direction.
     """
 
     bars: np.ndarray
@@ -49,10 +51,21 @@ class Terms(NamedTuple):
     angles: np.ndarray
     shift: np.ndarray
     turns: np.ndarray
+    moments: np.ndarray
+    angle: np.ndarray
+    anyway: np.ndarray
 
 
-def terms_of(errors: Sequence[Sequence[Error]], n_pieces: int) -> Terms:
-    """The terms of views, by what may be off on the way to each."""
+def across_rows(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(n, 3) vector products; `np.cross` takes three times as long for a few hundred."""
+    found = np.empty(v.shape)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[:, i] = u[:, j] * v[:, k] - u[:, k] * v[:, j]
+    return found
+
+
+def terms_of(errors: Sequence[Sequence[Error]], n_pieces: int, anyway: np.ndarray) -> Terms:
+    """The terms of views, by what may be off on the way to each, `anyway` (k,) [m]."""
     turns, slides, frames = (
         [[one for one in own if kind(one)] for own in errors]
         for kind in (
@@ -72,6 +85,9 @@ def terms_of(errors: Sequence[Sequence[Error]], n_pieces: int) -> Terms:
         _rows(frames, n_pieces, lambda e: np.full((n_pieces, 3), e.size))[:, 0],
         np.repeat(np.array(shift, dtype=np.float64), n_pieces),
         np.repeat([bool(a or b) for a, b in zip(turns, frames, strict=True)], n_pieces),
+        _rows(turns, n_pieces, lambda e: e.size * across_rows(e.axis, e.origin)),
+        np.repeat([OUTWARD * sum(e.size for e in own) for own in turns], n_pieces),
+        anyway,
     )
 
 
@@ -148,6 +164,34 @@ def along_of(
         terms.angles[:, place],
         constant,
     )
+
+
+def most_of_balls(
+    terms: Terms, place: np.ndarray, u: np.ndarray, centre: np.ndarray, radius: np.ndarray
+) -> np.ndarray:
+    """(r,) f is nowhere above this in balls about centre (3, r), of radius (r,) [m], along u (3, r).
+
+    Turns about any axis are taken as what they do to the whole body in any direction.
+    """
+    length = np.sqrt((u * u).sum(axis=0))
+    found = length * (terms.anyway[place] + radius * terms.angle[place])
+    if len(terms.slides):
+        found += np.abs((np.take(terms.slides, place, axis=-1) * u).sum(axis=1)).sum(axis=0)
+    rows = np.flatnonzero(terms.angle[place] > 0.0)
+    if len(rows):
+        found[rows] += _most_of_turns(terms, place[rows], u[:, rows], centre[:, rows])
+    return found * OUTWARD
+
+
+def _most_of_turns(
+    terms: Terms, place: np.ndarray, u: np.ndarray, centre: np.ndarray
+) -> np.ndarray:
+    """(r,) what turns about axes do to points (3, r): size a x (x - c) is size a x x less the moment."""
+    bars, moments = (np.take(part, place, axis=-1) for part in (terms.bars, terms.moments))
+    (x, y, z), (px, py, pz) = u, centre
+    across = py * z - pz * y, pz * x - px * z, px * y - py * x
+    found = sum(bars[:, k] * across[k] - moments[:, k] * u[k] for k in range(3))
+    return np.abs(found).sum(axis=0)
 
 
 def _turned_back(turn: np.ndarray, vectors: np.ndarray) -> np.ndarray:

@@ -78,9 +78,12 @@ def _halved(corners: np.ndarray, most: int | None) -> tuple[np.ndarray, ...]:
     n = len(corners)
     middles = np.add.reduce(corners, axis=1)
     order, starts, stops = np.arange(n), np.array([0]), np.array([n])
+    ranks = np.empty((3, n), dtype=np.int64)
+    for axis in range(3):
+        ranks[axis, np.argsort(middles[:, axis], kind="stable")] = order
     all_starts, all_stops = [starts], [stops]
     while (stops - starts).max() > 1 and (most is None or len(all_starts) <= most):
-        order = _ordered(middles, order, starts, stops)
+        order = _ordered(middles, ranks, order, starts, stops)
         half = (starts + stops) // 2
         starts, stops = _beside(starts, half), _beside(half, stops)
         all_starts.append(starts)
@@ -95,17 +98,24 @@ def _beside(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def _ordered(
-    middles: np.ndarray, order: np.ndarray, starts: np.ndarray, stops: np.ndarray
+    middles: np.ndarray,
+    ranks: np.ndarray,
+    order: np.ndarray,
+    starts: np.ndarray,
+    stops: np.ndarray,
 ) -> np.ndarray:
-    """The faces once more, those of each node along the axis along which they are farthest apart."""
+    """The faces once more, those of each node along the axis along which they are farthest apart.
+
+    Args:
+        ranks: (3, faces) the place of each along each axis, of equals by their numbers.
+    """
     full = stops > starts
     placed, firsts = middles[order], starts[full]
     spread = np.maximum.reduceat(placed, firsts) - np.minimum.reduceat(placed, firsts)
     sizes = (stops - starts)[full]
     axis = np.repeat(spread.argmax(axis=1), sizes)
     node = np.repeat(np.arange(len(firsts)), sizes)
-    along = placed[np.arange(len(placed)), axis]
-    return order[np.lexsort((order, along, node))]
+    return order[np.argsort(node * len(order) + ranks[axis, order])]
 
 
 def _boxes(
@@ -124,7 +134,19 @@ def _boxes(
     return np.concatenate(lows).T, np.concatenate(highs).T
 
 
-def farthest(
+def over_boxes(
+    halves: Halves, bodies: np.ndarray, nodes: np.ndarray, along: np.ndarray
+) -> np.ndarray:
+    """(t, k) no less than `over_corners`, by the boxes of the nodes."""
+    at = halves.first_node[bodies] + nodes
+    low, high = (np.take(part, at, axis=1) for part in (halves.low, halves.high))
+    found = np.zeros(along.shape[1:])
+    for g, least, most in zip(along, low, high, strict=True):
+        found = found + np.maximum(g * least, g * most)
+    return found
+
+
+def over_corners(
     halves: Halves,
     bodies: np.ndarray,
     nodes: np.ndarray,
@@ -180,7 +202,7 @@ def _eighths(nodes: np.ndarray) -> np.ndarray:
 def farthest_points(
     halves: Halves, bodies: np.ndarray, nodes: np.ndarray, along: np.ndarray
 ) -> np.ndarray:
-    """(3, k) [m] points at which `farthest` is attained along (3, k); no proof needs them."""
+    """(3, k) [m] points at which `over_corners` is attained along (3, k); no proof needs them."""
     at = halves.first_node[bodies] + nodes
     found = np.empty((3, len(at)))
     few = halves.stop[at] - halves.start[at] <= FEW

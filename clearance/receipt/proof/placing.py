@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.receipt.proof.error_terms import Error, Terms, terms_of
+from clearance.receipt.proof.error_terms import Error, Terms, across_rows, terms_of
 from clearance.receipt.proof.joint_paths import (
     Arcs,
     IntervalPieces,
@@ -26,7 +26,7 @@ from clearance.receipt.proof.joint_paths import (
 )
 from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Stretch
 from clearance.receipt.proof.views import Views
-from clearance.receipt.proof.ways import Balls, PieceFrames, across_rows, bounds_of, steps_of
+from clearance.receipt.proof.ways import Balls, PieceFrames, bounds_of, steps_of
 
 
 class PlacedViews(NamedTuple):
@@ -67,6 +67,7 @@ def placed(
         np.zeros(shape), np.zeros(shape), np.zeros(shape),
     )  # fmt: skip
     errors: list[list[Error]] = [[] for _ in views.frames]
+    anyway = np.zeros(shape)
     for view in np.flatnonzero(wanted).tolist():
         frame, own = int(views.frames[view]), slice(view * n, (view + 1) * n)
         pose = views.poses[view, :3]
@@ -82,9 +83,10 @@ def placed(
         steps = steps_of(view, stretch, views, joints, frames)
         errors[view] = [error for step in steps for error in step.errors]
         bounds = bounds_of(view, stretch, views, balls, steps, frames)
-        for part, bound in zip((found.way, found.rest, found.rounding), bounds, strict=True):
+        parts = found.way, found.rest, found.rounding, anyway
+        for part, bound in zip(parts, bounds, strict=True):
             part[own] = bound
-    return found if stretch.errors is None else found._replace(terms=terms_of(errors, n))
+    return found if stretch.errors is None else found._replace(terms=terms_of(errors, n, anyway))
 
 
 def _frames(
@@ -104,7 +106,7 @@ def _frames(
         turn, at, omega, v0 = still if above == NONE else (part[above] for part in found[:4])
         fixed, own = joints.fixed[link, :3, :3], joints.axes[link]
         joint = turn @ joints.fixed[link, :3, 3] + at
-        turn = turn @ fixed
+        turn = (turn.reshape(-1, 3) @ fixed).reshape(-1, 3, 3)
         if link in arcs:
             turn = turn @ arcs[link].start[pieces.interval]
             own = arcs[link].axis[pieces.interval]

@@ -28,7 +28,7 @@ from clearance.receipt.proof.items import (
 )
 from clearance.receipt.proof.motion_data import Shape, Stretch
 from clearance.receipt.proof.separation import BYTE, LONG, SHORT, directions
-from clearance.receipt.proof.stage import Stage, all_of_item, by_balls, by_directions
+from clearance.receipt.proof.stage import Stage, all_of_item
 
 SIZES = ((BYTE_DIRECTION, BYTE), (SHORT_DIRECTION, SHORT), (LONG_DIRECTION, LONG))
 """The deeds that come with directions, and how large these are."""
@@ -96,19 +96,17 @@ def _of_stretch(stage: Stage, evidence: Evidence) -> tuple[int, int, str] | None
 def _first_unproven(
     stage: Stage, items: Items, deeds: np.ndarray, evidence: Evidence
 ) -> tuple[int, int, str] | None:
-    balls = items.of(np.flatnonzero(deeds == BALLS))
-    rows = [np.flatnonzero(deeds == deed) for deed, _ in SIZES]
-    directed, u = items.of(np.concatenate(rows)), _directions(evidence, [len(r) for r in rows])
-    for own, beyond in (
-        (balls, by_balls(stage, balls)),
-        (directed, by_directions(stage, directed, u)),
-    ):
-        short = np.flatnonzero(~(beyond >= 0.0))
-        if len(short):
-            item, interval = own.rows()
-            row = short[np.argmin(interval[short])]
-            return int(own.pair[item[row]]), int(interval[row]), "not apart by its evidence"
-        stage.note_apart(own)
+    rows = [np.flatnonzero(deeds == deed) for deed in (BALLS, *dict(SIZES))]
+    own, n_balls = items.of(np.concatenate(rows)), len(rows[0])
+    u = np.zeros((3, len(own.pair)))
+    u[:, n_balls:] = _directions(evidence, [len(r) for r in rows[1:]])
+    beyond = stage.bounds(own, np.arange(len(own.pair)) >= n_balls, u)
+    short = np.flatnonzero(~(beyond >= 0.0))
+    if len(short):
+        item, interval = own.rows()
+        row = short[np.argmin(interval[short])]
+        return int(own.pair[item[row]]), int(interval[row]), "not apart by its evidence"
+    stage.note_apart(own)
     return None
 
 

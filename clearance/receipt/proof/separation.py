@@ -7,12 +7,13 @@ what both may be off straight, is a bound of the distance. Not for: which parts 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.receipt.proof.error_terms import OUTWARD, along_of
-from clearance.receipt.proof.halving import Halves, farthest
+from clearance.receipt.proof.error_terms import OUTWARD, along_of, most_of_balls
+from clearance.receipt.proof.halving import Halves, over_boxes, over_corners
 from clearance.receipt.proof.placing import PlacedViews
 
 BYTE, SHORT, LONG = 2**7 - 1, 2**15 - 1, 2**31 - 1
@@ -25,6 +26,27 @@ class Sides(NamedTuple):
     place: np.ndarray
     body: np.ndarray
     node: np.ndarray
+
+    def of(self, rows: np.ndarray) -> Sides:
+        """Some of the rows."""
+        return Sides(self.place[rows], self.body[rows], self.node[rows])
+
+
+class Swung(NamedTuple):
+    """Parts, and what they are looked at along at t = -1 and 1.
+
+    Attributes:
+        body, node: (k,). along: (3, 2, k) u in their frames. moved: (2, k) [m] what it comes to in their origins.
+    """
+
+    body: np.ndarray
+    node: np.ndarray
+    along: np.ndarray
+    moved: np.ndarray
+
+    def of(self, rows: np.ndarray) -> Swung:
+        """Some of the rows."""
+        return Swung(*(np.take(part, rows, axis=-1) for part in self))
 
 
 def directions(codes: np.ndarray, most: int) -> np.ndarray:
@@ -41,25 +63,84 @@ def directions(codes: np.ndarray, most: int) -> np.ndarray:
     return np.stack([ux, uy, z]).astype(np.float64)
 
 
-def along(halves: Halves, placed: PlacedViews, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
-    """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf where u is 0."""
-    length = np.sqrt(dot(u, u))
-    apart = -(_greatest(halves, placed, b, -u) + _greatest(halves, placed, a, u)).max(axis=0)
+def along(
+    halves: Halves, placed: PlacedViews, a: Sides, b: Sides, u: np.ndarray, enough: np.ndarray
+) -> np.ndarray:
+    """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf where u is 0.
+
+    Rows of which boxes of the parts show what is `enough` (k,) [m] are looked at no closer, then those of which
+    corners do with errors taken off by balls about the parts.
+    """
+    length, lost = np.sqrt(dot(u, u)), _lost(halves, placed, a, b, placed.rest)
+    taken = np.zeros(len(length))
+    if placed.terms is not None:
+        taken = _most_errors(halves, placed, a, u) + _most_errors(halves, placed, b, -u)
+    both = [_swung(placed, a, u), _swung(placed, b, -u)]
+    found = _shown(halves, both, over_boxes, length, taken) - lost
+    rows = np.flatnonzero(~(found >= enough))
+    both, length, lost = [one.of(rows) for one in both], length[rows], lost[rows]
+    closer = _shown(halves, both, over_corners, length, taken[rows]) - lost
+    found[rows] = np.maximum(found[rows], closer)
+    if placed.terms is None:
+        return found
+    rows = np.flatnonzero(~(found >= enough))
+    if len(rows):
+        closest = _with_errors(halves, placed, a.of(rows), b.of(rows), u[:, rows])
+        lost = _lost(halves, placed, a.of(rows), b.of(rows), placed.rest)
+        found[rows] = np.maximum(found[rows], closest - lost)
+    return found
+
+
+def _shown(
+    halves: Halves,
+    both: Sequence[Swung],
+    over: Callable[[Halves, np.ndarray, np.ndarray, np.ndarray], np.ndarray],
+    length: np.ndarray,
+    taken: np.ndarray,
+) -> np.ndarray:
+    """(k,) [m] how far parts keep apart along directions, over boxes or corners, less what is taken."""
+    a, b = (over(halves, one.body, one.node, one.along) + one.moved for one in both)
+    return _per_length(-(a + b).max(axis=0) - taken, length)
+
+
+def _with_errors(
+    halves: Halves, placed: PlacedViews, a: Sides, b: Sides, u: np.ndarray
+) -> np.ndarray:
+    """(k,) [m] the same with what errors do at each corner."""
+    assert placed.terms is not None
+    most = np.zeros((2, len(a.place)))
+    for side, own in ((a, u), (b, -u)):
+        turn, at = (np.take(part, side.place, axis=-1) for part in placed[:2])
+        errors = along_of(placed.terms, turn, at, side.place, own)
+        one = _swung(placed, side, own)
+        most += over_corners(halves, one.body, one.node, one.along, errors) + one.moved
+    return _per_length(-most.max(axis=0), np.sqrt(dot(u, u)))
+
+
+def _per_length(apart: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """(k,) no more than apart / length; -inf where the length is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         bound = apart / length
     bound = bound - np.abs(bound) * (OUTWARD - 1.0)
-    return np.where(length > 0.0, bound, -np.inf) - _lost(halves, placed, a, b, placed.rest)
+    return np.where(length > 0.0, bound, -np.inf)
 
 
-def _greatest(halves: Halves, placed: PlacedViews, side: Sides, u: np.ndarray) -> np.ndarray:
-    """(2, k) the greatest u . (x + t v(x)), and what errors do to it, over each part, for t = -1 and 1."""
+def _swung(placed: PlacedViews, side: Sides, u: np.ndarray) -> Swung:
     turn, at, omega, v0 = (np.take(part, side.place, axis=-1) for part in placed[:4])
     bent, shift = across(u, omega), dot(u, v0)
     g = np.stack([u - bent, u + bent], axis=1)
     own = np.stack([dot(g, turn[:, k, None]) for k in range(3)])
     moved = dot(g, at[:, None]) + np.stack([-shift, shift])
-    errors = None if placed.terms is None else along_of(placed.terms, turn, at, side.place, u)
-    return farthest(halves, side.body, side.node, own, errors) + moved
+    return Swung(side.body, side.node, own, moved)
+
+
+def _most_errors(halves: Halves, placed: PlacedViews, side: Sides, u: np.ndarray) -> np.ndarray:
+    """(k,) no more than this is what errors do to any point of each part along u, by a ball that holds it."""
+    assert placed.terms is not None
+    node = halves.first_node[side.body] + side.node
+    half = 0.5 * (halves.high[:, node] - halves.low[:, node])
+    centre = centre_of(halves, placed, side)
+    return most_of_balls(placed.terms, side.place, u, centre, np.sqrt(dot(half, half)))
 
 
 def as_balls(halves: Halves, placed: PlacedViews, a: Sides, b: Sides) -> np.ndarray:

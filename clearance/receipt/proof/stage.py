@@ -5,7 +5,7 @@ Not for: evidence (`proof`), nor the geometry of one row (`separation`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -18,14 +18,11 @@ from clearance.receipt.proof.separation import Sides, along, as_balls, centre_of
 from clearance.receipt.proof.views import views_of
 from clearance.receipt.proof.ways import Balls
 
-BLOCK = 2**12
+BLOCK = 2**13
 """Rows that are worked out together: their numbers stay in a core's cache."""
 
-PIECES = 2**9
+PIECES = 2**10
 """Pieces of intervals that are placed together."""
-
-Bound = Callable[..., np.ndarray]
-"""A lower bound [m] of each row, of halves, places, both sides and, where it takes one, a direction."""
 
 
 class Stage:
@@ -50,18 +47,27 @@ class Stage:
         self.whole = self._placed(whole, np.ones(len(self.views.frames), dtype=bool))
         self.apart = np.zeros(self.wanted.shape, dtype=bool)
 
-    def bounds(self, items: Items, bound: Bound, u: np.ndarray | None = None) -> np.ndarray:
-        """(r,) [m] what is proven of each of `items.rows()` beyond what is wanted of it; `u` is by item."""
+    def bounds(self, items: Items, directed: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """(r,) [m] what is proven of each of `items.rows()` beyond what is wanted of it.
+
+        Args:
+            directed: (k,) True for items that are looked at along u (3, k), False for balls.
+        """
         item, interval = items.rows()
         found = np.empty(len(item))
         for rows, pieces, at in self._blocks(items, item, interval):
             own = item[rows]
-            sides = self._sides(items, own, pieces, at)
-            extra = () if u is None else (u[:, own],)
-            wanted = self.wanted[items.pair[own], interval[rows]]
-            found[rows] = np.where(
-                wanted <= 0.0, 0.0, bound(self.halves, at, *sides, *extra) - wanted
-            )
+            for some in (np.flatnonzero(directed[own]), np.flatnonzero(~directed[own])):
+                if not len(some):
+                    continue
+                which, here = own[some], rows[some]
+                sides = self._sides(items, which, pieces[some], at)
+                wanted = self.wanted[items.pair[which], interval[here]]
+                if directed[which[0]]:
+                    shown = along(self.halves, at, *sides, u[:, which], wanted)
+                else:
+                    shown = as_balls(self.halves, at, *sides)
+                found[here] = np.where(wanted <= 0.0, 0.0, shown - wanted)
         return found
 
     def middles(self, items: Items) -> Iterator[tuple[np.ndarray, PlacedViews, Sides, Sides]]:
@@ -107,23 +113,27 @@ class Stage:
             rows = whole[start : start + BLOCK]
             yield rows, interval[rows], self.whole
         parts = np.flatnonzero(items.depth[item] > 0)
-        for start in range(0, len(parts), BLOCK):
-            yield from self._part_blocks(items, item, parts[start : start + BLOCK])
+        if len(parts):
+            yield from self._part_blocks(items, item, parts)
 
     def _part_blocks(self, items: Items, item: np.ndarray, rows: np.ndarray):
         own = items.of(item[rows])
         number = (2**own.depth + own.part) * self.stretch.n_intervals + own.start
-        _, first_of, which = np.unique(number, return_index=True, return_inverse=True)
-        parts = own.of(first_of)
-        order = np.argsort(which, kind="stable")
-        for start in range(0, len(first_of), PIECES):
-            first, last = np.searchsorted(which[order], (start, start + PIECES))
-            chosen = order[first:last]
+        order = np.argsort(number, kind="stable")
+        rows, own, number = rows[order], own.of(order), number[order]
+        first_of = np.flatnonzero(np.diff(number, prepend=-1))
+        which = np.repeat(np.arange(len(first_of)), np.diff(first_of, append=len(rows)))
+        parts, bounds = own.of(first_of), [*first_of[::PIECES].tolist(), len(rows)]
+        for start, first, last in zip(
+            range(0, len(first_of), PIECES), bounds[:-1], bounds[1:], strict=True
+        ):
             here = parts.of(slice(start, start + PIECES))
             size = 0.5**here.depth
             pieces = IntervalPieces(here.start, here.part * size, (here.part + 1) * size)
-            seen = self._seen(own.pair[chosen])
-            yield rows[chosen], which[chosen] - start, self._placed(pieces, seen)
+            at = self._placed(pieces, self._seen(own.pair[first:last]))
+            for begin in range(first, last, BLOCK):
+                some = slice(begin, min(begin + BLOCK, last))
+                yield rows[some], which[some] - start, at
 
     def _seen(self, pairs: np.ndarray) -> np.ndarray:
         seen = np.zeros(len(self.views.frames), dtype=bool)
@@ -144,12 +154,12 @@ def _balls(halves: Halves, bodies: np.ndarray) -> Balls:
 
 def by_balls(stage: Stage, items: Items) -> np.ndarray:
     """(r,) [m] of each row, as `Stage.bounds`."""
-    return stage.bounds(items, as_balls)
+    return stage.bounds(items, np.zeros(len(items.pair), dtype=bool), np.zeros((3, 0)))
 
 
 def by_directions(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
-    """(r,) [m] of each row, as `Stage.bounds`, along directions (items, 3)."""
-    return stage.bounds(items, along, u)
+    """(r,) [m] of each row, as `Stage.bounds`, along directions (3, items)."""
+    return stage.bounds(items, np.ones(len(items.pair), dtype=bool), u)
 
 
 def all_of_item(items: Items, row_holds: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.receipt.proof.error_terms import OUTWARD, Error
+from clearance.receipt.proof.error_terms import OUTWARD, Error, across_rows
 from clearance.receipt.proof.joint_paths import JointPositions
 from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Errors, MountFrames, Stretch
 from clearance.receipt.proof.views import Views, chain_above
@@ -35,14 +35,6 @@ class Balls(NamedTuple):
 
     middle: np.ndarray
     radius: np.ndarray
-
-
-def across_rows(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """(n, 3) vector products; `np.cross` takes three times as long for a few hundred."""
-    found = np.empty(v.shape)
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[:, i] = u[:, j] * v[:, k] - u[:, k] * v[:, j]
-    return found
 
 
 class Step(NamedTuple):
@@ -134,8 +126,8 @@ def bounds_of(
     balls: Balls,
     steps: Sequence[Step],
     frames: PieceFrames,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(pieces,) each, way, rest and rounding of one view."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """(pieces,) each: way, rest, rounding of one view, and what shifts and turns about any axis are of its way."""
     middle, radius = balls.middle[view], float(balls.radius[view])
     frame = int(views.frames[view])
     pose = views.poses[view]
@@ -149,19 +141,23 @@ def bounds_of(
     above = sum((one.most for one in motions if one.origin is not None), np.zeros(1))
     size = reach + sum((step.length for step in steps), np.zeros(1))
     turns = above
-    way, rest = np.zeros(1), np.zeros(1)
+    way, rest, anyway = np.zeros(1), np.zeros(1), np.zeros(1)
     for axis, origin, most, bend in motions:  # from the body to the base
         if origin is None:
             rest = rest + most * above + bend
             way, size = way + most, size + most
+            if axis is None:
+                anyway = anyway + most
             continue
         above = above - most
         arm = centre - origin if axis is None else across_rows(axis, centre - origin)
         rho = np.sqrt((arm * arm).sum(axis=-1)) + radius + way
         rest = rest + rho * (most * (0.5 * most + np.maximum(above, 0.0)) + bend)
         way = way + most * rho
+        if axis is None:
+            anyway = anyway + most * rho
     rounding = ((len(steps) + 4) * LEVEL + 4.0 * off) * (size + way) * (1.0 + turns)
-    return way * OUTWARD, rest * OUTWARD, rounding
+    return way * OUTWARD, rest * OUTWARD, rounding, anyway * OUTWARD
 
 
 class Motion(NamedTuple):
