@@ -83,6 +83,22 @@ def recording_of(
     return Recording(path, offset, commanded, timing, float(times[0]), float(times[-1]), errors)
 
 
+def motion_left_out(found: Recording) -> tuple[JointError, ...]:
+    """How far each joint was commanded to move before a recording begins and after it ends; those that do not are
+    left out. `time` is when it is farthest from where it was to be at that end of the recording.
+    """
+    commanded, timing = found.commanded, found.timing
+    times = timing.run_times(commanded.times)
+    ends = positions_along(
+        commanded, (np.array([found.start, found.end]) - timing.start) * timing.rate
+    )
+    before = np.abs(commanded.positions - ends[0]) * (times < found.start)[:, None]
+    after = np.abs(commanded.positions - ends[1]) * (times > found.end)[:, None]
+    far = np.maximum(before, after)
+    errors = (_error(*row, times) for row in zip(commanded.joint_names, far.T, strict=True))
+    return tuple(one for one in errors if one.greatest > 0.0)
+
+
 def _require_joints(driven: Trajectory, commanded: Trajectory) -> None:
     missing = [name for name in commanded.joint_names if name not in driven.joint_names]
     if missing:

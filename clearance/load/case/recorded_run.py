@@ -17,7 +17,8 @@ from clearance.load.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case, PlacedRobot, index_of_robot
 from clearance.world.joint_positions import turns
-from clearance.world.recording import Recording, recording_of
+from clearance.world.notice import Notice, Severity
+from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 
@@ -33,7 +34,7 @@ def with_recorded(
 
     Raises:
         BadInput: with the file; joints that are not recorded, no time in common, errors of a size that only
-            another offset explains.
+            another offset explains, a motion of such a size that it leaves out.
     """
     i_robot = _robot_of(case, robot)
     placed, path = case.robots[i_robot], Path(path)
@@ -47,6 +48,7 @@ def with_recorded(
         driven = replace(read, times=Timing(start=offset).run_times(read.times))
         resting = placed.fixed_positions
         found = recording_of(shown, offset, driven, placed.given_trajectory, placed.timing, resting)
+        notices = _of_motion_left_out(placed, found)
         budget = _with_tracking(case.tolerance or Budget(), placed, found)
     robots = [*case.robots]
     robots[i_robot] = _as_driven(placed, driven, found, str(path))
@@ -57,6 +59,7 @@ def with_recorded(
         tolerance=budget,
         sources=tuple(sources[name] for name in sorted(sources)),
         notes=(*case.notes, *notes, *_notes(found)),
+        notices=(*case.notices, *notices),
     )
 
 
@@ -103,6 +106,34 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
     told = f"tracking: the greatest errors of the run {found.path}"
     robots = {**budget.robots, name: replace(robot, joints=joints)}
     return replace(budget, robots=robots, sources=(*budget.sources, told))
+
+
+def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
+    """A warning where joints were to move before the recording begins or after it ends.
+
+    Raises:
+        BadInput: one by more than tolerances may be.
+    """
+    left_out, units = motion_left_out(found), _units(placed)
+    times = found.timing.run_times(found.commanded.times)
+    span = f"recorded from {found.start:.3f} to {found.end:.3f} s"
+    asked = f"of {times[0]:.3f} to {times[-1]:.3f} s"
+    for one in left_out:
+        most = MOST_ANGLE if units[one.joint] == "rad" else MOST_OFFSET
+        if one.greatest > most:
+            raise BadInput(
+                f"it is {span} {asked}; in the rest joint {one.joint!r} was to move by {one.greatest:.3g} "
+                f"{units[one.joint]}",
+                valid=f"a recording of the whole motion, of which at most {most:g} {units[one.joint]} are left out",
+            )
+    if not left_out:
+        return []
+    worst = max(left_out, key=lambda one: one.greatest)
+    text = (
+        f"{found.path} is {span} {asked}: nothing is said of the rest, in which joint {worst.joint!r} was to move "
+        f"by {worst.greatest:.3g} {units[worst.joint]}"
+    )
+    return [Notice(Severity.WARNING, "recorded run", text, placed.robot.name)]
 
 
 def _units(placed: PlacedRobot) -> dict[str, str]:

@@ -15,7 +15,7 @@ from clearance.errors import (
 )
 from clearance.load.case.recorded_run import with_recorded
 from clearance.load.tolerance.tolerance_file import with_tolerance
-from clearance.world.recording import recording_of
+from clearance.world.recording import motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 from tests.load.making_bags import state, write_bag
@@ -151,6 +151,33 @@ def test_what_is_refused(tmp_path, text, kind, told):
     with pytest.raises(kind) as caught:
         with_recorded(case(tmp_path, text), tmp_path / "run.csv")
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "span", "rest"),
+    [
+        ("time,shoulder,lift\n0,0,0\n1,0.1,0.01\n", "0.000 to 1.000 s", "0.2 rad"),
+        ("time,shoulder,lift\n1,0.1,0.01\n2,0.3,0.01\n", "1.000 to 2.000 s", "0.1 rad"),
+    ],
+)
+def test_a_recording_of_a_part_of_the_motion_says_so_beside_the_verdict(tmp_path, text, span, rest):
+    found = cl.check(case(tmp_path, text), motion="recorded", recorded=tmp_path / "run.csv")
+    (told,) = [line for line in found.verdict.warnings if "run.csv" in line]
+    assert f"recorded from {span} of 0.000 to 2.000 s: nothing is said of the rest" in told
+    assert f"joint 'shoulder' was to move by {rest}" in told
+
+
+def test_a_recording_that_leaves_out_much_of_the_motion_is_refused(tmp_path):
+    short = "time,shoulder,lift\n0,0,0\n0.5,0.05,0.005\n"
+    with pytest.raises(BadInput) as caught:
+        with_recorded(case(tmp_path, short), tmp_path / "run.csv")
+    assert "in the rest joint 'shoulder' was to move by 0.25 rad" in str(caught.value)
+    assert "a recording of the whole motion" in str(caught.value)
+
+
+def test_time_in_which_nothing_was_to_move_may_be_left_out():
+    asked = trajectory([0, 1, 2], [0.0, 0.1, 0.1])
+    assert not motion_left_out(held(trajectory([0, 1], [0.0, 0.1]), asked))
 
 
 def test_of_several_robots_one_must_be_named(tmp_path):
