@@ -165,7 +165,8 @@ def _lows(section: SectionBudget) -> Iterator[_LowMoment]:
     )
     for i, interval in enumerate(seen.tolist()):
         place = interval, float(between.share[interval])
-        yield _LowMoment(section, *place, int(found.pair[i]), float(found.proven[i]) - padding)
+        proven = max(float(found.proven[i]), float(between.proven[interval]))  # both hold then
+        yield _LowMoment(section, *place, int(found.pair[i]), proven - padding)
 
 
 def _measured(low: _LowMoment) -> Moment:

@@ -81,6 +81,16 @@ def test_the_worst_moment_is_the_least_and_its_sources_make_it_up(run):
     )
 
 
+@pytest.mark.slow
+def test_no_moment_is_told_to_leave_less_than_is_proven_of_all():
+    """At a moment a late clock takes up to twice what it can; the interval around it is looked into more closely."""
+    late = {"timing": {"arm": 0.05}}
+    found = cl.check(SCENES / "turntable_cell" / "case.yaml", tolerance=late)
+    for one in found.record.budget:
+        assert len(one.worst)
+        assert all(worst.proven >= one.least for worst in one.worst)
+
+
 def test_the_expected_value_is_that_of_the_sources(run):
     (budget,) = run.record.budget
     worst = budget.worst[0]

@@ -124,7 +124,7 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
             raise BadInput(
                 f"it is {span} {asked}; in the rest joint {one.joint!r} was to move by {one.greatest:.3g} "
                 f"{units[one.joint]}",
-                valid=f"a recording of the whole motion, of which at most {most:g} {units[one.joint]} are left out",
+                valid=f"all of the motion but {most:g} {units[one.joint]}",
             )
     if not left_out:
         return []
