@@ -83,7 +83,7 @@ def test_the_worst_moment_is_the_least_and_its_sources_make_it_up(run):
 
 @pytest.mark.slow
 def test_no_moment_is_told_to_leave_less_than_is_proven_of_all():
-    """At a moment a late clock takes up to twice what it can; the interval around it is looked into more closely."""
+    """At a moment a late clock takes up to twice what it can; the interval around it is looked into closer."""
     late = {"timing": {"arm": 0.05}}
     found = cl.check(SCENES / "turntable_cell" / "case.yaml", tolerance=late)
     for one in found.record.budget:
