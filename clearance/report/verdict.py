@@ -161,7 +161,8 @@ def verdict_of(record: Record) -> Verdict:
     unproven = _unproven(record, judging)
     open_limits, with_tolerances = _of_tolerances(record, judgement)
     reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
-    reasons += [finding_line(finding) for finding in open_limits]
+    of_tolerances = [finding_line(finding) for finding in open_limits]
+    reasons = [*of_tolerances, *reasons] if measured in _PASSING else [*reasons, *of_tolerances]
     stale = () if judgement is None else judgement.faults
     reasons += stale
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]

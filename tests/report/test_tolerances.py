@@ -106,6 +106,13 @@ def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
     assert all(one.kind != TOLERANCES for one in findings_of(BROKEN))
 
 
+def test_what_is_not_proven_comes_before_what_is_near():
+    """Answers of many cases, and those with rules, tell the first reason alone."""
+    first, *others = verdict_of(OPEN).reasons
+    assert first.startswith("not proven to keep the fail limit of 0 mm with the tolerances")
+    assert any("below the warn limit" in told for told in others)
+
+
 def test_its_name_does_not_depend_on_numbers_or_bodies():
     moved = dataclasses.replace(OPEN.budget[0].worst[0].moment, link="fore", clearance=0.002)
     worst = dataclasses.replace(OPEN.budget[0].worst[0], moment=moved)
