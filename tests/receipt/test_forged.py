@@ -24,6 +24,9 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
+from clearance.world.robot import Joint, JointKind, Mimic
+from clearance.world.rules import Rule
+from clearance.world.timing import Window
 from tests.receipt.receipts import rewritten, saved, turning_arm
 
 
@@ -117,6 +120,71 @@ def test_another_case_with_the_hashes_of_this_one_is_not_proven(folder):
         other = replace(other, tolerance=loose().tolerance)
         rewritten(folder, head=receipt.head | {"data": case_data(other).digest})
         assert not proven(folder, other)
+
+
+def windowed(start: float, until: float = 2.0) -> cl.Case:
+    """The turning arm, of which the block is judged by a rule of its own from one time to another."""
+    rule = Rule(("bar", "block"), Window(start, until), name="late", fail=0.001)
+    return replace(turning_arm(), limits=cl.Limits(0.01, 0.02, rules=(rule,)))
+
+
+def test_a_window_of_a_rule_cannot_be_made_another(tmp_path):
+    data = saved(windowed(1.5), tmp_path)
+    receipt = read_receipt(tmp_path / FILE_NAME)
+    assert cl.verify(tmp_path, windowed(1.5)).proven
+    for start, until in ((1.0, 2.0), (0.0, 2.0), (1.0, 1.5), (0.5, 1.0)):
+        other = windowed(start, until)
+        with pytest.raises(BadSyntax, match="other numbers"):
+            cl.verify(tmp_path, other)
+        rewritten(tmp_path, head=receipt.head | {"data": case_data(other).digest})
+        assert not proven(tmp_path, other)
+        rewritten(tmp_path, head=receipt.head)
+    late = data.rules.index("late")
+    for own in (NOT_CLAIMED, receipt.claims[late].max() + round(1e-4 / UNIT)):
+        for interval in np.flatnonzero(receipt.claims[late] != NOT_CLAIMED):
+            claims = receipt.claims.copy()
+            claims[late, interval] = own
+            rewritten(tmp_path, claims=claims)
+            assert not proven(tmp_path, windowed(1.5))
+    rewritten(tmp_path, claims=receipt.claims[::-1].copy())
+    assert not proven(tmp_path, windowed(1.5))
+
+
+def following(multiplier: float, offset: float = 0.0) -> cl.Case:
+    """The turning arm with a second bar beside it, which follows it."""
+    case = turning_arm()
+    placed = case.robots[0]
+    at, axis = np.eye(4), np.array([0.0, 0.0, 1.0])
+    at[2, 3] = 0.2
+    mimic = Mimic("turn", multiplier, offset)
+    joint = Joint("follow", JointKind.REVOLUTE, "base", "second", at, axis, mimic=mimic)
+    bar = replace(placed.robot.bodies[0], name="second")
+    robot = replace(
+        placed.robot,
+        link_names=(*placed.robot.link_names, "second"),
+        joints=(*placed.robot.joints, joint),
+        bodies=(*placed.robot.bodies, bar),
+    )
+    return replace(case, robots=(replace(placed, robot=robot),))
+
+
+def test_a_joint_cannot_be_made_to_follow_otherwise(tmp_path):
+    saved(following(0.5), tmp_path)
+    receipt = read_receipt(tmp_path / FILE_NAME)
+    assert cl.verify(tmp_path, following(0.5)).proven
+    for multiplier, offset in ((1.5, 0.0), (-0.5, 0.0), (0.5, 0.5)):
+        other = following(multiplier, offset)
+        with pytest.raises(BadSyntax, match="other numbers"):
+            cl.verify(tmp_path, other)
+        rewritten(tmp_path, head=receipt.head | {"data": case_data(other).digest})
+        found = cl.verify(tmp_path, other)
+        assert not found.proven or least(other) >= min(found.bounds.values())
+        rewritten(tmp_path, head=receipt.head)
+
+
+def least(case: cl.Case) -> float:
+    """[m] of the run."""
+    return float(cl.check(case, certify=False).worst_sample["clearance"])
 
 
 def test_pairs_that_are_left_out_change_what_it_is_of(folder):
