@@ -82,12 +82,14 @@ def contact(
     pose_a: np.ndarray | None = None,
     pose_b: np.ndarray | None = None,
     rough: bool = False,
+    bounded: bool = True,
 ) -> Contact | None:
     """How two bodies overlap; None if they are apart.
 
     Args:
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
         rough: concave bodies are not cut, which takes milliseconds: bounds of the depth are wider.
+        bounded: False leaves the lower bound of the depth at 0 where it is not known anyway: half the work.
 
     Raises:
         BadPose: not a rigid motion. BadInput: a body without any extent in space. BadShape: a cloud of points.
@@ -108,7 +110,7 @@ def contact(
         pair = BodyPair(a, b, convex_parts(a, rough=rough), convex_parts(b, rough=rough))
     except ClearanceError as error:
         raise BadInput(f"a body in contact has no depth: {error.problem}") from None
-    return pair.contact(b_from_a, witness).placed(world_from_b)
+    return pair.contact(b_from_a, witness, bounded=bounded).placed(world_from_b)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,13 +159,15 @@ class BodyPair:
             return None
         return boolean.mesh_of(boolean.moved(one, b_from_a) ^ other)
 
-    def contact(self, b_from_a: np.ndarray, witness: np.ndarray) -> Contact:
+    def contact(
+        self, b_from_a: np.ndarray, witness: np.ndarray, *, bounded: bool = True
+    ) -> Contact:
         """The overlap in the frame of b, of bodies that are in contact.
 
         Args:
-            b_from_a: (4, 4) pose [m]. witness: (3,) a common point.
+            b_from_a: (4, 4) pose [m]. witness: (3,) a common point. bounded: as of `contact`.
         """
-        return _PlacedPair(self, b_from_a, witness).found()
+        return _PlacedPair(self, b_from_a, witness).found(bounded=bounded)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,9 +178,9 @@ class _PlacedPair:
     b_from_a: np.ndarray
     witness: np.ndarray
 
-    def found(self) -> Contact:
+    def found(self, *, bounded: bool) -> Contact:
         region, volume, volume_at_least = self._region
-        ray, at_least = self._depth()
+        ray, at_least = self._depth(bounded=bounded)
         return Contact(
             penetration=ray.length,
             penetration_at_least=min(at_least, ray.length),
@@ -214,8 +218,8 @@ class _PlacedPair:
 
     # ---- depth
 
-    def _depth(self) -> tuple[Ray, float]:
-        """The way out, and what no way out is shorter than."""
+    def _depth(self, *, bounded: bool) -> tuple[Ray, float]:
+        """The way out, and what no way out is shorter than, 0 where that is neither known nor asked for."""
         whole = penetration(_joined(self.outer_a), _joined(self.outer_b))
         ray = Ray(whole.depth, whole.direction)
         if self._both_convex and not self._faceted:
@@ -226,6 +230,8 @@ class _PlacedPair:
             extra = np.array([whole.direction, *(thin.direction for thin in self._thin_rays())])
             rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
+        if not bounded:
+            return ray, 0.0
         at_least = self._depth_of_balls() if self._by_region else self._depth_of_inner()
         is_close = at_least > CLOSE * ray.length
         return ray, max(at_least, self._width_of_region(at_least, only_convex=is_close))

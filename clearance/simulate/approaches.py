@@ -38,7 +38,8 @@ class Approach:
         clearances: (k,) [m] less padding; where the bodies overlap less their depth as well.
         points: (k, 2, 3) nearest points on a and b [m], world; of an overlap one in both.
         directions: (k, 3) unit vectors from a to b.
-        depths_at_least: (k,) [m] no shorter way parts the bodies where they overlap; 0 where they are apart.
+        depths_at_least: (k,) [m] no shorter way parts the bodies where they overlap; 0 where they are apart, or
+            where that was not asked for.
     """
 
     rule: RuleAnswer
@@ -74,12 +75,16 @@ OfPair = Callable[[Case, Pair], bool]
 
 
 def approaches(
-    rules: Sequence[RuleAnswer], beyond: float, chosen: OfPair | None = None
+    rules: Sequence[RuleAnswer],
+    beyond: float,
+    chosen: OfPair | None = None,
+    *,
+    bounded: bool = True,
 ) -> Iterator[Approach]:
     """All pairs that are less than `beyond` [m] above the fail limit of what judges them, with the steps.
 
     Args:
-        chosen: which pairs; None for all.
+        chosen: which pairs; None for all. bounded: whether depths are bounded from below as well.
     """
     for rule in rules:
         if rule.pairs is None:
@@ -90,7 +95,7 @@ def approaches(
                 pair = section.pairs[int(np.flatnonzero(section.places == place)[0])]
                 if chosen is not None and not chosen(section.phase.case, pair):
                     continue
-                yield from _approach(rule, section, pair, near.steps[rows])
+                yield from _approach(rule, section, pair, near.steps[rows], bounded=bounded)
 
 
 def approach_at(rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarray) -> Approach:
@@ -99,7 +104,7 @@ def approach_at(rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarra
 
 
 def _approach(
-    rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarray
+    rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarray, *, bounded: bool = True
 ) -> Iterator[Approach]:
     phase = section.phase
     case, own = phase.case, steps - phase.first
@@ -116,15 +121,15 @@ def _approach(
     )  # fmt: skip
     touching = np.flatnonzero(~apart)
     if len(touching):
-        told = _with_depths(told, touching)
+        told = _with_depths(told, touching, bounded=bounded)
     yield told
 
 
-def _with_depths(told: Approach, touching: np.ndarray) -> Approach:
+def _with_depths(told: Approach, touching: np.ndarray, *, bounded: bool) -> Approach:
     """The approach with depth and way out at some of the steps in contact; the others are left out."""
     chosen = touching[np.unique(np.linspace(0, len(touching) - 1, MOST_DEPTHS).astype(int))]
     case, pair = told.case, told.pair
-    overlaps = Overlaps(*(body.shape_in(case) for body in pair))
+    overlaps = Overlaps(*(body.shape_in(case) for body in pair), bounded=bounded)
     kept = set(np.flatnonzero(told.directions.any(axis=1)).tolist())
     columns = [told.clearances.copy(), told.points.copy(), told.directions.copy()]
     columns.append(told.depths_at_least.copy())

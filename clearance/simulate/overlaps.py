@@ -31,10 +31,14 @@ class BodyOverlap(NamedTuple):
 
 
 class Overlaps:
-    """The overlaps of two bodies in any pose."""
+    """The overlaps of two bodies in any pose.
 
-    def __init__(self, a: Polyhedron, b: Polyhedron) -> None:
-        self.shapes = a, b
+    Args:
+        bounded: False leaves `at_least` at 0 where it is not known anyway.
+    """
+
+    def __init__(self, a: Polyhedron, b: Polyhedron, *, bounded: bool = True) -> None:
+        self.shapes, self.bounded = (a, b), bounded
 
     def at(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
         """That at two poses (4, 4) [m]; None where they are apart, or no way out is known: the middle of a ball
@@ -43,7 +47,9 @@ class Overlaps:
             return self._of_balls(pose_a, pose_b)
         from clearance.query.contact import contact
 
-        found = contact(*self.shapes, pose_a=pose_a, pose_b=pose_b, rough=True)
+        found = contact(
+            *self.shapes, pose_a=pose_a, pose_b=pose_b, rough=True, bounded=self.bounded
+        )
         if found is None:
             return None
         return BodyOverlap(

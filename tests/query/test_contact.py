@@ -126,6 +126,9 @@ def test_a_concave_body_is_left_by_its_hollow():
     assert found.direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
     assert not found.exact[0]
     holds_what_it_says(peg, body, pose, np.eye(4), found)
+    rough = cl.contact(peg, body, pose_a=pose, bounded=False)
+    assert (rough.penetration, rough.penetration_at_least) == (found.penetration, 0.0)
+    assert np.array_equal(rough.direction, found.direction)
 
 
 @WITH_LIBRARIES
