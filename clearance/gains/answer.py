@@ -16,9 +16,11 @@ import numpy as np
 from clearance.errors import BadInput, UnknownRobot, nearest_name
 from clearance.gains.binding_constraints import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.delay import TimingResult, least_delay, least_slowing
+from clearance.gains.detours import flat_moment, from_beside
 from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.lower_bounds import least_base, least_offset, least_shift
 from clearance.gains.obstruction import (
+    HOPELESS,
     HOWEVER_SLOW,
     NOT_FOUND,
     TOO_FAR,
@@ -230,19 +232,16 @@ def _by_path(case: Case, request: Request) -> Gain:
     for i_robot in changed:
         require_within_limits(case.robots[i_robot])
         require_in_path(case.robots[i_robot], request.keep_tool)
+    first: State | None = None
     for n_intervals in INTERVALS:
         offsets = _offsets(case, changed, n_intervals, request)
         search = Search(offsets, request.margin)
-        first = search.first_state()
+        first = search.first_state(first)
         require_in_run(request.keep, first.record.timeline.times)
         at_least = least_offset(offsets, first, request.margin)
-        blocked = blocked_by(first, offsets.gradient, offsets.transfers)
-        if blocked is not None:
-            blocked = _kept_still(blocked, first, offsets, request)
-        elif isinstance(offsets, JointOffsets):
-            blocked = tool_obstruction(first, offsets)
-        found = SearchResult(first, None, 1) if blocked else search.from_state(first)
-        if found.kept:
+        blocked = _path_obstruction(first, offsets, request)
+        found = SearchResult(first, None, 1) if blocked else _least_path(search, offsets, first)
+        if found.kept or blocked:
             break
     who = ", ".join(case.robots[i].robot.name for i in changed)
     change = offsets.offsets(found.state.x)
@@ -252,6 +251,27 @@ def _by_path(case: Case, request: Request) -> Gain:
         name for part in offsets.parts for name in part.placed.given_trajectory.joint_names
     )
     return replace(told, joint_names=names, tool_moves=moves)
+
+
+def _path_obstruction(
+    first: State, offsets: JointOffsets | PathsTogether, request: Request
+) -> Obstruction | None:
+    """What no change of the path mends; None where that is not known."""
+    blocked = blocked_by(first, offsets.gradient, offsets.transfers)
+    if blocked is not None:
+        blocked = _kept_still(blocked, first, offsets, request)
+        return blocked if blocked.why in HOPELESS else None
+    return tool_obstruction(first, offsets) if isinstance(offsets, JointOffsets) else None
+
+
+def _least_path(
+    search: Search, offsets: JointOffsets | PathsTogether, first: State
+) -> SearchResult:
+    """The least of a search from a path as it is, and, where that ends at a pair that no small step parts, from
+    beside it."""
+    found = search.from_state(first)
+    flat = None if found.kept else flat_moment(found.state, offsets)
+    return found if flat is None else from_beside(search, offsets, flat) or found
 
 
 def _offsets(

@@ -24,7 +24,7 @@ from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import motion_of_frame, moves_with_joints
+from clearance.simulate.point_motion import motion_of_frame, moves_apart
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import link_poses_at
@@ -149,16 +149,16 @@ class JointOffsets:
         return replace(self.placed, trajectory=changed)
 
     def moves(self, case: Case, pair: Pair) -> bool:
-        by_joint = any(moves_with_joints(case, body, self.columns) for body in pair)
+        by_joint = moves_apart(case, pair, self.columns)
         return by_joint or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.transfers.has(approach):
             size = self.n_joints * self.n_splines
             return Grasps(timeline, self._of_frame, size).gradient(approach)
-        by_joint = approach.by_columns()[:, self.columns]
-        if not by_joint.any():
+        if not moves_apart(approach.case, approach.pair, self.columns):
             return None
+        by_joint = approach.by_columns()[:, self.columns]
         splines = self._between_samples(self._table_times(approach))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
 

@@ -39,8 +39,17 @@ PATIENCE, LESS = 6, 0.9
 BLIND = 8
 """Steps from contact to contact that are taken whatever comes of them: depths jump where the way out does."""
 
-MOST_PROOFS = 8
+MOST_PROOFS = 12
 """Times that the motion between the steps may ask for more."""
+
+ALMOST, MENDING = 1e-4, 4
+"""[m] Where a search ends with less missing, so many steps go on to keep all: its price was too low."""
+
+NEARBY = 0.005
+"""[-] Of the first reach, how far these steps go: no more curvature is met then than may be missed."""
+
+AGAIN = 0.2
+"""[-] Of the first reach, how far a step may go at first where little more is wanted than is kept."""
 
 FINE = 2e-7
 """[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
@@ -151,10 +160,18 @@ class Search:
         self.known: list[np.ndarray] = []
         self.places: list[np.ndarray] = []
         self.below = np.inf
+        self.least: State | None = None
 
-    def first_state(self) -> State:
-        """The case as it is, measured, with what comes near though no change moves it."""
-        return replace(self.state_at(np.zeros(len(self.change.first_reach))), moved=None)
+    def first_state(self, known: State | None = None) -> State:
+        """The case as it is, measured, with what comes near though no change moves it.
+
+        Args:
+            known: it as it was measured for other variables of the same bodies; None to measure it.
+        """
+        x = np.zeros(len(self.change.first_reach))
+        if known is None:
+            return replace(self.state_at(x), moved=None, bounded=True)
+        return known.about(x, self.change.beside(x, self.wanted.beyond))
 
     def state_at(self, x: np.ndarray) -> State:
         """The case of some variables (m,), measured."""
@@ -164,8 +181,8 @@ class Search:
         """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
         self.known, self.places, self.below = self.known + self.places, [state.x], below * SURELY
-        for _ in range(MOST_PROOFS):
-            state = self._improved(state)
+        for i in range(MOST_PROOFS):
+            state = self._improved(state, AGAIN if i else 1.0)
             if self._is_known(state):
                 break
             if state.worst > FINE or self.change.size(state.x) >= self.below:
@@ -197,14 +214,40 @@ class Search:
         found = measured(self.change.case_of(x), x, self.wanted, beyond, self.change.moves)
         return replace(found, beside=self.change.beside(x, self.wanted.beyond))
 
-    def _improved(self, state: State) -> State:
-        """The best state that steps from one lead to."""
+    def _improved(self, state: State, share: float = 1.0) -> State:
+        """The best state that steps from one lead to: one on the way that keeps all, where the last does not.
+
+        Args:
+            share: [-] of the first reach, how far the first step may go.
+        """
+        self.least = None
+        self._note(state)
+        end = self._end_of_steps(state, share)
+        if FINE < end.worst < ALMOST:
+            end = self._mended(end, NEARBY * self.change.first_reach)
+        return end if end.worst <= FINE or self.least is None else self.least
+
+    def _mended(self, state: State, reach: np.ndarray) -> State:
+        """The state that steps from one that misses little lead to, whatever they cost."""
+        for _ in range(MENDING):
+            x = self._aim(state, state.rows(self.change.gradient), reach)
+            tried = self._state(x, reach)
+            if tried.worst > 0.5 * state.worst:
+                return state
+            state = tried.seen_within(self.change.swing(reach) + FINE)
+            if state.worst <= FINE:
+                break
+        return state
+
+    def _end_of_steps(self, state: State, share: float) -> State:
+        """The state that steps from one end at."""
         if not len(state.x):
             return state
-        reach, missing, blind = self.change.first_reach, [state.worst], BLIND
+        reach, missing, blind = share * self.change.first_reach, [state.worst], BLIND
         rows = state.rows(self.change.gradient)
         for _ in range(MOST_STEPS):
-            if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
+            late = missing[-PATIENCE:]
+            if len(missing) > PATIENCE and min(late) > FINE and late[-1] > LESS * late[0]:
                 return state
             x = self._aim(state, rows, reach)
             left = _foretold(rows, x - state.x)
@@ -226,12 +269,20 @@ class Search:
             if done > GOOD_SHARE * gain:
                 reach = self._next_reach(reach, x - state.x)
             state = tried.seen_within(self.change.swing(reach) + FINE)
+            self._note(state)
             if self._is_known(state):
                 return state
             self.places.append(state.x)
             rows = state.rows(self.change.gradient)
             missing.append(state.worst)
         return state
+
+    def _note(self, state: State) -> None:
+        """Keeps the smallest change that keeps all."""
+        if state.worst <= FINE and (
+            self.least is None or self.change.size(state.x) < self.change.size(self.least.x)
+        ):
+            self.least = state
 
     def _next_reach(self, reach: np.ndarray, step: np.ndarray) -> np.ndarray:
         """(m,) how far the next step may go after one that did what was foretold.

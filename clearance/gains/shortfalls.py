@@ -27,6 +27,9 @@ from clearance.world.timeline import Timeline
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 
+MORE = 4e-7
+"""[m] What is wanted beyond, at least, where a motion is not proven: less would be at what counts as kept."""
+
 TOUCHING = CERTIFY_GAP
 """[m] What is wanted beyond, at least, where bodies touch between two steps."""
 
@@ -40,6 +43,9 @@ SAME = 1e-9
 
 MOMENTS = 7
 """Of each interval that is looked into."""
+
+OF_CASE = ("near", "_holds", "_extra")
+"""What a state knows of its case alone, whatever its variables are."""
 
 MOST_INTERVALS = 32
 """That are looked into at a time, those that fall short by most."""
@@ -93,6 +99,7 @@ class State:
         x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
         beside: what is kept beside clearances; None for nothing.
         moved: the pairs that are looked at, those that the change may move; None for all.
+        bounded: depths are bounded from below as well.
     """
 
     x: np.ndarray
@@ -102,13 +109,14 @@ class State:
     wanted: Requirement
     beside: Rows | None = None
     moved: OfPair | None = None
+    bounded: bool = False
 
     @cached_property
     def near(self) -> Sequence[Approach]:
         """All that comes near, at the steps."""
         extra = float(self._extra.max(initial=0.0))
         within = self.margin + self.wanted.beyond + extra + self.beyond
-        return [*approaches(self.record.rules, within, self.moved)]
+        return [*approaches(self.record.rules, within, self.moved, bounded=self.bounded)]
 
     @property
     def touches(self) -> bool:
@@ -138,6 +146,16 @@ class State:
             (rule.measurement.clearance < rule.limits.fail + wanted).any()
             for rule in self.record.rules
         )
+
+    def about(self, x: np.ndarray, beside: Rows | None) -> State:
+        """The same case as it is, about other variables (m,), of which none changes it.
+
+        Args:
+            beside: what is kept beside clearances, of these variables.
+        """
+        again = replace(self, x=x, beside=beside)
+        vars(again).update({name: one for name, one in vars(self).items() if name in OF_CASE})
+        return again
 
     def seen_within(self, beyond: float) -> State:
         """The same with what comes near within `beyond` [m], where nothing has been looked at yet."""
@@ -212,6 +230,7 @@ def raised(
     short = short_of(record)
     again = np.maximum(2.0 * np.maximum(before, np.append(before[1:], 0.0)), TOUCHING)
     short = np.where(_touching(record), np.maximum(short, again), short)
+    short = np.where(short > 0.0, np.maximum(short, MORE), 0.0)
     short[np.asarray(spared, dtype=np.int64)] = 0.0
     extra = before + np.maximum(short, np.append(0.0, short[:-1]))
     more = wanted.more + short[intervals(times, wanted.moments)]

@@ -12,7 +12,7 @@ import numpy as np
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, carried_by, forest_of, owner_of
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import BodyIndex, Pair
 
 Thing = tuple[bool, int]
 """An obstacle (True, its place among those of the case) or a robot (False, its place)."""
@@ -52,11 +52,28 @@ def motion_of_frame(case: Case, poses: np.ndarray, frame: int, points: np.ndarra
 
 def moves_with_joints(case: Case, body: BodyIndex, columns: Collection[int]) -> bool:
     """True if a joint that follows one of some columns of the forest moves a body."""
-    forest, frame = forest_of(case), body.frame_in(case)
-    links = forest.links
-    return frame != WORLD and any(
+    return _has_joint(case, _under(case, body), columns)
+
+
+def moves_apart(case: Case, pair: Pair, columns: Collection[int]) -> bool:
+    """False if no joint that follows one of some columns of the forest is between two bodies.
+
+    They are as near then wherever these joints are. A joint that carries both is not between them.
+    """
+    return _has_joint(case, _under(case, pair.a) ^ _under(case, pair.b), columns)
+
+
+def _under(case: Case, body: BodyIndex) -> set[int]:
+    """The links of the forest that carry a body."""
+    frame = body.frame_in(case)
+    return set() if frame == WORLD else set(carried_by(forest_of(case), frame))
+
+
+def _has_joint(case: Case, under: set[int], columns: Collection[int]) -> bool:
+    links = forest_of(case).links
+    return any(
         links.kinds[link] in (TURNING, SLIDING) and links.factors[link] != 0.0
-        for link in carried_by(forest, frame)
+        for link in under
         if links.columns[link] in columns
     )
 

@@ -7,6 +7,7 @@ import pytest
 from scipy.sparse import csr_array
 
 import clearance as cl
+from clearance.gains import shortfalls
 from clearance.gains.programme import Box, Inequalities, least_norm, within_reach
 from clearance.gains.search import FINE, Search
 from clearance.gains.shift import base_shift
@@ -60,6 +61,35 @@ def test_no_step_is_taken_from_a_change_that_keeps_its_limits_into_contact(monke
     monkeypatch.setattr(Search, "_state", lambda _, x, reach: Step(x))
     found = Search(OneVariable(), 0.0)._improved(Step(np.array([1.5])))
     assert found.worst == 0.0 and 1.0 <= found.x[0] <= 1.2
+
+
+def test_a_search_that_ends_where_a_little_is_missing_gives_back_what_kept_all_on_the_way(
+    monkeypatch,
+):
+    """The price is too low: a step to half the size leaves 10 um, and no step mends them."""
+
+    @dataclass(frozen=True)
+    class Short(Step):
+        touches = False
+
+        @property
+        def worst(self):
+            return 1e-5 if self.x[0] < 1.0 else 0.0
+
+    monkeypatch.setattr(Search, "_state", lambda _, x, reach: Short(x))
+    found = Search(OneVariable(), 0.0)._improved(Short(np.array([1.5])))
+    assert found.worst == 0.0 and 1.0 <= found.x[0] <= 1.5
+
+
+def test_more_is_wanted_of_a_motion_that_is_hardly_not_proven_than_counts_as_kept(monkeypatch):
+    """Else as much as is missing might be asked for again and again, and no step be worth it."""
+    record = cl.check(slot(fail=0.04, off=0.0)).record
+    n_steps = len(record.motions[0].times)
+    short = np.zeros(n_steps)
+    short[3] = 1e-9
+    monkeypatch.setattr(shortfalls, "short_of", lambda _: short.copy())
+    wanted = shortfalls.raised(shortfalls.Requirement(0.0, 0.0, np.zeros(0)), record)
+    assert np.flatnonzero(wanted.extra).tolist() == [3, 4] and wanted.extra.max() > FINE
 
 
 def test_only_pairs_that_a_change_may_move_are_looked_at_once_the_case_as_it_is_was_looked_at_whole():
