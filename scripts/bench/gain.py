@@ -21,7 +21,7 @@ import inputs  # first: it sets the number of threads before numpy is loaded
 from gain_cases import KINDS, intervals_of
 from gain_drake import drake_path, has_drake, takes
 from gain_files import CaseOnDisk, cases_in, kept_afresh, kept_by_command, write_proposal
-from gain_general import general_change
+from gain_general import STARTS, general_change
 from gain_journal import Journal, Row
 from gain_summary import line_of, print_summary
 from rich.console import Console
@@ -60,7 +60,7 @@ def general(cases: list[CaseOnDisk], journal: Journal, asked: argparse.Namespace
         kept = [row for row in _ours_by_now(asked, kind) if row["kept"]]
         for row in kept[: asked.n]:
             done = journal.rows.get(int(row["case"]))
-            if not _is_same(done, row) or done["given"] < asked.seconds:
+            if not _is_same(done, row) or not _is_over(done, asked.seconds):
                 found = general_change(
                     cases[int(row["case"])], int(row["intervals"]), asked.seconds
                 )
@@ -90,6 +90,11 @@ def _ours_by_now(asked: argparse.Namespace, kind: str) -> list[Row]:
 def _is_same(done: Row | None, row: Row) -> bool:
     """Whether a row is there, on the splines that ours is on."""
     return done is not None and done["intervals"] == row["intervals"]
+
+
+def _is_over(done: Row, seconds: float) -> bool:
+    """Whether so many seconds would come to no more: as many were given, or all searches came to an end."""
+    return bool(done["given"] >= seconds or done["starts"] == STARTS)
 
 
 def _note(journal: Journal, row: Row, asked: argparse.Namespace, found: Row) -> None:
