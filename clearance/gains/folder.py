@@ -55,7 +55,7 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
         (fresh / PAGE).write_text(page, encoding="utf-8")
         for name, run in zip(REPORTS, (gain.before, gain.after), strict=True):
             if drawn:
-                run.save(fresh / name)
+                run.save(fresh / name, earlier=gain.before if name == REPORTS[1] else None)
 
     fill_folder(folder, fill, (*names, *REPORTS))
     return folder

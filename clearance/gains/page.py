@@ -165,11 +165,13 @@ def _worst(name: str, run: Run, proven: float | None) -> Markup:
 
 
 def _reports(gain: Gain) -> Markup:
+    both = " of both motions" if gain.size > 0.0 else ""
     links = [
         element(
-            "li", element("a", f"the report {name}, with its replay", href=f"{name}/report.html")
+            "li",
+            element("a", f"the report {name}, with its replay{what}", href=f"{name}/report.html"),
         )
-        for name in NAMES
+        for name, what in zip(NAMES, ("", both), strict=True)
     ]
     return section("Both motions", element("ul", *links, class_="beside"))
 

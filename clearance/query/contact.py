@@ -159,13 +159,11 @@ class BodyPair:
             return None
         return boolean.mesh_of(boolean.moved(one, b_from_a) ^ other)
 
-    def contact(
-        self, b_from_a: np.ndarray, witness: np.ndarray, *, bounded: bool = True
-    ) -> Contact:
+    def contact(self, b_from_a: np.ndarray, witness: np.ndarray, bounded: bool = True) -> Contact:
         """The overlap in the frame of b, of bodies that are in contact.
 
         Args:
-            b_from_a: (4, 4) pose [m]. witness: (3,) a common point. bounded: as of `contact`.
+            b_from_a: (4, 4) pose [m]. witness: (3,) a common point. bounded: as there.
         """
         return _PlacedPair(self, b_from_a, witness).found(bounded=bounded)
 
@@ -336,8 +334,6 @@ class _PlacedPair:
         except ClearanceError:  # thinner than rounding
             return 0.0
         return max((penetration(part, part).at_least for part in parts), default=0.0)
-
-    # ---- region
 
     @property
     def _faceted(self) -> bool:

@@ -10,6 +10,7 @@ from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
 from clearance.report.budget_table import FILE_NAME as BUDGET
 from clearance.report.budget_table import budget_table
+from clearance.report.earlier_motion import earlier_motion
 from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.moments_file import FILE_NAME as MOMENTS
@@ -52,6 +53,7 @@ def write(
     folder: str | Path,
     kept: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
+    earlier: Record | None = None,
 ) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, where there are tolerances `budget.csv`,
     `worst_moments.yaml`, `replay.npz`, `findings.json`, `report.html` and, last, `summary.json`.
@@ -63,7 +65,7 @@ def write(
 
     Args:
         kept: where the record's rows are; files on the way to `folder` lie beside them.
-        comparison: with a baseline, for the page.
+        comparison: with a baseline, for the page. earlier: of the same bodies before a change, for the replay.
 
     Raises:
         Unwritable: `folder` cannot be written.
@@ -73,7 +75,9 @@ def write(
     moments = moments_text(record)
     found = findings_file.finding_list_of(record)
     told = findings(found.findings, comparison)
-    page = page_of(summary, replay, pictures, pair_curves(record, kept), told, more_curves(record))
+    before = [] if earlier is None else earlier_motion(earlier, replay)
+    curves = pair_curves(record, kept)
+    page = page_of(summary, replay, pictures, curves, told, more_curves(record), before)
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")

@@ -22,6 +22,7 @@ from markupsafe import Markup
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
+from clearance.report.earlier_motion import EarlierBody
 from clearance.report.head import head_of
 from clearance.report.markup import element
 from clearance.report.more_curves import PageCurve
@@ -46,6 +47,7 @@ def page_of(
     curves: PairCurves | None = None,
     findings: Markup = NOTHING,
     more: Sequence[PageCurve] = (),
+    earlier: Sequence[EarlierBody] = (),
 ) -> str:
     """The whole page.
 
@@ -53,7 +55,7 @@ def page_of(
         pictures: SVG of each profile by its name.
         curves: each pair's own, if every pair was measured at every step.
         findings: the section of what each rule comes to.
-        more: curves beside that of the clearance.
+        more: curves beside that of the clearance. earlier: where bodies were before a change.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -66,12 +68,15 @@ def page_of(
         sections=sections(summary, pictures or {}, findings),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
         data=_json_inside_script(
-            _data(summary, replay) | _pairs(summary, replay, curves) | _more(more)
+            _data(summary, replay)
+            | _pairs(summary, replay, curves)
+            | _more(more)
+            | _earlier(earlier)
         ),
         plotly=_inside_script(_plotly()),
         meshcat=_inside_script(_meshcat()),
         replay_script=_inside_script(_own("replay.js")),
-        page_script=_inside_script(_page_script(more)),
+        page_script=_inside_script(_page_script(more, earlier)),
     )
 
 
@@ -166,9 +171,21 @@ def _more(curves: Sequence[PageCurve]) -> dict[str, Any]:
     return {"more": told} if told else {}
 
 
-def _page_script(curves: Sequence[PageCurve]) -> str:
-    """The page's own script; after the one that draws further curves, where there are some."""
-    return (_own("more_curves.js") if curves else "") + _own("page.js")
+def _earlier(bodies: Sequence[EarlierBody]) -> dict[str, Any]:
+    """Where bodies were before a change; nothing where there is none."""
+    told = [
+        {"body": one.i_body, "poses": _floats(one.poses, "<f4"), "shown": _flags(one.shown)}
+        for one in bodies
+    ]
+    return {"earlier": told} if told else {}
+
+
+def _page_script(curves: Sequence[PageCurve], earlier: Sequence[EarlierBody]) -> str:
+    """The page's own script; after those that draw further curves, and a motion before, where there are some."""
+    first = (_own("more_curves.js") if curves else "") + (
+        _own("earlier_motion.js") if earlier else ""
+    )
+    return first + _own("page.js")
 
 
 def _style(summary: dict[str, Any]) -> str:

@@ -139,11 +139,18 @@ class Run:
 
         return findings_of(self.record)
 
-    def save(self, folder: str | Path, comparison: Comparison | None = None) -> Path:
+    def save(
+        self,
+        folder: str | Path,
+        comparison: Comparison | None = None,
+        *,
+        earlier: Run | None = None,
+    ) -> Path:
         """Writes steps.parquet, steps.csv, findings.json, summary.json and report.html into `folder`; returns it.
 
         Args:
-            comparison: with a baseline, for the page.
+            comparison: with a baseline, for the page. earlier: a run of the same bodies before a change, which the
+                replay shows as well.
 
         Raises:
             BadInput: no path. Unwritable: nothing is left half-written.
@@ -152,7 +159,8 @@ class Run:
 
         if not isinstance(folder, str | PathLike) or not str(folder):
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
-        write(self.record, folder, self.rows, comparison)
+        before = None if earlier is None else earlier.record
+        write(self.record, folder, self.rows, comparison, before)
         return Path(folder)
 
 

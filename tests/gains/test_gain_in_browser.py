@@ -28,6 +28,17 @@ def test_the_page_fits_and_leads_to_both_replays(tmp_path):
         for link in links:
             page.open(link, "window.clearance", 1400)
             assert "What this clearance changes by" in page.run("document.body.textContent")
+        before = page.run("window.clearance.state()")
+        assert before["earlier"]["tool"][1] == pytest.approx(
+            before["bodies"]["tool"][1] + 0.02, abs=1e-6
+        )
+        page.run("document.getElementById('earlier-motion').click()")
+        assert page.run("window.clearance.state().earlier") == {}
+        page.run("window.clearance.showFrame(0)")
+        assert page.run("window.clearance.state().earlier") == {}
+        page.run("document.getElementById('earlier-motion').click()")
+        start = page.run("window.clearance.state()")
+        assert start["earlier"]["tool"] == pytest.approx(start["bodies"]["tool"], abs=1e-6)
         assert not page.errors and all(url.startswith(("file:", "data:")) for url in page.requests)
 
 
