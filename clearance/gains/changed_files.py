@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.answer import Gain
+from clearance.gains.shift import first_pose
 from clearance.gains.turn import ARM, Pivot
 from clearance.load.case.case_document import ScenePlace, read_schema
 from clearance.load.case.case_file import read_case
@@ -31,6 +32,7 @@ from clearance.load.schema.obstacle import Obstacle as ObstacleRow
 from clearance.run import Question, Run, answer
 from clearance.world.case import index_of_robot
 from clearance.world.notice import Severity
+from clearance.world.pose_table import PoseTable
 
 CASE, SCENE, MOVES = "case.yaml", "scene.yaml", "moves.csv"
 TRAJECTORY, MESSAGE = "trajectory.csv", "trajectory.yaml"
@@ -187,7 +189,7 @@ class _Files:
             before = next(one for one in was if one.name == name).world_from_body
             row["pose"] = self._pose(row.get("pose", {}), before, made.world_from_body)
             return
-        self.contents[MOVES] = self._poses(made.moves.positions)
+        self.contents[MOVES] = self._poses(made.moves)
         old = row["moves"]
         kept = {} if isinstance(old, str) else {key: old[key] for key in WHEN if key in old}
         file = MOVES if not written_out else str(self.folder.absolute() / MOVES)
@@ -202,8 +204,8 @@ class _Files:
         kept = {key: one for key, one in given.items() if key not in ("rpy", "quat_xyzw")}
         return {**kept, "xyz": place, "quat_xyzw": quaternion}
 
-    def _poses(self, positions: np.ndarray) -> bytes:
-        """The obstacle's table with other places; turns as they stand in its file."""
+    def _poses(self, made: PoseTable) -> bytes:
+        """The obstacle's table with other places; where it is not turned, turns as they stand in its file."""
         given: ObstacleRow = next(
             one for one in self.given.scene.obstacles if one.name == self.gain.who
         )
@@ -212,7 +214,17 @@ class _Files:
         opened, n_bytes = self.read.unread(path)
         asked = PoseRequest(opened, n_bytes, given.moves.length)
         samples = read_samples(asked, self.read.shown(path)).samples
-        plain = replace(samples, positions=positions, frame="", child="", stamp=0)
+        plain = replace(samples, positions=made.positions, frame="", child="", stamp=0)
+        turn, change = self.gain.request.turn, self.gain.change
+        if turn is not None and change[3] != 0.0:
+            was = next(
+                one.moves
+                for one in self.gain.before.record.case.obstacles
+                if one.name == self.gain.who
+            )
+            assert was is not None
+            pivot, x = Pivot(turn, first_pose(was)), np.append(change[:3], change[3] * ARM)
+            plain = replace(plain, quaternions=pivot.moved_table(was, x)[1])
         text, notes = written_poses(plain, MOVES)
         self.notes += [f"{MOVES}: {note}" for note in notes]
         return text

@@ -120,6 +120,9 @@ def _about(gain: Gain) -> str:
     turn = gain.request.turn
     assert turn is not None
     through = "its origin"
+    moving = [one.name for one in gain.case.obstacles if one.moves is not None]
+    if gain.request.kind == "obstacle" and gain.who in moving:
+        through = "its origin at its first sample"
     if turn.about is not None:
         through = ", ".join(f"{1e3 * one:g}" for one in turn.about) + " mm"
     counted = 1e3 * math.radians(1.0) * ARM

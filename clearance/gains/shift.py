@@ -18,6 +18,7 @@ from clearance.gains.grasp import Grasps
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
+from clearance.geometry.pose import inverse, pose_from_quaternion
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
@@ -26,8 +27,10 @@ from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of
 from clearance.world.forest import carried_by, forest_of
+from clearance.world.knots import knots_of, looped
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.phase import Phase
+from clearance.world.pose_table import PoseTable
 from clearance.world.timeline import Timeline
 
 FIRST_REACH = 0.02
@@ -139,8 +142,7 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
     """The shift of an obstacle, and of what stands on it.
 
     Raises:
-        UnknownObstacle: with the nearest name. BadInput: it is carried, or rides on something; it moves by a table
-            and is to be turned.
+        UnknownObstacle: with the nearest name. BadInput: it is carried, or rides on something.
     """
     names = [obstacle.name for obstacle in case.obstacles]
     if name not in names:
@@ -153,12 +155,8 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
         )
 
     asked = case.obstacles[i_obstacle]
-    if turn is not None and asked.moves is not None:
-        raise BadInput(
-            f"obstacle {name!r} moves by a table, which is shifted and not turned",
-            valid="a turn of an obstacle that stands",
-        )
-    pivot = None if turn is None else Pivot(turn, asked.world_from_body)
+    start = asked.world_from_body if asked.moves is None else first_pose(asked.moves)
+    pivot = None if turn is None else Pivot(turn, start)
 
     def place(whole: Case, x: np.ndarray) -> Case:
         obstacles = list(whole.obstacles)
@@ -169,9 +167,14 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
         return moves_with_obstacle(plain, body, i_obstacle)
 
     def pose_in(plain: Case) -> np.ndarray:
-        return plain.obstacles[i_obstacle].world_from_body
+        now = plain.obstacles[i_obstacle]
+        if asked.moves is None or now.moves is None:
+            return now.world_from_body
+        return _moved_by(asked.moves, now.moves) @ start
 
     radius = float(np.linalg.norm(np.abs(asked.body.shape.bounds).max(axis=0)))
+    if asked.moves is not None and pivot is not None:
+        radius += float(np.linalg.norm(asked.moves.positions - pivot.at, axis=1).max())
     transfers = Transfers(case, (True, i_obstacle))
     return _shift(Shift(case, transfers, moved, place, pose_in, box, radius), pivot)
 
@@ -227,7 +230,34 @@ def _moved_obstacle(obstacle: Obstacle, x: np.ndarray, pivot: Pivot | None) -> O
     if obstacle.moves is None:
         return replace(obstacle, world_from_body=_moved(obstacle.world_from_body, x, pivot))
     table = obstacle.moves
-    return replace(obstacle, moves=replace(table, positions=table.positions + x))
+    if pivot is None or x[3] == 0.0:
+        return replace(obstacle, moves=table.at_places(table.positions + x[:3]))
+    positions, quaternions = pivot.moved_table(table, x)
+    return replace(obstacle, moves=replace(table, positions=positions, quaternions=quaternions))
+
+
+def first_pose(table: PoseTable) -> np.ndarray:
+    """(4, 4) [m] of a table's first sample."""
+    return pose_from_quaternion(table.positions[0].tolist(), table.quaternions[0].tolist())
+
+
+def _moved_by(asked: PoseTable, now: PoseTable) -> np.ndarray:
+    """(4, 4) [m] what a whole motion was moved by, all its poses alike.
+
+    Args:
+        asked: as it was. now: a stretch of it as it is, at times of the run: it is looked at half-way between two
+            of its samples, where it does not jump.
+    """
+    middle = np.array([0.5 * (now.times[0] + now.times[min(1, len(now) - 1)])])
+    knots = knots_of(asked.timing.run_times(asked.times), asked.columns, n_rotation=4)
+    if asked.timing.after == "loop":
+        knots = looped(knots, float(middle[0]) + 1e-9)
+    was, place = knots.values_at(middle)[0], now.after(0, 0.5)
+    before, after = (
+        pose_from_quaternion(one[:3].tolist(), (one[3:] / np.linalg.norm(one[3:])).tolist())
+        for one in (was, place)
+    )
+    return np.asarray(after @ inverse(before))
 
 
 def _moved(pose: np.ndarray, x: np.ndarray, pivot: Pivot | None) -> np.ndarray:

@@ -14,6 +14,8 @@ from clearance.geometry.quaternions import quaternions_of
 from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.world.pairs import BodyIndex
+from clearance.world.pose_table import PoseTable
+from clearance.world.slerp import product
 
 AXES = ("x", "y", "z")
 
@@ -102,6 +104,17 @@ class Pivot:
         pose = self.pose.copy()
         pose[:3, 3] = place
         return pose
+
+    def moved_table(self, table: PoseTable, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n, 3) places [m] and (n, 4) quaternions of a motion's samples after a change with a turn, as files have
+        them.
+
+        Args:
+            x: as of `placed`.
+        """
+        turned = _rotation(self.turn.direction, float(x[3]) / ARM)
+        places = (table.positions - self.at) @ turned.T + self.at + x[:3]
+        return places, product(quaternions_of(turned[None]), table.quaternions)
 
     def by_unit(self, points: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """(k, 3) how points of the thing, which is at a pose, move for each unit of the last variable."""

@@ -24,7 +24,7 @@ def slerp(before: np.ndarray, after: np.ndarray, share: np.ndarray | float) -> n
     share = np.asarray(share, dtype=np.float64)[..., None]
     arcs = arcs_between(before, after)
     half = 0.5 * share * arcs[..., 3:]
-    between = _product(before, np.concatenate([np.sin(half) * arcs[..., :3], np.cos(half)], -1))
+    between = product(before, np.concatenate([np.sin(half) * arcs[..., :3], np.cos(half)], -1))
     return np.where(share == 0.0, before, np.where(share == 1.0, after, between))
 
 
@@ -81,7 +81,7 @@ def _across(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     )
 
 
-def _product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+def product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """(..., 4) the quaternion p q: the turn q, then p."""
     (px, py, pz, pw), (qx, qy, qz, qw) = np.moveaxis(p, -1, 0), np.moveaxis(q, -1, 0)
     return np.stack(

@@ -70,10 +70,3 @@ def test_a_box_is_kept_and_what_is_beyond_it_is_said():
         not found.kept and found.n_measured == 1 and "within what is allowed" in str(found.blocked)
     )
     assert cl.gain(slot(), "base", within=(0.0, (-0.021, 0.0), 0.0)).kept
-
-
-def test_a_table_is_not_turned():
-    from tests.gains.test_bounds_that_do_not_follow import cart, part_over_to
-
-    with pytest.raises(cl.BadInput, match="moves by a table"):
-        cl.gain(part_over_to(cart(-1.12)), "obstacle", obstacle="cart", turn="z")
