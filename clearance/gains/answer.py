@@ -153,7 +153,7 @@ def _by_shift(case: Case, request: Request) -> Gain:
     search = Search(shift, request.margin)
     first = search.first_state()
     at_least = least_shift(shift, first, request.margin)
-    blocked = blocked_by(first, shift.gradient, shift.transfers)
+    blocked = _shift_obstruction(first, shift)
     if blocked is None and at_least > shift.farthest:
         blocked = worst_pair(first, TOO_FAR)
     found = SearchResult(first, None, 1)
@@ -173,7 +173,7 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
     search = Search(way, request.margin)
     first = search.first_state()
     at_least = least_base(way, first, request.margin)
-    blocked = blocked_by(first, way.gradient, way.transfers)
+    blocked = _shift_obstruction(first, way)
     found = SearchResult(first, None, 1)
     if blocked is None:
         found = _least_of_several(search, way, first, at_least)
@@ -186,6 +186,12 @@ def _by_base_alone(case: Case, request: Request, shift: Shift) -> Gain:
         joint_names=before.given_trajectory.joint_names,
         tool_path=tool_path_error(before, after, way.tool),
     )
+
+
+def _shift_obstruction(first: State, way: Shift | ToolPathKept) -> Obstruction | None:
+    """What no change of place mends; None where that is not known: a large one may part what a small does not."""
+    blocked = blocked_by(first, way.gradient, way.transfers)
+    return blocked if blocked is not None and blocked.why in HOPELESS else None
 
 
 def _least_of_several(

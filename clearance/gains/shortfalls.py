@@ -192,11 +192,13 @@ def measured(
 ) -> State:
     """A case with all that comes within `beyond` [m] of what is wanted, at its steps and the moments wanted.
 
+    No verdict is read of it: whether bodies of open meshes may be inside others is told of what is proposed.
+
     Args:
         moved: the pairs that are looked at; None for all.
     """
     finer = with_moments(case, wanted.moments)
-    record = answer(Question(finer, certify=False, contact="none")).record
+    record = answer(Question(finer, certify=False, contact="none", inside=False)).record
     return State(x, case, record, beyond, wanted, moved=moved)
 
 
@@ -207,7 +209,8 @@ def proven(case: Case, margin: float, gap: float = CERTIFY_GAP) -> Record:
         gap: [m] how far a bound may be below a distance that occurs, where the limit is not kept.
     """
     raised = replace(case, limits=_raised(case.limits, margin))
-    return answer(Question(raised, certify=True, contact="none", certify_gap=gap)).record
+    asked = Question(raised, certify=True, contact="none", certify_gap=gap, inside=False)
+    return answer(asked).record
 
 
 def keeps(record: Record) -> bool:

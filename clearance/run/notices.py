@@ -26,7 +26,7 @@ def notices_of(
     found: Sequence[SectionAnswer],
 ) -> tuple[Notice, ...]:
     """All notices, those of the case and of how it was measured; the gravest first."""
-    measured = inside.notices(plan) if question.method == "exact" else ()
+    measured = inside.notices(plan) if question.inside and question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.empty]
     untied = [*_not_cross_checked(question.case, plan)] if question.cross_check else []

@@ -47,6 +47,8 @@ class Question:
             caught in; no verdict depends on it.
         today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None
             where it has none.
+        inside: tell of pairs of which it is open whether one body is inside the other; the verdict rests on that,
+            so it is left out only where no verdict is read.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
@@ -65,6 +67,7 @@ class Question:
     paper_tolerance: float | None = None
     today: date | None = None
     body_gaps: bool = False
+    inside: bool = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.case, Case):

@@ -12,6 +12,7 @@ from clearance.gains.programme import Box, Inequalities, least_norm, within_reac
 from clearance.gains.search import FINE, Search
 from clearance.gains.shift import base_shift
 from clearance.gains.shortfalls import Rows
+from clearance.simulate import inside
 from tests.gains.gantries import along_x, gantry, slot, standing
 
 
@@ -126,3 +127,13 @@ def test_limits_that_no_point_of_a_box_may_break_are_left_out():
     broken = (corners @ a.T > b).any(axis=0)
     assert 0 < broken.sum() < 40
     assert np.array_equal(found.a.toarray(), a[broken]) and np.array_equal(found.b, b[broken])
+
+
+def test_what_is_proposed_tells_whether_an_open_body_may_hold_another_though_no_search_asks(
+    monkeypatch,
+):
+    asked = []
+    told = inside.notices
+    monkeypatch.setattr(inside, "notices", lambda plan: asked.append(plan) or told(plan))
+    found = cl.gain(slot(fail=0.04, off=0.03), "base")
+    assert found.kept and found.n_measured > 1 and len(asked) == 2
