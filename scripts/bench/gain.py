@@ -18,7 +18,7 @@ from itertools import islice
 from pathlib import Path
 
 import inputs  # first: it sets the number of threads before numpy is loaded
-from gain_cases import KINDS, intervals_of
+from gain_cases import KINDS, bent_paths, intervals_of, violated_cases
 from gain_drake import drake_path, has_drake, takes
 from gain_files import CaseOnDisk, cases_in, kept_afresh, kept_by_command, write_proposal
 from gain_general import STARTS, general_change
@@ -155,6 +155,7 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=60)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--sources", nargs="*", default=(), help="names of folders; all of them")
+    parser.add_argument("--bent", action="store_true", help="paths bent at joints with room alone")
     parser.add_argument("--made", type=Path, help="where the cases are, or are put")
     parser.add_argument("--csv", type=Path, default=RESULTS, help="of ours; the others beside it")
     parser.add_argument("--again", type=int, nargs="*", default=(), help="only these, of ours")
@@ -171,7 +172,8 @@ def main() -> None:
         Console().print(line)
     with tempfile.TemporaryDirectory() as scratch:
         folder = asked.made or Path(scratch)
-        cases = cases_in(folder, asked.cases, asked.seed, asked.sources)
+        make = bent_paths if asked.bent else violated_cases
+        cases = cases_in(folder, asked.cases, asked.seed, asked.sources, make)
         parts[asked.part](cases, journals[asked.part], asked)
 
 

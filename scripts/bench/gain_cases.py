@@ -17,7 +17,7 @@ from inputs import SCENES, SHARED
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.gains.answer import INTERVALS, Gain
-from clearance.gains.joint_ranges import require_within_limits
+from clearance.gains.joint_ranges import joint_ranges, require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.simulate.record import PairMinimum
@@ -55,6 +55,9 @@ BENDS = 8
 
 MOST_BEND, ARM = 0.5, 0.5
 """[rad] how far a path is bent at most; [m] about what a radian of it moves."""
+
+ROOM = 0.1
+"""[rad] How far a joint that has room may be off its path."""
 
 TRIED = 6
 """Changes of which the one that clears most is taken, where a limit is raised."""
@@ -121,6 +124,24 @@ def violated_cases(
             return
 
 
+def bent_paths(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[ViolatedCase]:
+    """So many paths, in turn of each source of some names, bent at the joints that have room alone.
+
+    A hand that is closed has none: where its fingers are bent too, hardly a path is within the limits of joints.
+    """
+    rng, kept = np.random.default_rng(seed), [*sources(names)]
+    n_made = 0
+    for i in range(20 * n_cases):
+        offsets = _offsets(kept[i % len(kept)].case, rng)
+        if offsets is not None:
+            one = _bent(kept[i % len(kept)], offsets, _bend_with_room(offsets, rng), rng)
+            if one is not None:
+                yield one
+                n_made += 1
+        if n_made == n_cases:
+            return
+
+
 def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Perturbation:
     """What may be changed of a case; of a path with splines on so many intervals, its ends as they are."""
     if kind != "waypoints":
@@ -158,13 +179,7 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Violated
     case = source.case
     if kind == "waypoints":
         offsets = _offsets(case, rng)
-        if offsets is None:
-            return None
-        x = _until_short(offsets, _bend_of_one(offsets, rng), MOST_BEND, ARM, rng)
-        if x is None or not _within_limits(offsets, x):
-            return None
-        who = offsets.placed.robot.name
-        return ViolatedCase(source, HOW[0], offsets.case_of(x), kind, who, offsets.size(x))
+        return offsets and _bent(source, offsets, _bend_of_one(offsets, rng), rng)
     found = _near_pair(case, kind, rng)
     if found is None:
         return None
@@ -176,6 +191,17 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Violated
         if x is not None:
             return ViolatedCase(source, HOW[0], shift.case_of(x), kind, who, shift.size(x))
     return None
+
+
+def _bent(
+    source: Source, offsets: JointOffsets, way: np.ndarray, rng: np.random.Generator
+) -> ViolatedCase | None:
+    """A case whose path is bent along a way until it is violated; None where it is beyond joint limits then."""
+    x = _until_short(offsets, way, MOST_BEND, ARM, rng)
+    if x is None or not _within_limits(offsets, x):
+        return None
+    who = offsets.placed.robot.name
+    return ViolatedCase(source, HOW[0], offsets.case_of(x), "waypoints", who, offsets.size(x))
 
 
 def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase | None:
@@ -248,6 +274,16 @@ def _bend_of_one(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
     weights = np.repeat(offsets.weights, offsets.n_splines)
     way = rng.normal(size=len(weights)) / weights
     return np.asarray(way / offsets.size(way))
+
+
+def _bend_with_room(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
+    """The same of the joints that may be off by `ROOM`."""
+    way = _bend_of_one(offsets, rng)
+    bent = offsets.case_of(ROOM * way).robots[offsets.i_robot]
+    beyond = {one.joint for one in joint_ranges(bent) if one.room.min() < 0.0}
+    free = [name not in beyond for name in offsets.placed.given_trajectory.joint_names]
+    way = way * np.repeat(free, offsets.n_splines)
+    return np.asarray(way / max(offsets.size(way), 1e-9))
 
 
 def _until_short(

@@ -9,7 +9,7 @@ import csv
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -47,14 +47,19 @@ class CaseOnDisk:
 
 
 def cases_in(
-    folder: Path, n_cases: int, seed: int = 0, names: Sequence[str] = ()
+    folder: Path,
+    n_cases: int,
+    seed: int = 0,
+    names: Sequence[str] = (),
+    make: Callable[..., Iterator[ViolatedCase]] = violated_cases,
 ) -> list[CaseOnDisk]:
-    """The cases of a folder, which are made and written first where it has none."""
+    """The cases of a folder, which are made and written first where it has none.
+
+    Args:
+        make: `violated_cases` or `bent_paths`.
+    """
     if not (folder / INDEX).exists():
-        rows = [
-            vars(_written(one, folder, i))
-            for i, one in enumerate(violated_cases(n_cases, seed, names))
-        ]
+        rows = [vars(_written(one, folder, i)) for i, one in enumerate(make(n_cases, seed, names))]
         write_csv(rows, COLUMNS, folder / INDEX, digits=17)
     with (folder / INDEX).open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines))
