@@ -274,9 +274,10 @@ def _least_path(
     search: Search, offsets: JointOffsets | PathsTogether, first: State
 ) -> SearchResult:
     """The least of a search from a path as it is, and, where that ends at a pair that no small step parts, from
-    beside it."""
+    beside it, on the coarsest splines."""
     found = search.from_state(first)
-    flat = None if found.kept else flat_moment(found.state, offsets)
+    coarse = all(part.basis.n_intervals == INTERVALS[0] for part in offsets.parts)
+    flat = flat_moment(found.state, offsets) if coarse and not found.kept else None
     return found if flat is None else from_beside(search, offsets, flat) or found
 
 

@@ -68,12 +68,21 @@ def from_beside(search: Search, offsets: Offsets, flat: FlatMoment) -> SearchRes
     """The least that searches from beside a path come to and prove; None where none does."""
     states = [search.state_at(start) for start in _starts(offsets, flat)]
     best: SearchResult | None = None
-    for state in sorted(states, key=lambda one: (one.touches, one.worst))[:MOST_STARTS]:
+    for state in sorted(states, key=_rank)[:MOST_STARTS]:
         below = np.inf if best is None else offsets.size(best.state.x)
         found = search.from_state(state, below)
         if found.kept:
             best = found
     return best
+
+
+def _rank(state: State) -> tuple[bool, float]:
+    """What starts are sorted by: those in contact last, then by what the worst moment has above its limit [m].
+
+    How deep they are in contact is not worked out, which takes most of the time.
+    """
+    worst = state.record.worst
+    return state.touches, state.record.rule(worst.rule).limits.fail - worst.clearance
 
 
 def _starts(offsets: Offsets, flat: FlatMoment) -> Iterator[np.ndarray]:
