@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.budget.proven import PathMoments, proven_of_steps
-from clearance.kernels.budget.face_left import REFINED
+from clearance.kernels.budget.face_left import REFINED_OF_MANY
 from clearance.kernels.budget.sweep import FEW
 from tests.budget.budget_cases import pair_names, proven_sections, random_case
 from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
@@ -72,7 +72,7 @@ def test_many_steps_are_no_looser_than_the_stated_share_of_each_alone():
             moment = PathMoments(at.intervals[one], at.shares[one])
             alone = pairs.at(moment, found.pair[one], found.clearance[one]).proven[0]
             taken = found.clearance[i] - alone
-            assert steps.proven[i] >= alone - 2.0 * REFINED * taken
+            assert steps.proven[i] >= alone - 2.0 * REFINED_OF_MANY * taken
 
 
 def test_the_least_of_many_steps_is_as_exact_as_each_alone_and_the_same_each_time():

@@ -32,6 +32,9 @@ from clearance.kernels.search.scratch import Scratch
 REFINED = 0.05
 """The share of what errors take at the nearest points that a bound at a step may stay below what occurs there."""
 
+REFINED_OF_MANY = 0.1
+"""The same where moments are many: those that decide are looked at once more."""
+
 FINEST = 1e-9
 """[m] No face pair is cut for less."""
 
@@ -43,7 +46,8 @@ class Aim(NamedTuple):
         target: [m] what stays above it needs no look. least: [m] the least that is known to occur.
         gap: [m] how far the bound over an interval may stay below what occurs, 0 at a step. fail: [m] the limit.
         is_step: True where all stands: then the bound is never given up.
-        exact_looks: at a step, as many looks are made before what is `REFINED` below what occurs is enough.
+        exact_looks: at a step, as many looks are made before what is `refined` below what occurs is enough.
+        refined: that share of what errors take there.
     """
 
     target: float
@@ -52,6 +56,7 @@ class Aim(NamedTuple):
     fail: float
     is_step: bool
     exact_looks: int
+    refined: float
 
 
 class LeftScratch(NamedTuple):
@@ -74,8 +79,8 @@ class SearchState(NamedTuple):
     Attributes:
         views: along the direction of the nearest points, tilted by the errors. u: that direction (frame of a).
         nearest: [m] the distance of those points.
-        lower_bound, target, least: [m] as in `PairRemainder` and `Aim`. enough: [m] at a step, what is `REFINED`
-            below what occurs.
+        lower_bound, target, least: [m] as in `PairRemainder` and `Aim`. enough: [m] at a step, what is
+            a share of what errors take below what occurs.
     """
 
     views: Views
@@ -207,9 +212,9 @@ def taken_at(lent, p, q, direction, m, bodies, aim):
 
 
 @inline(force=True)
-def near_by(taken):
+def near_by(taken, aim):
     """[m] how far below what occurs a bound at a step may stay, where errors take so much."""
-    return max(FINEST, REFINED * taken)
+    return max(FINEST, aim.refined * taken)
 
 
 @inline(force=True)
@@ -217,7 +222,7 @@ def with_value(search, value, taken, aim, thin):
     """A search that has seen what occurs [m], of which errors take so much; that moves the target."""
     target, least, enough = search.target, min(search.least, value), search.enough
     if aim.is_step:
-        enough = min(enough, value - near_by(taken))
+        enough = min(enough, value - near_by(taken, aim))
     elif value < search.least:
         target = min(target, least - allowed_gap(least - thin, aim.gap, aim.fail))
     return SearchState(
@@ -278,7 +283,7 @@ def look_at_faces(lent, faces, bound, slack, search, aim, thin, tally):
     search = with_value(search, value, point.taken, aim, thin)
     if bound < search.target:
         bound = max(bound, whole.apart - _reach_of_both(lent, faces))
-    wanted, allowed = search.target, near_by(point.taken)
+    wanted, allowed = search.target, near_by(point.taken, aim)
     if aim.is_step:
         wanted = min(wanted, search.enough)
     else:

@@ -59,7 +59,7 @@ def _scene_like():
 
 def _like():
     here = Vec3(0.0, 0.0, 0.0)
-    start, aim = Start(here, here, True), Aim(0.0, 0.0, 0.0, 0.0, True, 0)
+    start, aim = Start(here, here, True), Aim(0.0, 0.0, 0.0, 0.0, True, 0, 0.0)
     tally = np.empty(0, dtype=np.int64)
     return LentArgument(_scene_like()), Look(0, 0.0, 0, True), start, aim, tally
 

@@ -11,7 +11,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import borrow, lend
 from clearance.kernels.budget.errors import REACH
-from clearance.kernels.budget.face_left import Aim
+from clearance.kernels.budget.face_left import REFINED, REFINED_OF_MANY, Aim
 from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.pair_left import Look, pair_left
@@ -139,6 +139,7 @@ def budget_moments(scene, asked, rows, tally, table):
     begin_anew(state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
+    refined = REFINED_OF_MANY if is_rough else REFINED
     tally[:] = 0
     last, before, was_step = np.int64(-1), np.int64(-1), True
     for place in range(len(asked.intervals)):
@@ -176,7 +177,7 @@ def budget_moments(scene, asked, rows, tally, table):
             ahead = 0.0
             if turn >= 0 and is_step:
                 ahead = _ahead(lent, pair)
-            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks)
+            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks, refined)
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
@@ -223,7 +224,7 @@ def _hold(lent, step, pair, look, least, asked, tally, table):
             go_to_part(scene.world.links, path, scene.errors, step, low, high, state.middle)
         half = half_of(path, step, low, high)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-        aim = Aim(target, least, gap, asked.fail, False, 0)
+        aim = Aim(target, least, gap, asked.fail, False, 0, REFINED)
         start = start_before(lent, pair)
         left = pair_left(table, lent, Look(pair, half, look, n_parts == 1), start, aim, tally)
         if left.least < least:
