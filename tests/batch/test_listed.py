@@ -42,6 +42,7 @@ def test_it_is_json_and_comes_back(cases, tmp_path):
     assert [one.options.waivers for one in found] == [one.options.waivers for one in cases]
 
 
+@pytest.mark.slow
 def test_one_that_is_cut_off_is_damaged(cases, tmp_path: Path):
     write_list(tmp_path, cases)
     content = (tmp_path / FILE_NAME).read_bytes()

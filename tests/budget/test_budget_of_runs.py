@@ -165,6 +165,7 @@ def test_a_late_clock_is_refused_where_parts_change_hands():
         cl.check(replace(case, obstacles=obstacles, carries=carries, tolerance=late))
 
 
+@pytest.mark.slow
 def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be():
     case = cl.load_case(SCENES / "iiwa_pipe_rack" / "case.yaml")
     tolerance = {

@@ -51,6 +51,7 @@ def test_no_errors_come_below_what_is_proven_of_the_worst_step(seed):
         assert_none_below(case, section, time, steps.proven[worst], rng, 8, ascend=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", (1, 2))
 def test_no_errors_come_below_what_is_proven_of_many_steps(seed):
     """So many that a search goes on from where the one of the step before has ended."""

@@ -66,6 +66,7 @@ def test_a_part_in_hand_bounds_no_change_of_what_carries_it(kind):
     assert found.lower_bound == 0.0
 
 
+@pytest.mark.slow
 def test_a_part_that_was_let_go_is_not_said_to_stand_still():
     found = cl.gain(part_over_to(cart(-1.12), until=0.9), "waypoints")
     assert found.blocked is None or "nothing of this change" not in str(found.blocked)
@@ -89,6 +90,7 @@ def test_what_rides_on_a_robot_moves_with_the_obstacle_that_this_stands_on():
     assert found.kept and found.change == pytest.approx([-0.02, 0.0, 0.0], abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limits", [(0.0, 0.1), (-np.inf, np.inf)])
 def test_a_slide_beyond_its_limits_is_as_fast_as_it_is(limits):
     slide = Joint("slide", JointKind.PRISMATIC, "arm", "tool", np.eye(4), X, *limits)

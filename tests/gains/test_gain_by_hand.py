@@ -272,6 +272,7 @@ def test_a_joint_that_follows_is_kept_within_its_limits():
     assert not found.kept and np.abs(jaw).max() <= 0.02 + 1e-9
 
 
+@pytest.mark.slow
 def test_what_is_not_proven_between_steps_is_not_said_to_be_near_at_one(monkeypatch):
     post = standing("post", cl.box((0.1, 0.1, 1.0)), (0.75, 0.1, 0.0))
     placed = along_x(gantry(), np.linspace(0.0, 2.0, 5))

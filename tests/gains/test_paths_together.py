@@ -45,6 +45,7 @@ def test_what_each_of_two_must_mend_takes_both():
     assert found.kept and found.size == pytest.approx(2.0 * 0.01, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_moment_is_kept_only_where_all_that_moves_the_pair_is_still():
     first = along_x(gantry("one"), end=0.0)
     passing = replace(along_x(gantry("other"), start=-3.0, y=0.12), timing=cl.Timing(-0.5))

@@ -37,6 +37,7 @@ def test_a_tolerance_that_holds_the_violation_is_said_at_once(far, turn, n):
     assert n == 2 or "that moment is to be kept" in str(found.blocked)
 
 
+@pytest.mark.slow
 def test_a_tool_that_is_kept_elsewhere_costs_more():
     free = cl.gain(posted())
     kept = cl.gain(posted(), keep_tool=[(0.35, 0.001, 1e-3)])

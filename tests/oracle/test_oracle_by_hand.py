@@ -290,6 +290,7 @@ def test_root():
     assert oracle.error(2.0, Fraction(9, 4)) == Fraction(1, 2)
 
 
+@pytest.mark.slow
 def test_far_faces_are_skipped_only_where_they_cannot_win():
     """The ordered loop of whole surfaces against all pairs of polygons, without order or bound."""
     random = np.random.default_rng(7)

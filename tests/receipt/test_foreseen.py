@@ -43,6 +43,7 @@ def test_what_is_foreseen_is_about_what_is_found(run, narrow):
     assert found.n_items / 1.5 < foreseen < 1.5 * found.n_items
 
 
+@pytest.mark.slow
 def test_foreseeing_changes_nothing(run, narrow, monkeypatch):
     found = evidence_for(*question(run))
     monkeypatch.setattr(search, "WIDE", 2**14)
@@ -61,6 +62,7 @@ def test_too_much_is_refused_before_it_is_looked_for(run, narrow):
     assert one.n_found < n // 4
 
 
+@pytest.mark.slow
 def test_a_receipt_that_is_too_large_is_not_written_as_one_without_tolerances(
     tmp_path, narrow, monkeypatch
 ):

@@ -110,6 +110,7 @@ def test_a_run_that_keeps_its_limits_is_told_so(folder):
     assert not found.below and "the report's verdict is clear" in found.headline
 
 
+@pytest.mark.slow
 def test_tolerances_that_the_report_tells_of_cannot_be_passed_over(tmp_path):
     """A receipt cut down to the bound without them is nominal, whatever it calls itself."""
     plain = replace(loose(), tolerance=None)

@@ -144,6 +144,7 @@ def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["disk", "memory"]
 
 
+@pytest.mark.slow
 def test_a_run_stopped_between_its_passes_goes_on(case: Case, tmp_path: Path) -> None:
     """The second pass proves the bounds; the first is not repeated."""
     whole = answer(case, tmp_path / "kept", [], certify=True)
@@ -264,6 +265,7 @@ def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "kept").exists()
 
 
+@pytest.mark.slow
 def test_a_state_whose_rows_are_gone_is_not_believed(case: Case, tmp_path: Path) -> None:
     with pytest.raises(Interrupted):
         answer(case, tmp_path / "kept", [], progress=stopping_at(5))

@@ -29,6 +29,7 @@ def test_drawings_are_solved_and_contacts_are_closed_to_the_last_digits(seed):
     assert s.solve().solved and s._lists.numbers == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(0, 60, 4))
 def test_freedom_is_that_of_the_equations_which_are_regular_at_contacts(seed):
     d, s, p, result = solved(seed)

@@ -264,6 +264,7 @@ def test_each_fault_is_one_line_with_the_file(tmp_path, text, fault, says):
     )
 
 
+@pytest.mark.slow
 def test_a_file_cut_off_anywhere_is_refused(tmp_path):
     whole = ARM.encode()
     for n in range(1, len(whole)):

@@ -108,6 +108,7 @@ def only_our_own(folder, document, name):
     return True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("document", [FIRST, SECOND], ids=["first", "second"])
 def test_text_cut_off_anywhere_is_refused(tmp_path, document):
     for n in range(document.rindex(".")):

@@ -22,6 +22,7 @@ SMALL = sdf(
 ).encode()
 
 
+@pytest.mark.slow
 def test_a_file_cut_off_anywhere_is_refused(tmp_path):
     for n in range(len(SMALL)):
         with pytest.raises(BadInput) as caught:
