@@ -18,6 +18,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from clearance.batch.mark import is_store
 from clearance.batch.rows import ERROR
 from clearance.batch.tables import CASES, FINDINGS, written_answer
 from clearance.errors import BadInput, Incomplete
@@ -89,6 +90,19 @@ class BatchComparison:
     def passed(self) -> bool:
         """True if nothing alarms, and as much is known as before."""
         return not (self.failing or self.stale)
+
+
+def require_answer(place: Path) -> None:
+    """The batch of a store can be held against another.
+
+    Raises:
+        BadInput: that is no store, or its answer is of a version that compared none. Incomplete: it has no answer.
+    """
+    if not is_store(place):
+        raise BadInput(
+            "not a store", where=str(place), valid="the folder that a `clearance batch --out` wrote"
+        )
+    _Answer.of(place)
 
 
 def compared_batches(before: Path, now: Path) -> BatchComparison:

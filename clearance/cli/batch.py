@@ -118,6 +118,12 @@ class _ShardParamType(click.ParamType):
     type=DateParamType(),
     help="The day that the cases' waivers are held against.  [default: today, in UTC]",
 )
+@click.option(
+    "--baseline",
+    metavar="STORE",
+    type=click.Path(path_type=Path),
+    help="Tell what is new, worse, better or gone since the batch of this store.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
     arguments: tuple[str, ...],
@@ -137,6 +143,7 @@ def check(
     accept: tuple[str, ...],
     waiver_files: tuple[Path, ...],
     today: date | None,
+    baseline: Path | None,
     quiet: bool,
 ) -> int:
     """Checks many cases: those of manifests, case files and patterns of them.
@@ -145,7 +152,7 @@ def check(
     interrupted one was, and measures only what has changed. Exit code: the greatest of all cases,
     as of `clearance check`; 1 for one that cannot be read (2 with --strict), and for a waiver of
     --waivers that is expired or that no case needs; 4 where some are not measured, as on a full
-    disk.
+    disk. A baseline does not change it; `clearance compare` has one of its own.
     """
     from clearance.batch.manifest import Changes, items_of
     from clearance.batch.output import ANSWER
@@ -158,6 +165,8 @@ def check(
         raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")
     if jobs is not None and scheduler is not None:
         raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
+    if baseline is not None:
+        _require_baseline(baseline, place, shard)
     certify = False if samples_only else None
     waivers = tuple(waiver for path in waiver_files for waiver in load_waivers(path))
     changes = Changes(
@@ -166,8 +175,25 @@ def check(
     items = items_of(arguments, changes)
     own = waiver_files if tolerance is None else (*waiver_files, tolerance)
     refuse_inputs([place / name for name in ANSWER], own)
-    asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
+    asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers, baseline)
     return run_asked(items, open_store(place, fresh=fresh), asked)
+
+
+def _require_baseline(baseline: Path, place: Path, shard: tuple[int, int] | None) -> None:
+    """A batch can be held against this one once it is done.
+
+    Raises:
+        click.UsageError, BadInput, Incomplete: why not.
+    """
+    from clearance.batch.compared import require_answer
+
+    if baseline.resolve() == place.resolve():
+        raise click.UsageError(
+            "--baseline is the store that --out writes; keep the batch before in another one"
+        )
+    if shard is not None:
+        raise click.UsageError("--baseline is of whole batches; compare once all parts are done")
+    require_answer(baseline)
 
 
 @batch.command()

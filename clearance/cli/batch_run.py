@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 
 from clearance.batch.answer import answer_of
 from clearance.batch.cases import Cases
+from clearance.batch.compared import compared_batches
 from clearance.batch.engine import Engine, LocalEngine
 from clearance.batch.faults import keep_faults
 from clearance.batch.listed import write_list
@@ -16,6 +18,7 @@ from clearance.batch.output import withdraw_answer, write_answer
 from clearance.batch.run import Opener, run_batch, shard_of
 from clearance.batch.store import Store
 from clearance.cli import ExitCode
+from clearance.cli.batch_comparison import print_batch_comparison
 from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
@@ -41,6 +44,7 @@ class BatchRequest:
     strict: bool
     quiet: bool
     waivers: tuple[Waiver, ...] = ()
+    baseline: Path | None = None
 
 
 def run_asked(items: Cases, store: Store, asked: BatchRequest) -> int:
@@ -72,6 +76,8 @@ def run_asked(items: Cases, store: Store, asked: BatchRequest) -> int:
         return ExitCode.INTERRUPTED
     if not asked.quiet:
         print_answer(answer, store, outcome.n_cached, asked.shard)
+        if asked.baseline is not None:
+            print_batch_comparison(compared_batches(asked.baseline, store.place))
     return answer.exit_code
 
 

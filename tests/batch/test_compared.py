@@ -130,3 +130,43 @@ def test_a_mistake_is_one_line(folder, capsys):
         assert run(["compare", *typed]) == code
         err = capsys.readouterr().err
         assert told in err and err.count("\n") == 1
+
+
+def test_a_batch_tells_what_is_new_since_its_baseline_and_keeps_its_exit_code(folder, capsys):
+    edit(folder / "cell.yaml", "xyz: [1, 0, 0]", "xyz: [0.94, 0, 0]")
+    capsys.readouterr()
+    asked = ["batch", "batch.yaml", "--jobs", "1", "--baseline", "old"]
+    assert run([*asked, "--out", "new"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    page = lines.index("  page        new/batch.html")
+    assert lines[page + 1].startswith("  since the baseline: NEW, WORSE OR LESS KNOWN in 2 cases")
+    assert lines[page + 2 :] == compared_lines(capsys)[1:]
+    assert run([*asked, "--out", "new", "--quiet"]) == 1
+    assert capsys.readouterr().out == ""
+
+
+def compared_lines(capsys):
+    assert run(["compare", "old", "new"]) == 1
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("out", "more", "baseline", "told"),
+    [
+        ("old", (), "old", "--baseline is the store that --out writes"),
+        ("new", ("--shard", "1/2"), "old", "--baseline is of whole batches"),
+        ("new", (), "none", "none: not a store"),
+        ("new", (), "part", "part: this batch has no answer yet"),
+    ],
+)
+def test_a_baseline_that_cannot_be_one_is_refused_before_anything_is_measured(
+    out, more, baseline, told, folder, capsys
+):
+    if baseline == "part":
+        batch("part", "--shard", "1/2")
+    before = sorted((folder / "old").rglob("*")) if out == "old" else None
+    capsys.readouterr()
+    assert batch(out, "--baseline", baseline, *more) in (2, 4)
+    assert told in capsys.readouterr().err
+    assert before is None or sorted((folder / "old").rglob("*")) == before
+    assert out == "old" or not (folder / "new").exists()
