@@ -51,7 +51,7 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
         left = "contact is not ruled out"  # a number below 0 says no depth
     told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
     if expected is not None:
-        spread = f"{budget.coverage:g} sigma, estimate"
+        spread = f"{budget.coverage:g} sigma, estimate at the samples"
         told += f" Expected ({spread}): {mm(expected)} mm."
     return told
 
