@@ -174,9 +174,7 @@ def budget_moments(scene, asked, rows, tally, table):
                 lowest = min(lowest, carried)
                 tally[0] += 1
                 continue
-            ahead = 0.0
-            if turn >= 0 and is_step:
-                ahead = _ahead(lent, pair)
+            ahead = _ahead(lent, pair) if turn >= 0 and is_step else 0.0
             aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks, refined)
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
