@@ -18,6 +18,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from clearance.batch.answer import BatchAnswer
 from clearance.batch.mark import is_store
 from clearance.batch.rows import ERROR
 from clearance.batch.tables import CASES, FINDINGS, written_answer
@@ -92,8 +93,8 @@ class BatchComparison:
         return not (self.failing or self.stale)
 
 
-def require_answer(place: Path) -> None:
-    """The batch of a store can be held against another.
+def require_answer(place: Path) -> BatchAnswer:
+    """The answer of a store that can be held against another's.
 
     Raises:
         BadInput: that is no store, or its answer is of a version that compared none. Incomplete: it has no answer.
@@ -102,7 +103,20 @@ def require_answer(place: Path) -> None:
         raise BadInput(
             "not a store", where=str(place), valid="the folder that a `clearance batch --out` wrote"
         )
-    _Answer.of(place)
+    answer = written_answer(place)
+    if answer is None or not (place / FINDINGS).is_file():
+        raise Incomplete(
+            "this batch has no answer yet",
+            where=str(place),
+            valid="`clearance batch` without --shard writes it once all cases are tried",
+        )
+    if "conditions" not in pq.read_schema(place / CASES).names:
+        raise BadInput(
+            "an answer of another version",
+            where=str(place),
+            valid="the same `clearance batch` writes it anew",
+        )
+    return answer
 
 
 def compared_batches(before: Path, now: Path) -> BatchComparison:
@@ -136,7 +150,7 @@ def _compared_case(name: str, old: _Answer, new: _Answer) -> ComparedCase:
         return ComparedCase(name, None, f"new case: {now['text']}", fails)
     if before["status"] == ERROR:
         return ComparedCase(name, None, f"answered, and was not before: {now['text']}", fails)
-    return ComparedCase(name, compared(old.list_of(name), new.list_of(name)))
+    return ComparedCase(name, compared(old.list_of(before), new.list_of(now)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,19 +170,7 @@ class _Answer:
     @staticmethod
     def of(place: Path) -> _Answer:
         """That of a store's folder."""
-        answer = written_answer(place)
-        if answer is None or not (place / FINDINGS).is_file():
-            raise Incomplete(
-                "this batch has no answer yet",
-                where=str(place),
-                valid="`clearance batch` without --shard writes it once all cases are tried",
-            )
-        if "conditions" not in pq.read_schema(place / CASES).names:
-            raise BadInput(
-                "an answer of another version",
-                where=str(place),
-                valid="the same `clearance batch` writes it anew",
-            )
+        answer = require_answer(place)
         cases = pq.read_table(place / CASES, columns=[*_COLUMNS])
         findings = pq.read_table(place / FINDINGS)
         names = cases["case"].to_pylist()
@@ -183,13 +185,13 @@ class _Answer:
         found: list[dict[str, Any]] = self.cases.slice(self.numbers[name], 1).to_pylist()
         return found[0]
 
-    def list_of(self, name: str) -> FindingList:
-        """The findings of a case that has an answer, and what is needed to compare them."""
-        row, number = self.row(name), self.numbers[name]
+    def list_of(self, row: dict[str, Any]) -> FindingList:
+        """The findings of a case that has an answer, by its row, and what is needed to compare them."""
+        number = self.numbers[row["case"]]
         begin, end = int(self.begins[number]), int(self.begins[number + 1])
         findings = tuple(_findings(self.findings.slice(begin, end - begin).to_pylist()))
         return FindingList(
-            case=name,
+            case=row["case"],
             incomplete=row["incomplete"],
             not_listed=row["n_findings"] - len(findings),
             measured=conditions_in(row["conditions"]),

@@ -9,7 +9,6 @@ from pathlib import Path
 
 from clearance.batch.answer import answer_of
 from clearance.batch.cases import Cases
-from clearance.batch.compared import compared_batches
 from clearance.batch.engine import Engine, LocalEngine
 from clearance.batch.faults import keep_faults
 from clearance.batch.listed import write_list
@@ -18,7 +17,6 @@ from clearance.batch.output import withdraw_answer, write_answer
 from clearance.batch.run import Opener, run_batch, shard_of
 from clearance.batch.store import Store
 from clearance.cli import ExitCode
-from clearance.cli.batch_comparison import print_batch_comparison
 from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
@@ -77,8 +75,15 @@ def run_asked(items: Cases, store: Store, asked: BatchRequest) -> int:
     if not asked.quiet:
         print_answer(answer, store, outcome.n_cached, asked.shard)
         if asked.baseline is not None:
-            print_batch_comparison(compared_batches(asked.baseline, store.place))
+            _print_since(asked.baseline, store)
     return answer.exit_code
+
+
+def _print_since(baseline: Path, store: Store) -> None:
+    from clearance.batch.compared import compared_batches
+    from clearance.cli.batch_comparison import print_batch_comparison
+
+    print_batch_comparison(compared_batches(baseline, store.place))
 
 
 def _keep_faults(store: Store, outcome: Outcome) -> None:
