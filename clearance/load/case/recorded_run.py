@@ -22,6 +22,9 @@ from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 
+MOST = {"rad": MOST_ANGLE, "m": MOST_OFFSET}
+"""What a joint may be off, or move where nothing is recorded."""
+
 
 def with_recorded(
     case: Case, path: str | Path, offset: float = 0.0, robot: str | None = None
@@ -96,7 +99,7 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
     robot = budget.robots.get(name, RobotTolerance())
     joints, units = dict(robot.joints), _units(placed)
     for one in found.joints:
-        most = MOST_ANGLE if units[one.joint] == "rad" else MOST_OFFSET
+        most = MOST[units[one.joint]]
         if one.greatest > most:
             raise BadInput(
                 f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off its course at {one.time:.3f} s",
@@ -119,7 +122,7 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
     span = f"recorded from {found.start:.3f} to {found.end:.3f} s"
     asked = f"of {times[0]:.3f} to {times[-1]:.3f} s"
     for one in left_out:
-        most = MOST_ANGLE if units[one.joint] == "rad" else MOST_OFFSET
+        most = MOST[units[one.joint]]
         if one.greatest > most:
             raise BadInput(
                 f"it is {span} {asked}; in the rest joint {one.joint!r} was to move by {one.greatest:.3g} "
