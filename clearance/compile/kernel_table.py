@@ -218,14 +218,15 @@ def _type_of(value: object) -> types.Type:
 
 
 def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
-    from clearance.compile.numba_private import plain
+    from clearance.compile.numba_types import plain
 
     return 1 + zlib.crc32(f"{plain(result)}{arguments}".encode())
 
 
 @intrinsic(prefer_literal=True)
 def _at_address(typing_context, table, place, result, args):
-    from clearance.compile.numba_private import call_at, elements_at, plain, stop_if
+    from clearance.compile.numba_private import call_at, elements_at, stop_if
+    from clearance.compile.numba_types import plain
 
     argument_types = tuple(plain(kind) for kind in args)
     result_type = plain(result)
@@ -248,7 +249,8 @@ def _at_address(typing_context, table, place, result, args):
 def _lend(typing_context, value):
     from numba import types
 
-    from clearance.compile.numba_private import lend_tuple, plain
+    from clearance.compile.numba_private import lend_tuple
+    from clearance.compile.numba_types import plain
 
     kind = types.CPointer(plain(value))
 

@@ -1,12 +1,15 @@
 """What we use of numba beyond its documented interface, with a test each (`tests/compile`).
 
 A new numba may change any of this in a minor version, so `pyproject.toml` bounds numba to the versions that these
-tests ran with. Not for: code without an address (`linked_code`); `numba.extending` and `numba.types`, which are
-documented.
+tests ran with. Not for: numba's libraries without its package (`machine_code`); `numba.extending` and
+`numba.types`, which are documented.
 
 | here | of numba |
 |---|---|
 | `own_level` | `config.OPT` is read where LLVM's passes are chosen, under the compiler's lock |
+| `_without_copies` | `InlineWorker.inline_ir` makes two copies of what it merges by its module's `copy` |
+| `LinkedCode` | `JITCodeLibrary`: what `finalize` does last, what `get_executable` asks of a library |
+| `_CompilerOfLinkedCode`, `_tell_environments` | `Compiler.compile_extra`; environments by their names |
 | `Kernel` | `CPUDispatcher`: `compile`, `get_call_template`; the flags of the caller; the option `_nrt` |
 | `KernelForKernels` | `CPUDispatcher`: `_insert`, `_compile_for_args` |
 | `KernelCache` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
@@ -19,19 +22,21 @@ documented.
 
 from __future__ import annotations
 
-import gc
 import os
 import pickle
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
+from types import SimpleNamespace
 
 from llvmlite import ir
 from numba import config, types
-from numba.core import cgutils
+from numba.core import cgutils, inline_closurecall
 from numba.core.caching import _Cache
+from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.environment import lookup_environment
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
@@ -39,13 +44,12 @@ from numba.core.targetconfig import ConfigStack
 from numba.experimental import structref
 from numba.extending import NativeValue, box, unbox
 from numba.np.arrayobj import populate_array
-from numba.np.numpy_support import as_dtype
 
-from clearance.compile.frames import with_room_for_frames
 from clearance.compile.heap import HeapHandle
+from clearance.compile.interpreter import no_collections, with_room_for_frames
 from clearance.compile.kernel_files import KernelFiles
-from clearance.compile.linked_code import CompilerOfLinkedCode, LinkedCode, tell_environments
 from clearance.compile.machine_code import Entry
+from clearance.compile.numba_types import form_of_types, holds_arrays, without_value
 
 OWN_LEVEL = 1
 """LLVM's level for our functions: 40 % off the first run and 10 to 18 % off every later one (sweep, four scenes,
@@ -71,25 +75,75 @@ def own_level() -> Iterator[None]:
     """
     with global_compiler_lock:
         config.reload_config()
-        before = config.OPT
-        ours = config.OPT = type(before)(levels()[0])
-        try:
+        with _in_place_of(config, "OPT", type(config.OPT)(levels()[0])):
             yield
-        finally:
-            if config.OPT is ours:
-                config.OPT = before
 
 
 @contextmanager
-def _no_collections() -> Iterator[None]:
-    """No collections of garbage, which walk all that the compiler holds: a tenth of its time."""
-    collects = gc.isenabled()
-    gc.disable()
+def _in_place_of(owner: object, name: str, value: object) -> Iterator[None]:
+    """A value for as long as nobody puts another there."""
+    before = getattr(owner, name)
+    setattr(owner, name, value)
     try:
         yield
     finally:
-        if collects:
-            gc.enable()
+        if getattr(owner, name) is value:
+            setattr(owner, name, before)
+
+
+def _without_copies() -> AbstractContextManager[None]:
+    """No copies of what is merged into its caller (`inline="always"`): numba has just read it for that alone, and
+    would copy it twice. Under the compiler's lock.
+    """
+    return _in_place_of(inline_closurecall, "copy", SimpleNamespace(deepcopy=lambda block: block))
+
+
+class LinkedCode(JITCodeLibrary):
+    """What is compiled of a function that only kernels call: with all it calls, and linked into its callers.
+
+    Nobody calls it at an address of its own, so no machine code is written of it: numba would do so for each
+    function of a kernel, and for each again within its callers. It is optimised where it is linked in.
+    """
+
+    def _optimize_final_module(self) -> None:
+        passes, builder = self._codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
+        )
+        passes.run(self._final_module, builder)
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """No address."""
+        return 0
+
+    @property
+    def codegen(self) -> LinkedCode:
+        """What is told the function's environment."""
+        return self
+
+    def set_env(self, name: str, environment: object) -> None:
+        """The kernel that it is linked into is told it (`_tell_environments`)."""
+
+
+class _CompilerOfLinkedCode(Compiler):
+    """numba's compiler, but for where it puts what it compiles."""
+
+    def compile_extra(self, func: Callable) -> CompileResult:
+        self.state.library = LinkedCode(self.state.targetctx.codegen(), func.__qualname__)
+        return super().compile_extra(func)
+
+
+def _tell_environments(compiled: CompileResult) -> None:
+    """Tells the code of a kernel the environments of the functions that are linked into it."""
+    library = compiled.library
+    for one in library._final_module.global_variables:
+        environment = lookup_environment(one.name)
+        if environment is not None and not one.is_declaration:
+            library.codegen.set_env(one.name, environment)
 
 
 class Kernel(CPUDispatcher):
@@ -101,19 +155,21 @@ class Kernel(CPUDispatcher):
     """
 
     def compile(self, signature: object) -> object:
-        with own_level(), _no_collections():
+        if signature in self.overloads:
+            return super().compile(signature)
+        with own_level(), no_collections(), _without_copies():
             return with_room_for_frames(super().compile, signature)
 
     def add_overload(self, cres: CompileResult) -> None:
         if not isinstance(cres.library, LinkedCode):
-            tell_environments(cres)
+            _tell_environments(cres)
         super().add_overload(cres)
 
     def get_call_template(self, args: tuple, named: dict) -> tuple:
-        found = super().get_call_template(tuple(map(_whatever_its_value, args)), named)
+        found = super().get_call_template(tuple(map(without_value, args)), named)
         flags = ConfigStack().top_or_none()
         returned = [form.signature.return_type for form in self.overloads.values()]
-        if flags is not None and not flags.nrt and any(map(_holds_arrays, returned)):
+        if flags is not None and not flags.nrt and any(map(holds_arrays, returned)):
             raise TypeError(
                 f"{self.py_func.__name__} returns an array to a kernel without reference counts"
             )
@@ -152,22 +208,10 @@ def kernel_of(
     compiler: type[Compiler] = Compiler
     if kind is KernelForKernels:
         options["no_cpython_wrapper"] = True
-        compiler = CompilerOfLinkedCode
+        compiler = _CompilerOfLinkedCode
     if reference_counts is not None:
         options["_nrt"] = reference_counts
     return kind(function, targetoptions=options, pipeline_class=compiler)
-
-
-def _whatever_its_value(kind: types.Type) -> types.Type:
-    """The type of an argument without its value, which numba would compile a form of the function for."""
-    kind = types.unliteral(kind)
-    return types.int64 if kind == types.int32 else kind
-
-
-def _holds_arrays(kind: types.Type) -> bool:
-    if isinstance(kind, types.BaseTuple):
-        return any(map(_holds_arrays, kind))
-    return isinstance(kind, types.Array)
 
 
 class KernelCache(_Cache):
@@ -229,30 +273,6 @@ def code_of(compiled: CompileResult) -> bytes | None:
     return compiled.library._compiled_object
 
 
-def form_of_types(kinds: Sequence[types.Type]) -> tuple | None:
-    """As `form_of` of arguments of these types; None where no argument is told so."""
-    try:
-        return tuple(map(_form_of_type, kinds))
-    except NotImplementedError:
-        return None
-
-
-def _form_of_type(kind: types.Type) -> object:
-    if isinstance(kind, types.Array):
-        if not kind.aligned:
-            raise NotImplementedError
-        return as_dtype(kind.dtype).char, kind.ndim, kind.layout, kind.mutable
-    if isinstance(kind, types.BaseTuple):
-        made = getattr(kind, "instance_class", None)
-        name = "" if made is None else f"{made.__module__}.{made.__qualname__}"
-        return (name, *map(_form_of_type, kind))
-    if isinstance(kind, HeapType):
-        return str(kind)
-    if isinstance(kind, types.Number | types.Boolean):
-        return as_dtype(kind).char
-    raise NotImplementedError
-
-
 def entry_of(compiled: CompileResult, code: bytes, stamp: int) -> Entry | None:
     """The machine code of a form, or None if it cannot stand alone."""
     library, described = compiled.library, compiled.fndesc
@@ -278,15 +298,6 @@ _SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "LOOP_VECTORIZE", "SLP_VECTORIZ
 def _form(sig: tuple, codegen: object) -> str:
     settings = [int(getattr(config, name, 0) or 0) for name in _SETTINGS]
     return repr((str(sig), codegen.magic_tuple(), levels(), settings))
-
-
-def plain(kind: types.Type) -> types.Type:
-    """The type without what the compiler knows of the value."""
-    if isinstance(kind, types.BaseTuple):
-        return types.BaseTuple.from_types(
-            tuple(plain(item) for item in kind), getattr(kind, "instance_class", None)
-        )
-    return types.unliteral(kind)
 
 
 def entry_address(function: Kernel, argument_types: tuple) -> tuple[int, types.Type]:

@@ -33,7 +33,7 @@ VALUES = [
 
 @pytest.mark.parametrize("value", VALUES, ids=repr)
 def test_it_is_told_as_the_compiler_tells_it(value):
-    from clearance.compile.numba_private import form_of_types
+    from clearance.compile.numba_types import form_of_types
 
     form = form_of((value,))
     assert form is not None and form == form_of_types((numba.typeof(value),))

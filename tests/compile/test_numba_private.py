@@ -9,8 +9,10 @@ import sys
 import threading
 import tomllib
 from collections.abc import Callable
+from copy import deepcopy
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -49,7 +51,7 @@ def imported_by(tree: ast.AST) -> list[str]:
     return names
 
 
-def test_three_files_alone_use_what_numba_does_not_document():
+def test_two_files_alone_use_what_numba_does_not_document():
     users = set()
     for path in (ROOT / "clearance").rglob("*.py"):
         source = path.read_text(encoding="utf-8")
@@ -61,7 +63,7 @@ def test_three_files_alone_use_what_numba_does_not_document():
             word in source for word in ("call_conv", "_nrt", "_compile_for_args", "config.OPT =")
         ):
             users.add(path.name)
-    assert users == {"compile/linked_code.py", "compile/numba_private.py", "machine_code.py"}
+    assert users == {"compile/numba_private.py", "machine_code.py"}
 
 
 def theirs(x):
@@ -235,6 +237,31 @@ def test_of_what_is_linked_into_kernels_no_machine_code_is_written(monkeypatch):
         calling(5)
     assert raised.value.args == ("too large", 5)
     assert len(inner.overloads) == 1 and written and "refusing" not in written
+
+
+def added(x, k):
+    total = 0
+    for i in range(k):
+        total += x + i
+    return total
+
+
+@compiled_only
+def test_what_is_merged_into_its_caller_is_not_copied(monkeypatch):
+    """Nobody else has what numba reads to merge it: one function, merged twice, is read twice."""
+    copied = []
+    monkeypatch.setattr(
+        numba.core.inline_closurecall,
+        "copy",
+        SimpleNamespace(deepcopy=lambda block: copied.append(block) or deepcopy(block)),
+    )
+    merged = kernel_of(added, numba_private.KernelForKernels, inline="always")
+    calling = kernel_of(lambda x: (merged(x, 3), merged(2 * x, 2)))
+    assert calling(10) == (33, 41)
+    assert copied == []
+    theirs = numba.njit(inline="always")(added)
+    assert numba.njit(lambda x: theirs(x, 3))(10) == 33
+    assert copied != []  # which shows that it is there that numba copies
 
 
 @compiled_only

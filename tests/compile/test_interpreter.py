@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from clearance.compile.frames import with_room_for_frames
+from clearance.compile.interpreter import with_room_for_frames
 
 resource = pytest.importorskip("resource")
 
