@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
+from clearance.findings.standing import code_of
 from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import finding_line, waived_lines
 from clearance.report.wording import (
@@ -26,7 +27,6 @@ from clearance.report.wording import (
 )
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.replay.frames import codes_of
 from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
@@ -233,7 +233,7 @@ def _judgement(record: Record) -> Judgement | None:
 def _measured(record: Record, judgement: Judgement | None) -> str:
     """The worst that any step, the motion between, a profile or a rule of the case says, less what is waived."""
     if judgement is None:
-        worst = int(codes_of(record.steps).max())
+        worst = max(map(code_of, record.rules))
     else:
         worst = STATUSES.index(Status(judgement.status))
     broken = any(notice.severity is Severity.VIOLATED for notice in record.notices)

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from itertools import accumulate
+from typing import TYPE_CHECKING
 
 from clearance.late_dataclass import dataclass
 from clearance.run.commanded_case import commanded_case
@@ -44,6 +45,9 @@ from clearance.world.pairs import names_of
 from clearance.world.reach import require_within_reach
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,9 +217,14 @@ def _samples(
         from clearance.budget.answer import columns_of
 
         left = columns_of(budget)
-    batches = step_table(case, motions, pairs, judged, with_error=simulated, left=left)
+    @cache
+    def table() -> pa.Table:
+        batches = step_table(case, motions, pairs, judged, with_error=simulated, left=left)
+        return resources.rows.table("steps", batches)
+
     unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, judged.found))
-    return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
+    on_disk = resources.rows.folder is not None  # which may be gone when somebody looks
+    return Samples(case, motions, table() if on_disk else table, unmeasured)
 
 
 def _contacts(plan: MeasurementPlan, found: Sequence[SectionAnswer]) -> ContactSequence | tuple[()]:
@@ -271,7 +280,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
     return Record(
         case=case,
         motions=motions,
-        steps=samples.steps,
+        table=samples.table,
         unmeasured=samples.unmeasured,
         pair_minima=PairMinima(case, motions, pairs, judged.rules),
         tally=judged.found.tally,

@@ -147,14 +147,19 @@ class Samples:
 
     Attributes:
         motions: one for each of `case.robots`.
-        steps: one row a step, as in `Record`.
+        table: of `steps`, or what makes it, where it may never be looked at.
         unmeasured: links and pairs that are left out, and why.
     """
 
     case: Case
     motions: tuple[Motion, ...]
-    steps: pa.Table
+    table: pa.Table | Callable[[], pa.Table]
     unmeasured: tuple[Omission, ...]
+
+    @cached_property
+    def steps(self) -> pa.Table:
+        """One row a step, as in `Record`."""
+        return self.table() if callable(self.table) else self.table
 
     @cached_property
     def sides(self) -> tuple[str, ...]:
@@ -173,7 +178,7 @@ class Record(Samples):
 
     Attributes:
         motions: one for each of `case.robots`.
-        steps: one row a step: step, time, clearance [m] (less padding, of the pair that stands worst against its
+        table: of `steps`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst against its
             rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" | "contact", null
             where a bound does not decide); of one robot among obstacles that stand, link, obstacle, link_x …
             obstacle_z as well, which come first; with several rules nearest_clearance, nearest_a, nearest_b of

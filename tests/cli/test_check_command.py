@@ -94,7 +94,7 @@ def asked_about_a_wrong_answer(record, progress=None):
     clearances[1] += 1e-6
     i_column = record.steps.column_names.index("clearance")
     wrong = record.steps.set_column(i_column, "clearance", pa.array(clearances))
-    return ask(replace(record, steps=wrong), progress)
+    return ask(replace(record, table=wrong), progress)
 crosscheck.cross_check = asked_about_a_wrong_answer
 cli.main()
 """

@@ -64,7 +64,7 @@ def test_a_wrong_answer_of_the_peer_is_settled_and_counted(error: float, monkeyp
 def test_a_wrong_answer_of_ours_is_never_settled(error: float) -> None:
     run = passing(ball(0.2, 1))
     wrong = run.steps["clearance"].to_numpy() + [0.0, error, 0.0, 0.0]
-    record = replace(run.record, steps=run.steps.set_column(2, "clearance", [wrong]))
+    record = replace(run.record, table=run.steps.set_column(2, "clearance", [wrong]))
     found = cross_check(record)
     assert [row.step for row in found.disagreements] == [1] and found.n_settled == 0
 
@@ -119,5 +119,5 @@ def test_it_gives_up_where_nothing_is_settled(monkeypatch) -> None:
         steps = steps.set_column(
             steps.column_names.index(name), name, [steps[name].to_numpy() + shift]
         )
-    found = cross_check(replace(run.record, steps=steps))
+    found = cross_check(replace(run.record, table=steps))
     assert len(found.disagreements) == 4 and len(asked) <= 2

@@ -35,7 +35,7 @@ def with_budget(
     for name in ("proven", "expected"):
         values = getattr(budgets[0], name)
         steps = steps.append_column(name, pa.array(values, mask=~np.isfinite(values)))
-    return dataclasses.replace(made, case=case, budget=budgets, steps=steps)
+    return dataclasses.replace(made, case=case, budget=budgets, table=steps)
 
 
 def _of_rule(made, rule, taken, between, changes) -> RuleBudget:

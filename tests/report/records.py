@@ -149,7 +149,7 @@ def with_steps(made: Record, steps: pa.Table) -> Record:
         for one in made.motions
     )
     rules, timeline = rules_of(made.case, motions, steps), timeline_of(made.case, motions)
-    return dataclasses.replace(made, steps=steps, motions=motions, rules=rules, timeline=timeline)
+    return dataclasses.replace(made, table=steps, motions=motions, rules=rules, timeline=timeline)
 
 
 def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:

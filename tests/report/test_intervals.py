@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import pyarrow as pa
 import pytest
 
@@ -16,10 +14,11 @@ from clearance.report.intervals import (
     status_counts,
 )
 from clearance.report.verdict import verdict_of
-from tests.report.records import record
+from tests.report.records import record, with_steps
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
 LETTERS = "c n v x x v n c n"
+GAP_OF = {"c": 0.1, "n": 0.03, "v": 0.003, "x": 0.0}
 WORDS = {"c": "clear", "n": "near", "v": "violated", "x": "contact"}
 
 
@@ -28,7 +27,7 @@ def run_of(letters: str, gaps: list[float]):
     steps = made.steps.set_column(2, "clearance", pa.array(gaps))
     words = pa.array([WORDS[letter] for letter in letters.split()])
     steps = steps.set_column(steps.column_names.index("status"), "status", words)
-    return dataclasses.replace(made, steps=steps)
+    return with_steps(made, steps)
 
 
 def test_intervals_by_hand():
@@ -81,7 +80,8 @@ def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepes
     [("c c", "clear"), ("c n", "near"), ("n v", "violated"), ("x c", "contact")],
 )
 def test_the_verdict_is_the_worst_status(letters, expected):
-    assert verdict_of(run_of(letters, [0.1, 0.1])).status == expected
+    gaps = [GAP_OF[letter] for letter in letters.split()]
+    assert verdict_of(run_of(letters, gaps)).status == expected
 
 
 def test_events_tell_the_least_until_the_level_is_left():

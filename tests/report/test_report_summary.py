@@ -88,7 +88,7 @@ def test_tracking_error_is_told_when_the_motion_is_simulated():
     run = record(n_steps=5)
     steps = run.steps.append_column("tracking_error", [[0.0, 0.1, 0.5, 0.2, 0.0]])
     assert summary_of(run)["tracking_error"] is None
-    told = summary_of(dataclasses.replace(run, steps=steps))["tracking_error"]
+    told = summary_of(dataclasses.replace(run, table=steps))["tracking_error"]
     assert told == {"greatest": 0.5, "step": 2}
 
 
