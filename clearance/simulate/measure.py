@@ -144,8 +144,19 @@ class _Sweep:
             array(f"{name}.points", (n_rows, 2, 3)),
         )
 
-    def sweep_steps(self, steps: Steps, goal: Goal, rows: StepRows, found: PairRows) -> np.ndarray:
-        """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`."""
+    def sweep_steps(
+        self,
+        steps: Steps,
+        goal: Goal,
+        rows: StepRows,
+        found: PairRows,
+        known: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`.
+
+        Args:
+            known: (k,) the pair of each step that need not be measured, or -1.
+        """
         layout = self.what.layout
         positions = positions_at(self.what.case, self.what.motions, steps)
         numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
@@ -156,7 +167,7 @@ class _Sweep:
             sweep,
             layout.surface,
             layout.world,
-            SweptSteps(positions, numbers),
+            SweptSteps(positions, numbers, _NO_STEPS if known is None else known),
             goal,
             first,
             SweepRows(rows, found),
@@ -251,6 +262,13 @@ def measure(
     return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
+class Nearest(NamedTuple):
+    """The nearest pair of some steps (n,), -1 where none is known, and how far apart it is (n,) [m]."""
+
+    pairs: np.ndarray
+    distances: np.ndarray
+
+
 def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
     rows, pairs, _ = pairs_within(what, steps, 0.0)
@@ -258,11 +276,14 @@ def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray
 
 
 def pairs_within(
-    what: PairsInMotion, steps: np.ndarray, within: float
+    what: PairsInMotion, steps: np.ndarray, within: float, nearest: Nearest | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,), (k,) pairs within [m] there, in order, and (k,) how far apart they are [m].
 
     Nothing that is farther apart is measured.
+
+    Args:
+        nearest: what is known of the steps, and is not measured again.
     """
     work = _Sweep(what, Resources(jobs=1))
     goal = Goal(np.full(work.n_pairs, within * NOT_LESS), True, False)
@@ -270,7 +291,11 @@ def pairs_within(
     for span in parts(len(steps), sparse=True):
         every = np.full((span.stop - span.start, work.n_pairs), np.inf)
         found = _no_pair_rows(work.n_pairs, work.n_pairs, every)
-        work.sweep_steps(steps[span], goal, _rows_of(None, span), found)
+        known = None if nearest is None else nearest.pairs[span]
+        work.sweep_steps(steps[span], goal, _rows_of(None, span), found, known)
+        if nearest is not None:
+            seen = np.flatnonzero(nearest.pairs[span] >= 0)
+            every[seen, nearest.pairs[span][seen]] = nearest.distances[span][seen]
         near = np.nonzero(every <= within)
         rows.append(near[0] + span.start)
         pairs.append(near[1])

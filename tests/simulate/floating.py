@@ -112,7 +112,7 @@ def swept(scene: Scene, within: float = np.inf) -> tuple[StepRows, np.ndarray]:
     )
     counts = np.empty(5, dtype=np.int64)
     call(
-        sweep, join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n)),
+        sweep, join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n), np.empty(0, np.int64)),
         Goal(np.full(n_pairs, within), False, False), FirstLook(np.empty(0, np.int64), 0),
         SweepRows(rows, no_pairs), counts,
     )  # fmt: skip

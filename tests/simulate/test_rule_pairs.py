@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.simulate.measure import Nearest, measure, pairs_within
 from clearance.simulate.rule_pairs import NearRows
+from clearance.simulate.sections import section_plan
+from clearance.world.motion import kinematic_motion
+from clearance.world.timeline import timeline_of
+from tests.cells import cell
 
 SCENES = Path(__file__).parents[2] / "scenes"
 WITHIN = 0.08
@@ -47,6 +52,35 @@ def test_the_moment_of_a_pair_is_what_its_row_says():
         assert moment.clearance == pytest.approx(rows.clearances[i], abs=1e-12)
         gap = np.linalg.norm(np.subtract(moment.point_link, moment.point_obstacle))
         assert gap == pytest.approx(moment.clearance, abs=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["iiwa_pipe_rack", "panda_shelf", "dual_arm_handover"])
+@pytest.mark.parametrize("need", ["steps", "limit"])
+def test_what_is_known_of_the_nearest_pairs_is_what_they_would_be_measured_as(name, need):
+    for rule in checked(name, need).record.rules:
+        for answer in rule.pairs.answers:
+            found, what = answer.found, answer.section.in_motion
+            steps = np.flatnonzero(found.clearance < WITHIN)
+            nearest = Nearest(found.pair[steps], found.clearance[steps])
+            assert len(steps) == 0 or (nearest.pairs >= 0).all()
+            told = pairs_within(what, steps, WITHIN, nearest)
+            for one, other in zip(told, pairs_within(what, steps, WITHIN), strict=True):
+                np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_only_what_is_not_known_is_measured_near_a_step(seed):
+    case = cell(seed, apart=1.0)
+    (section, *_) = section_plan(timeline_of(case, [*map(kinematic_motion, case.robots)])).sections
+    what = section.in_motion
+    found = measure(what)
+    steps = np.arange(len(found.clearance))
+    nearest = Nearest(found.pair, found.clearance)
+    for within in (0.0, float(np.median(found.clearance)), 10.0):
+        told = pairs_within(what, steps, within, nearest)
+        for one, other in zip(told, pairs_within(what, steps, within), strict=True):
+            np.testing.assert_array_equal(one, other)
 
 
 def test_nothing_is_near_where_all_is_farther_apart():

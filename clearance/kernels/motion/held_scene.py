@@ -105,7 +105,7 @@ def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tall
     first = at[WINNER]
     if carried(world, first, state) <= 0.0:
         first = nearest_by_boxes(surface, world, bodies, state, first)
-    asked = RowLook(bodies, row, row, first, np.inf, TO_THE_END)
+    asked = RowLook(bodies, row, row, first, -1, np.inf, TO_THE_END)
     best = nearest_of(lend(surface), world, asked, goal, state, pair_rows, tally, table)
     at[WINNER] = best.pair
     at[LOOK] = look + 1

@@ -45,7 +45,7 @@ class RowLook(NamedTuple):
 
     Attributes:
         bodies: those that are looked at. row: its place in the results. step: its number.
-        first: the pair that is asked before all others, or -1.
+        first: the pair that is asked before all others, or -1. known: one that is not measured, or -1.
         lowest: [m] a bound on the distance of all pairs of all other bodies.
         effort: of `PairQuestion`.
     """
@@ -54,6 +54,7 @@ class RowLook(NamedTuple):
     row: int
     step: int
     first: int
+    known: int
     lowest: float
     effort: int
 
@@ -190,6 +191,9 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
                 lower_bound = spare(world, first, state, goal)
             elif best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
                 pass  # no nearer, and not the least pair
+            elif pair == look.known:
+                lowest = min(lowest, lower_bound)
+                lower_bound = spare(world, pair, state, goal)
             elif is_beyond:
                 lowest = min(lowest, lower_bound)
                 if place <= in_order:  # and so are those after it

@@ -59,7 +59,7 @@ def sweep(surface, world, path, goal, first, found, tally, table):
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
         state = new_sweep_state(world, n_columns, within)
-        rough = SweptSteps(few, first.rows)
+        rough = SweptSteps(few, first.rows, path.known[:0])
         _sweep(surface, world, rough, goal, first.effort, state, found, tally, table)
     state = new_sweep_state(world, n_columns, within)
     _sweep(surface, world, path, goal, TO_THE_END, state, found, tally, table)
@@ -100,7 +100,8 @@ def _sweep(surface, world, path, goal, effort, state, found, tally, table):
             and not was_contact(state.answers, first)
         ):
             first = nearest_by_boxes(surface, world, bodies, state, first)
-        asked = RowLook(bodies, row, steps[row], first, lowest, effort)
+        known = path.known[row] if len(path.known) > 0 else -1
+        asked = RowLook(bodies, row, steps[row], first, known, lowest, effort)
         best = nearest_of(lent, world, asked, goal, state, found.pair_rows, tally, table)
         lowest = best.lowest
         if best.pair >= 0:

@@ -25,10 +25,12 @@ class SweptSteps(NamedTuple):
 
     Attributes:
         positions: (k, columns) of the joints at the steps [rad or m]. steps: (k,) their numbers.
+        known: (k,) the pair that is not measured at each, since it has been, or -1; (0,) where all are.
     """
 
     positions: np.ndarray
     steps: np.ndarray
+    known: np.ndarray
 
 
 class FirstLook(NamedTuple):
