@@ -124,6 +124,39 @@ def _stay_beside(found, moved, turned_a, turned_b):
 
 
 @inline(force=True)
+def _are_beside(found, displacements, a, b, here, step):
+    """True if two boxes that were found so `here` are still beside each other at a later step."""
+    middles, turns = displacements.middles, displacements.turns
+    return _stay_beside(
+        found,
+        middles[a, step] - middles[a, here] + middles[b, step] - middles[b, here],
+        turns[a, step] - turns[a, here],
+        turns[b, step] - turns[b, here],
+    )
+
+
+@inline
+def _next_look(found, displacements, a, b, here, n_steps):
+    """The first step after `here` at which boxes may no longer be beside each other, or `n_steps`.
+
+    What they have moved only grows, and rounding keeps the order: once they may not be, they may not be later.
+    """
+    if n_steps - here > 1 and _are_beside(found, displacements, a, b, here, n_steps - 1):
+        return n_steps
+    low, high = here, here + 1
+    while high < n_steps and _are_beside(found, displacements, a, b, here, high):
+        low, high = high, high + 2 * (high - here)
+    high = min(high, n_steps)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _are_beside(found, displacements, a, b, here, middle):
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@inline(force=True)
 def _turned(before, after):
     """[-] the norm of the change of a rotation: no point turns by more than that many times its distance."""
     return np.sqrt(
@@ -162,7 +195,6 @@ def steps_together(boxes, pairs, poses, spans):
     n_steps, n_bodies = len(poses), len(boxes.links)
     displacements = BoxDisplacements(np.zeros((n_bodies, n_steps)), np.zeros((n_bodies, n_steps)))
     _fill_displacements(boxes, poses, displacements)
-    middles, turns = displacements.middles, displacements.turns
     for pair in range(len(pairs)):
         a, b = pairs[pair, 0], pairs[pair, 1]
         spans[pair, 0] = spans[pair, 1] = 0
@@ -178,12 +210,4 @@ def steps_together(boxes, pairs, poses, spans):
                 if spans[pair, 1] == 0:
                     spans[pair, 0] = step
                 spans[pair, 1] = step + 1
-            here = step
-            step += 1
-            while step < n_steps and _stay_beside(
-                found,
-                middles[a, step] - middles[a, here] + middles[b, step] - middles[b, here],
-                turns[a, step] - turns[a, here],
-                turns[b, step] - turns[b, here],
-            ):
-                step += 1
+            step = _next_look(found, displacements, a, b, step, n_steps)
