@@ -55,13 +55,11 @@ class CaseOptions:
         case = self._with_tolerance(case)
         limits = with_levels(case.limits, self.fail, self.warn)
         accepted = tuple(dict.fromkeys([*case.accept, *self.accept]))
+        if limits is not case.limits or accepted != case.accept or self.waivers:
+            waivers = (*case.waivers, *self.waivers)
+            case = replace(case, limits=limits, accept=accepted, waivers=waivers)
         return Question(
-            replace(
-                case,
-                limits=limits,
-                accept=accepted,
-                waivers=(*case.waivers, *self.waivers),
-            ),
+            case,
             need=self.need,
             certify=self.certify,
             certify_gap=self.certify_gap,

@@ -104,7 +104,9 @@ class Question:
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
         today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
         object.__setattr__(self, "today", today)
-        object.__setattr__(self, "case", replace(self.case, notices=notices_of(self.case)))
+        case = self.case.telling()
+        object.__setattr__(case, "notices", notices_of(case))
+        object.__setattr__(self, "case", case)
 
     @property
     def of_rows(self) -> tuple[object, ...]:

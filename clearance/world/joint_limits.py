@@ -5,13 +5,21 @@ Not for: how fast joints are (`joint_speeds`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
-from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses, turns
+from clearance.world.joint_positions import (
+    JointCourse,
+    JointRange,
+    extremes_of,
+    joint_courses,
+    joint_ranges,
+    turns,
+)
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
@@ -33,11 +41,14 @@ class _Excess(NamedTuple):
     text: str
 
 
-def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
+def notices_on_joints(
+    placed: PlacedRobot, rule: str, before: str = "", ranges: Sequence[JointRange] | None = None
+) -> list[Notice]:
     """What is beyond its limits, at the samples or between them, or where the robot stands.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
+        ranges: `joint_ranges`, where they are known.
 
     Raises:
         BadInput: another rule.
@@ -45,6 +56,8 @@ def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[
     if rule not in ("warn", "fail"):
         raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
     asked = placed.trajectory
+    if _all_within(joint_ranges(placed) if ranges is None else ranges, asked):
+        return []
     found = [
         excess for course in joint_courses(placed) for excess in _excesses(course, asked, before)
     ]
@@ -60,6 +73,15 @@ def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[
     elif near:
         notices.append(Notice(Severity.WARNING, "limits", _told(near)))
     return notices
+
+
+def _all_within(ranges: Sequence[JointRange], asked: Trajectory | None) -> bool:
+    """True if no joint is beyond its limits at a sample, and between them it goes straight."""
+    if asked is not None and asked.velocities is not None:
+        return False
+    return all(
+        max(high - joint.upper, joint.lower - low) <= ROUNDING for joint, low, high in ranges
+    )
 
 
 def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> list[_Excess]:

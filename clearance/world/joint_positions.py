@@ -43,6 +43,33 @@ def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
             yield JointCourse(joint, np.array([factor * resting + offset]))
 
 
+class JointRange(NamedTuple):
+    """How far a joint goes at the samples [rad] or [m]."""
+
+    joint: Joint
+    least: float
+    greatest: float
+
+
+def joint_ranges(placed: PlacedRobot) -> list[JointRange]:
+    """The least and the greatest of each of `joint_courses`.
+
+    Exactness: those of the courses to the last bit, since rounding keeps the order of what it rounds.
+    """
+    asked, ends = placed.trajectory, {}
+    if asked is not None:
+        least, greatest = asked.positions.min(axis=0), asked.positions.max(axis=0)
+        columns = zip(least.tolist(), greatest.tolist(), strict=True)
+        ends = dict(zip(asked.joint_names, columns, strict=True))
+    found = []
+    for joint, master, factor, offset in followers(placed.robot):
+        resting = placed.fixed_positions.get(master, 0.0)
+        low, high = ends.get(master, (resting, resting))
+        one, other = factor * low + offset, factor * high + offset
+        found.append(JointRange(joint, min(one, other), max(one, other)))
+    return found
+
+
 def extremes_of(
     course: JointCourse, asked: Trajectory | None
 ) -> tuple[np.ndarray, np.ndarray] | None:

@@ -12,6 +12,7 @@ from dataclasses import replace
 from clearance.world.case import Case, Limits
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_speeds import notices_on_speed
+from clearance.world.joint_positions import joint_ranges
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_sizes import notices_on_sizes
@@ -37,12 +38,13 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     moves = [placed.trajectory is not None for placed in case.robots]
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
-        before = case.prefix_of(placed)
+        if not any(moves):
+            break  # nothing is asked of the robots
+        before, ranges = case.prefix_of(placed), joint_ranges(placed)
         if placed.trajectory is not None:
-            found += notices_on_motion(placed, before)
+            found += notices_on_motion(placed, before, ranges)
             found += notices_on_speed(placed, case.limits.joints, before)
-        if any(moves):  # else nothing is asked of it
-            found += notices_on_joints(placed, case.limits.joints, before)
+        found += notices_on_joints(placed, case.limits.joints, before, ranges)
     return worst_first(found)
 
 

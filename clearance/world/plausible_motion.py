@@ -5,10 +5,12 @@ Not for: joint limits (`joint_limits`), nor tables of poses (`plausible_tables`)
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from clearance.world.case import PlacedRobot
-from clearance.world.joint_positions import joint_courses, turns
+from clearance.world.joint_positions import JointRange, joint_ranges, turns
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
@@ -35,28 +37,30 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 """[rad], [m] A joint must go this far in sum before its speed says anything about the unit of time."""
 
 
-def notices_on_motion(placed: PlacedRobot, before: str = "") -> list[Notice]:
+def notices_on_motion(
+    placed: PlacedRobot, before: str = "", ranges: Sequence[JointRange] | None = None
+) -> list[Notice]:
     """What of a robot's motion looks like another unit.
 
     Args:
-        before: what stands before the names of joints.
+        before: what stands before the names of joints. ranges: `joint_ranges`, where they are known.
     """
     told = [
-        *_large_positions(placed, before),
+        *_large_positions(joint_ranges(placed) if ranges is None else ranges, before),
         *_odd_velocities(placed, before),
         *_creeping(placed, before),
     ]
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
-def _large_positions(placed: PlacedRobot, before: str) -> list[str]:
+def _large_positions(ranges: Sequence[JointRange], before: str) -> list[str]:
     angles: list[tuple[float, str]] = []
     lengths: list[tuple[float, str]] = []
-    for course in joint_courses(placed):
-        greatest = float(np.abs(course.at_samples).max(initial=0.0))
-        large, most = (angles, LARGE_TURN) if turns(course.joint) else (lengths, LARGE_SLIDE)
+    for joint, low, high in ranges:
+        greatest = max(abs(low), abs(high))
+        large, most = (angles, LARGE_TURN) if turns(joint) else (lengths, LARGE_SLIDE)
         if greatest > most:
-            large.append((greatest, before + course.joint.name))
+            large.append((greatest, before + joint.name))
     told = []
     for large, unit, hint in (
         (angles, "rad", "angles are in radians, is this degrees?"),

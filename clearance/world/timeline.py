@@ -95,7 +95,7 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
     edges = [0, *np.searchsorted(times, cuts).tolist(), len(times) - 1]
     phases: list[Phase] = []
     for first, last in zip(edges, edges[1:], strict=False):
-        here = times[first : last + 1]
+        here = times if len(edges) == 2 else times[first : last + 1]
         plain = Phase(
             first,
             last,
@@ -126,6 +126,8 @@ def _require_parts(case: Case) -> None:
 
 def _with_taken_present(phase: Phase, before: Sequence[Phase]) -> Phase:
     """The phase with the parts that have been picked up, whose own tables say nothing from then on."""
+    if not phase.absent_obstacles:
+        return phase
     taken = {part for then in before for part in then.carried}
     if before:
         names = [obstacle.name for obstacle in phase.case.obstacles]
@@ -214,20 +216,27 @@ def _laid_out(table: _Table, end: float) -> _Table:
 
 def _cuts(case: Case, tables: Sequence[_Table], start: float, end: float) -> np.ndarray:
     """The times [s] inside the run at which a phase ends and the next begins."""
-    found = [table.knots.jumps for table in tables]
+    found = [jumps for table in tables if len(jumps := table.knots.jumps)]
     found += [np.array(table.once) for table in tables if table.timing.after == "absent"]
     for where, window in _windows(case):
         with at(where):
             _require_within(window, start, end)
         found.append(np.array(window.ends))
-    cuts = np.unique(np.concatenate(found)) if found else np.empty(0)
+    if not found:
+        return np.empty(0)
+    cuts = np.unique(np.concatenate(found))
     return cuts[(cuts > start) & (cuts < end)]
 
 
 def _windows(case: Case) -> Iterator[tuple[str, Window]]:
-    yield from ((f"carry[{i}]", carry.window) for i, carry in enumerate(case.carries))
-    yield from ((f"limits.rules[{i}]", rule.window) for i, rule in enumerate(case.limits.rules))
-    yield from ((f"allow[{i}]", row.window) for i, row in enumerate(case.allow))
+    for field, rows in (
+        ("carry", case.carries),
+        ("limits.rules", case.limits.rules),
+        ("allow", case.allow),
+    ):
+        for i, row in enumerate(rows):
+            if row.window.ends:
+                yield f"{field}[{i}]", row.window
 
 
 def _require_within(window: Window, start: float, end: float) -> None:
@@ -248,7 +257,7 @@ def _steps(laid: Sequence[Knots], cuts: np.ndarray, start: float, end: float) ->
 
 def _resampled(motion: Motion, knots: Knots, times: np.ndarray) -> Motion:
     """The motion at other times."""
-    if np.array_equal(times, motion.times):
+    if times is motion.times or np.array_equal(times, motion.times):
         if not len(knots.jumps) or not np.isin(knots.jumps, times[1:-1]).any():
             return motion
     return replace(

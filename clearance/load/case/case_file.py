@@ -205,7 +205,7 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     on_motion = notes_on_motion(case, start, end)
     on_robots = [*read.notes, *(note for robot in read.motion_notes for note in robot)]
     told = (*notes, *dict.fromkeys(on_robots), *held_notes, *read.scene_notes, *on_motion)
-    return replace(case, sources=tuple(sources), notes=told)
+    return case.telling(sources=tuple(sources), notes=told)
 
 
 def _run_through(case: Case) -> Timeline:
