@@ -15,9 +15,12 @@ from weakref import WeakKeyDictionary
 
 from clearance.late_dataclass import dataclass
 from clearance.simulate.fingerprint import robot_digest
+from clearance.simulate.names import pair_names
 from clearance.simulate.record import Record
 from clearance.world.budget import Budget, RobotTolerance
-from clearance.world.case import Limits, PlacedRobot
+from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.cell import once_a_cell
+from clearance.world.pairs import Pair
 from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT
 
@@ -104,7 +107,7 @@ def conditions_of(record: Record) -> MeasurementConditions:
         clock_slack="not tied" if math.isinf(slack) else float(slack),
         robots=tuple(_robot(record, placed) for placed in record.case.robots),
         rules=tuple(_rules(record.case.limits)),
-        pairs=tuple(_blocks(_pair_names(record))),
+        pairs=_measured_blocks(record.case, _measured(record)),
         unmeasured=tuple(_blocks(left_out)),
         tolerances=_tolerances(record.case.tolerance),
     )
@@ -165,7 +168,15 @@ def _blocks(pairs: Iterable[tuple[str, str]]) -> Iterator[MeasuredPairs]:
         yield MeasuredPairs(tuple(sorted(firsts)), seconds_of)
 
 
-def _pair_names(record: Record) -> Iterator[tuple[str, str]]:
-    for rule in record.rules:
-        if rule.pairs is not None:
-            yield from rule.pairs.names
+def _measured(record: Record) -> tuple[tuple[Pair, ...], ...]:
+    """The pairs of each section of each rule."""
+    known = (rule.pairs for rule in record.rules if rule.pairs is not None)
+    return tuple(answer.section.pairs for pairs in known for answer in pairs.answers)
+
+
+@once_a_cell(16)
+def _measured_blocks(
+    case: Case, sections: tuple[tuple[Pair, ...], ...]
+) -> tuple[MeasuredPairs, ...]:
+    names = (zip(*pair_names(case, pairs), strict=True) for pairs in sections)
+    return tuple(_blocks(itertools.chain.from_iterable(names)))

@@ -50,6 +50,11 @@ class NearCourse:
     @cached_property
     def stretches(self) -> tuple[slice, ...]:
         """The rows of each longest stretch without a break."""
+        if not len(self.bridges):  # then what breaks a stretch stands between two rows of it
+            ahead = np.diff(self.positions)
+            from_step_to_step = (ahead == 2) & (self.positions[:-1] % 2 == 0)
+            edges = np.flatnonzero((ahead > 1) & ~from_step_to_step) + 1
+            return tuple(slice(*ends) for ends in pairwise([0, *edges.tolist(), len(self.positions)]))
         steps = np.union1d(self.positions[self.positions % 2 == 0], self.bridges)
         passed = steps[:-1][np.diff(steps) == 2] + 1  # between two steps at which it is near
         covered = np.unique(np.concatenate([self.positions, steps, passed]))

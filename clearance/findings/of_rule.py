@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class RuleFindings:
 
     def _of_pairs(self) -> Iterator[Finding]:
         limits = self.rule.limits
-        for pair in np.union1d(self._rows.pairs, self._seen_pairs).tolist():
+        for pair in sorted({*self._rows.pairs.tolist(), *self._seen_pairs.tolist()}):
             course = self._course(pair)
             stretches = course.broken(limits.fail)
             if not stretches and (course.clearances < limits.warn).any():
@@ -96,6 +97,8 @@ class RuleFindings:
             upper = certificate.upper_bound[intervals]
             touching = certificate.touches(slice(None))[intervals]
             parts.append((2 * intervals + 1, upper, touching))
+        if len(parts) == 1:  # in order as they are
+            return NearCourse(*parts[0], self._bridges)
         positions, clearances, touching = (
             np.concatenate(column) for column in zip(*parts, strict=True)
         )
@@ -106,8 +109,7 @@ class RuleFindings:
         place = course.worst(rows)
         moment = self._moment(pair, int(course.positions[place]))
         first, last = (int(p) for p in course.positions[[rows.start, rows.stop - 1]])
-        named = self._named(CLEARANCE, (moment.link, moment.obstacle), occurrence)
-        return self._at(named, moment, first, last)
+        return self._at(moment, first, last, occurrence)
 
     def _moment(self, pair: int, position: int) -> Moment:
         step = position // 2
@@ -119,11 +121,13 @@ class RuleFindings:
             return self.rule.moment_at(step)
         return self.rule.pairs.moment(step, pair)
 
-    def _at(self, named: Finding, moment: Moment, first: int, last: int) -> Finding:
+    def _at(self, moment: Moment, first: int, last: int, occurrence: int = 0) -> Finding:
         """A finding with its worst moment and its stretch, from one position to another."""
         times = self.record.motions[0].times
-        return replace(
-            named,
+        return self._named(
+            CLEARANCE,
+            (moment.link, moment.obstacle),
+            occurrence,
             status=status_of(moment.clearance, self.rule.limits, moment.touches),
             clearance=float(moment.clearance),
             proven=self._proven(slice(max(0, first // 2 - 1), last // 2 + 1)),
@@ -165,8 +169,8 @@ class RuleFindings:
         worst = int(open_at[np.argmin(certificate.lower_bound[open_at])])
         times = self.record.motions[0].times
         seen = certificate.upper_bound[worst]
-        return replace(
-            self._named(UNPROVEN, (), 0),
+        return self._named(
+            UNPROVEN,
             status=status,
             clearance=_finite(seen),
             proven=_finite(certificate.lower_bound[worst]),
@@ -184,10 +188,9 @@ class RuleFindings:
         """The nearest pair of a rule that is kept, or no pair where nothing nearer was asked for."""
         moment = self.rule.worst
         if moment is None:
-            return replace(self._named(CLEARANCE, (), 0), proven=self._all_proven)
+            return self._named(CLEARANCE, proven=self._all_proven)
         position = 2 * moment.step + int(moment.between)
-        named = self._named(CLEARANCE, (moment.link, moment.obstacle), 0)
-        return replace(self._at(named, moment, position, position), proven=self._all_proven)
+        return replace(self._at(moment, position, position), proven=self._all_proven)
 
     @property
     def _all_proven(self) -> float | None:
@@ -196,10 +199,13 @@ class RuleFindings:
         known = np.isnan(self.rule.measurement.clearance)
         return None if not known.all() else _least(self.rule.measurement.lower_bound)
 
-    def _named(self, kind: str, bodies: tuple[str, ...], occurrence: int) -> Finding:
-        """A finding of the rule of which nothing else is known: it is kept."""
+    def _named(
+        self, kind: str, bodies: tuple[str, ...] = (), occurrence: int = 0, **known: Any
+    ) -> Finding:
+        """A finding of the rule; where nothing is `known` of it, it is kept."""
         limits, rule = self.rule.limits, self.rule.name
         a, b = bodies or ("", "")
+        told: dict[str, Any] = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
         return Finding(
             id=FindingName(self.record.case.name, kind, rule, bodies, occurrence).id,
             kind=kind,
@@ -207,11 +213,9 @@ class RuleFindings:
             body_a=a,
             body_b=b,
             occurrence=occurrence,
-            status=str(Status.CLEAR),
-            clearance=None,
-            proven=None,
             fail=limits.fail,
             warn=limits.warn,
+            **(told | known),
         )
 
 

@@ -51,8 +51,8 @@ def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterato
     """Contact with clouds: how deep a ball is says nothing of the thing that was scanned."""
     names: dict[str, None] = {}
     for one in found:
-        pairs = one.section.pairs
-        for i in np.unique(one.found.pair[one.found.clearance <= 0.0]).tolist():
+        pairs, touching = one.section.pairs, one.found.pair[one.found.clearance <= 0.0]
+        for i in np.unique(touching).tolist() if len(touching) else ():
             if i >= 0 and pairs[i].has_cloud(case):
                 clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
                 names |= {body.name_in(case): None for body in clouds}

@@ -41,12 +41,13 @@ class RuleAnswer:
     def worst_sample(self) -> Moment | None:
         """The first step of least clearance; None where none is known."""
         clearance = self.measurement.clearance
-        if np.isnan(clearance).all():
+        unknown = np.isnan(clearance)
+        if unknown.all():
             return None
         touching = self.measurement.touches(slice(None))
         if self.measurement.touching is not None and touching.any():
             return self.moment_at(int(np.argmax(touching)))
-        return self.moment_at(int(np.nanargmin(clearance)))
+        return self.moment_at(int(np.argmin(np.where(unknown, np.inf, clearance))))
 
     @cached_property
     def worst(self) -> Moment | None:

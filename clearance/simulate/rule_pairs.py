@@ -58,6 +58,8 @@ class RulePairs:
     def near(self, within: float) -> NearRows:
         """All pairs nearer than `within` [m] at each step."""
         parts = [_near(answer, within) for answer in self.answers]
+        if len(parts) == 1 and _is_sorted(parts[0]):
+            return NearRows(*parts[0])
         columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
         order = np.lexsort((columns[1], columns[0]))
         return NearRows(*(column[order] for column in columns))
@@ -79,6 +81,13 @@ class RulePairs:
 
 
 _Columns = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def _is_sorted(columns: _Columns) -> bool:
+    """True if rows are by steps, and those of one step by pairs."""
+    steps, pairs, *_ = columns
+    later = steps[1:] > steps[:-1]
+    return bool((later | ((steps[1:] == steps[:-1]) & (pairs[1:] > pairs[:-1]))).all())
 
 
 def _near(answer: SectionAnswer, within: float) -> _Columns:

@@ -63,6 +63,14 @@ def test_where_others_hide_a_pair_its_stretch_goes_on():
     assert spans(course([IN, FAR, FAR, IN], bridges=[1])) == [(0, 0), (6, 6)]
 
 
+@given(st.sets(st.integers(0, 40), min_size=1))
+def test_a_step_far_away_at_which_others_may_hide_the_pair_breaks_no_stretch(positions):
+    rows = np.array(sorted(positions), dtype=np.int64)
+    known = np.full(len(rows), IN), np.zeros(len(rows), dtype=bool)
+    alone = NearCourse(rows, *known, np.empty(0, np.int64))
+    assert alone.stretches == NearCourse(rows, *known, np.array([1000])).stretches
+
+
 def test_the_release_level_is_the_warn_limit_or_a_little_above_the_fail_limit():
     assert release_level(Limits(0.005, 0.02)) == 0.02
     assert (
