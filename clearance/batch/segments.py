@@ -24,7 +24,14 @@ def segment_of(rows: Sequence[dict[str, Any]]) -> bytes:
     """The rows as a parquet file."""
     buffer = io.BytesIO()
     table = pa.Table.from_pylist(list(rows), schema=STORED)
-    pq.write_table(table, buffer, compression="zstd", write_statistics=False)
+    pq.write_table(
+        table,
+        buffer,
+        compression="zstd",  # which finds what is said again, so that dictionaries only add to it
+        use_dictionary=False,
+        write_statistics=False,
+        store_schema=False,
+    )
     return buffer.getvalue()
 
 
