@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -25,11 +25,15 @@ from clearance.load.case.case_file import CellFile, load_case, load_cell, with_t
 from clearance.load.files.mesh_paths import variables_of
 from clearance.load.robot.urdf.xacro_variables import variables_asked
 from clearance.load.schema.manifest import TrajectoryOptions
-from clearance.run import Resources, answer
+from clearance.run import Question, Resources, Run, answer
 from clearance.world.case import Case, Source
 
 CELLS = 4
 """Cells that stay read in a process; work comes cell by cell."""
+
+TOGETHER, TOGETHER_SECONDS = 16, 0.1
+"""Short cases that go through each stage together: a processor's caches hold one stage, not all. As many as that
+time is enough for, so that no long case waits for another."""
 
 ONE_THREAD = Resources(jobs=1)
 
@@ -100,11 +104,45 @@ def measure(task: Task) -> TaskResult:
             valid="the same versions wherever the batch runs",
         )
     work, begun = _Work(task.batch), time.monotonic()
-    for i, item in enumerate(task.items):
-        if i and time.monotonic() - begun > task.seconds:
-            return work.done(task.items[i:])
-        work.add(item)
-    return work.done(())
+    n_done = 0
+    while n_done < len(task.items):
+        passed = time.monotonic() - begun
+        if n_done and passed > task.seconds:
+            break
+        some = task.items[n_done : n_done + _n_together(n_done, passed)]
+        n_done += work.add(some, begun + task.seconds)
+    return work.done(task.items[n_done:])
+
+
+def _n_together(n_done: int, passed: float) -> int:
+    """How many cases go on together, after so many in [s]."""
+    if n_done == 0:
+        return 1
+    return max(1, min(TOGETHER, int(TOGETHER_SECONDS * n_done / max(passed, 1e-9))))
+
+
+class _CaseOnItsWay:
+    """An item, and what has become of it so far; after a fault no more does."""
+
+    def __init__(self, item: Item) -> None:
+        self.item, self.read = item, 0
+        self.fault: Fault | None = None
+        self.found: ReadItem
+        self.question: Question
+        self.run: Run
+        self.row: dict[str, Any]
+
+    def take(self, stage: Callable[[_CaseOnItsWay], None]) -> None:
+        """Goes through a stage."""
+        if self.fault is not None:
+            return
+        try:
+            stage(self)
+        except ClearanceError as error:
+            self.fault = Fault(self.item.number, str(error))
+        except Exception as error:
+            text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
+            self.fault = Fault(self.item.number, text, traceback.format_exc())
 
 
 class _Work:
@@ -117,19 +155,36 @@ class _Work:
         self.rows: list[dict[str, Any]] = []
         self.read: dict[str, FileStamp] = {}
 
-    def add(self, item: Item) -> None:
-        read = time.time_ns()
-        try:
-            found = read_item(item, self.batch)
-            run = answer(item.options.question(found.case), ONE_THREAD)
-            row = row_of(run)
-        except ClearanceError as error:
-            self.faults.append(Fault(item.number, str(error)))
-            return
-        except Exception as error:
-            text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
-            self.faults.append(Fault(item.number, text, traceback.format_exc()))
-            return
+    def add(self, items: Sequence[Item], until: float) -> int:
+        """Takes items through all stages together; how many, since after a time [s] none but the first is begun.
+
+        What has been read of the others is read again by whoever takes them.
+        """
+        on_their_way = [_CaseOnItsWay(item) for item in items]
+        for one in on_their_way:
+            one.take(self._read)
+        for i, one in enumerate(on_their_way):
+            if i and time.monotonic() > until:
+                on_their_way = on_their_way[:i]
+                break
+            one.take(_answer)
+        for stage in (_find, _tell):
+            for one in on_their_way:
+                one.take(stage)
+        for one in on_their_way:
+            if one.fault is None:
+                self._keep(one)
+            else:
+                self.faults.append(one.fault)
+        return len(on_their_way)
+
+    def _read(self, one: _CaseOnItsWay) -> None:
+        one.read = time.time_ns()
+        one.found = read_item(one.item, self.batch)
+        one.question = one.item.options.question(one.found.case)
+
+    def _keep(self, one: _CaseOnItsWay) -> None:
+        item, found, row, read = one.item, one.found, one.row, one.read
         case, others = found.case, conditions_of(item, found.case)
         key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
         inputs = inputs_text((*found.kept, *others))
@@ -152,6 +207,18 @@ class _Work:
         return TaskResult(
             tuple(self.measured), tuple(self.faults), segment, tuple(self.read.items()), left
         )
+
+
+def _answer(one: _CaseOnItsWay) -> None:
+    one.run = answer(one.question, ONE_THREAD)
+
+
+def _find(one: _CaseOnItsWay) -> None:
+    _ = one.run.findings  # which the row takes as they are then
+
+
+def _tell(one: _CaseOnItsWay) -> None:
+    one.row = row_of(one.run)
 
 
 class ReadItem(NamedTuple):
