@@ -8,6 +8,7 @@ pairs are near when (`simulate.rule_pairs`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -53,15 +54,14 @@ class NearCourse:
         if not len(self.bridges):  # then what breaks a stretch stands between two rows of it
             ahead = np.diff(self.positions)
             from_step_to_step = (ahead == 2) & (self.positions[:-1] % 2 == 0)
-            edges = np.flatnonzero((ahead > 1) & ~from_step_to_step) + 1
-            return tuple(slice(*ends) for ends in pairwise([0, *edges.tolist(), len(self.positions)]))
+            ends = np.flatnonzero((ahead > 1) & ~from_step_to_step) + 1
+            return _between([0, *ends.tolist(), len(self.positions)])
         steps = np.union1d(self.positions[self.positions % 2 == 0], self.bridges)
         passed = steps[:-1][np.diff(steps) == 2] + 1  # between two steps at which it is near
         covered = np.unique(np.concatenate([self.positions, steps, passed]))
         group = np.cumsum(np.diff(covered, prepend=covered[:1]) > 1)
         own = group[np.searchsorted(covered, self.positions)]
-        edges = [0, *(np.flatnonzero(np.diff(own)) + 1).tolist(), len(own)]
-        return tuple(slice(*ends) for ends in pairwise(edges))
+        return _between([0, *(np.flatnonzero(np.diff(own)) + 1).tolist(), len(own)])
 
     @property
     def nearest_stretch(self) -> slice:
@@ -75,3 +75,8 @@ class NearCourse:
         if not below.any():
             return []
         return [rows for rows in self.stretches if below[rows].any()]
+
+
+def _between(edges: Sequence[int]) -> tuple[slice, ...]:
+    """The rows from each edge to the next."""
+    return tuple(slice(*ends) for ends in pairwise(edges))

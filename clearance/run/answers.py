@@ -217,6 +217,7 @@ def _samples(
         from clearance.budget.answer import columns_of
 
         left = columns_of(budget)
+
     @cache
     def table() -> pa.Table:
         batches = step_table(case, motions, pairs, judged, with_error=simulated, left=left)

@@ -178,8 +178,8 @@ class Record(Samples):
 
     Attributes:
         motions: one for each of `case.robots`.
-        table: of `steps`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst against its
-            rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" | "contact", null
+        table: of `steps`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst
+            against its rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" | "contact", null
             where a bound does not decide); of one robot among obstacles that stand, link, obstacle, link_x …
             obstacle_z as well, which come first; with several rules nearest_clearance, nearest_a, nearest_b of
             the nearest pair whatever judges it; time_b where clocks are not tied;

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from clearance.world.case import Case, Limits
 from clearance.world.joint_limits import notices_on_joints
-from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.joint_positions import joint_ranges
+from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_sizes import notices_on_sizes

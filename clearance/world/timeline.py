@@ -229,14 +229,10 @@ def _cuts(case: Case, tables: Sequence[_Table], start: float, end: float) -> np.
 
 
 def _windows(case: Case) -> Iterator[tuple[str, Window]]:
-    for field, rows in (
-        ("carry", case.carries),
-        ("limits.rules", case.limits.rules),
-        ("allow", case.allow),
-    ):
-        for i, row in enumerate(rows):
-            if row.window.ends:
-                yield f"{field}[{i}]", row.window
+    found = [(f"carry[{i}]", carry.window) for i, carry in enumerate(case.carries)]
+    found += [(f"limits.rules[{i}]", rule.window) for i, rule in enumerate(case.limits.rules)]
+    found += [(f"allow[{i}]", row.window) for i, row in enumerate(case.allow)]
+    yield from (row for row in found if row[1].ends)
 
 
 def _require_within(window: Window, start: float, end: float) -> None:
