@@ -179,16 +179,16 @@ class Record(Samples):
     Attributes:
         motions: one for each of `case.robots`.
         table: of `steps`, one row a step: step, time, clearance [m] (less padding, of the pair that stands worst
-            against its rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" | "contact", null
-            where a bound does not decide); of one robot among obstacles that stand, link, obstacle, link_x …
-            obstacle_z as well, which come first; with several rules nearest_clearance, nearest_a, nearest_b of
-            the nearest pair whatever judges it; time_b where clocks are not tied;
-            tracking_error when simulated; proven and expected [m] where the case has tolerances (expected null in
-            contact); when certified, lower_bound and upper_bound of the motion from the step
-            to the next, and `between`: the motion is worse there than at both of its ends, and the status is that
-            of the motion, not of the step; else lower_bound of the step where `need` leaves clearances unknown
-            (null); penetration [m] of the deepest pair in contact and volume [m3] of all, both null here and
-            filled in by `steps_with_contacts`.
+            against its rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" |
+            "contact", null where a bound does not decide); of one robot among obstacles that stand, link,
+            obstacle, link_x … obstacle_z as well, which come first; with several rules nearest_clearance,
+            nearest_a, nearest_b of the nearest pair whatever judges it; time_b where clocks are not tied;
+            tracking_error when simulated; proven and expected [m] where the case has tolerances (expected null
+            in contact); when certified, lower_bound and upper_bound of the motion from the step to the next, and
+            `between`: the motion is worse there than at both of its ends, and the status is that of the motion,
+            not of the step; else lower_bound of the step where `need` leaves clearances unknown (null);
+            penetration [m] of the deepest pair in contact and volume [m3] of all, both null here and filled in
+            by `steps_with_contacts`.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
