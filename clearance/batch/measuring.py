@@ -160,9 +160,12 @@ class _Work:
 
         What has been read of the others is read again by whoever takes them.
         """
-        on_their_way = [_CaseOnItsWay(item) for item in items]
-        for one in on_their_way:
-            one.take(self._read)
+        on_their_way, begun = [], time.monotonic()
+        for item in items:
+            on_their_way.append(_CaseOnItsWay(item))
+            on_their_way[-1].take(self._read)
+            if time.monotonic() - begun > TOGETHER_SECONDS:
+                break  # what takes so long to read is large, and more of it would fill the memory
         for i, one in enumerate(on_their_way):
             if i and time.monotonic() > until:
                 on_their_way = on_their_way[:i]

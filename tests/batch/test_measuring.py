@@ -57,6 +57,27 @@ def test_a_fault_of_the_program_in_one_case_is_told_of_that_alone(items, monkeyp
     assert len(found.measured) == len(items) - 2
 
 
+def test_where_reading_takes_long_no_further_case_is_read_ahead(items, monkeypatch):
+    monkeypatch.setattr(measuring, "TOGETHER_SECONDS", -1.0)
+    monkeypatch.setattr(measuring, "_n_together", lambda *_: TOGETHER)
+    under_way, most = set(), []
+    read, tell = measuring.read_item, measuring.row_of
+
+    def seen_reading(item, batch):
+        under_way.add(item.name)
+        most.append(len(under_way))
+        return read(item, batch)
+
+    def seen_telling(run):
+        under_way.discard(run.record.case.name)
+        return tell(run)
+
+    monkeypatch.setattr(measuring, "read_item", seen_reading)
+    monkeypatch.setattr(measuring, "row_of", seen_telling)
+    done(items[:4])
+    assert most == [1, 1, 1, 1]
+
+
 def test_only_short_cases_go_together():
     assert measuring._n_together(0, 0.0) == 1
     assert measuring._n_together(1, 0.005) == measuring._n_together(300, 1.5) == TOGETHER
