@@ -28,10 +28,9 @@ from clearance.world.budget import (
 )
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
-from clearance.world.kinematics import seen_from
 from clearance.world.mimics import leads_of
 from clearance.world.mount import Mount
-from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
+from clearance.world.pairs import BodyIndex
 from clearance.world.robot import Robot
 
 EXACT_JOINT = JointTolerance()
@@ -76,37 +75,16 @@ def held_frames(case: Case, budget: Budget, mount: Mount | None) -> Iterator[Hel
         mount = carrier.mount
 
 
-def origins_of(case: Case, layout: Layout, pairs: Sequence[Pair]) -> np.ndarray:
-    """(links,) which link of the case's forest each link of a layout is, or -1 where it stands as the origin that
-    others are seen from.
-    """
-    forest = forest_of(case)
-    n_forest = len(forest.links.parents)
-    origins = np.full(len(layout.world.links.parents), -1)
-    origins[:n_forest] = np.arange(n_forest)
-    wanted = {
-        (int(reference), frame)
-        for pair, reference in zip(pairs, layout.references, strict=True)
-        if reference != IN_WORLD
-        for frame in (pair.a.frame_in(case), pair.b.frame_in(case))
-        if frame != WORLD
-    }
-    for (reference, link), place in seen_from(forest.links, sorted(wanted))[1].items():
-        origins[place] = -1 if link == reference else link
-    return origins
-
-
-def errors_of(case: Case, budget: Budget, layout: Layout, pairs: Sequence[Pair]) -> Errors:
+def errors_of(case: Case, budget: Budget, layout: Layout) -> Errors:
     """The errors of all links and bodies of a layout."""
-    own = _ForestErrors(case, budget)
-    origins = origins_of(case, layout, pairs)
+    own, origins = _ForestErrors(case, budget), layout.origins
     known = origins >= 0
     at = np.maximum(origins, 0)
 
     def of(column: np.ndarray) -> np.ndarray:
         return np.where(known, column[at], 0.0)
 
-    of_links = [own.extras.get(int(link), []) if link >= 0 else [] for link in origins]
+    of_links = [own.extras.get(link, []) for link in origins.tolist()]
     return Errors(
         of(own.joint),
         of(own.xyz),
@@ -114,8 +92,8 @@ def errors_of(case: Case, budget: Budget, layout: Layout, pairs: Sequence[Pair])
         of(own.delay),
         np.where(known, own.owner[at], -1),
         _extras(of_links),
-        _extras(_of_bodies(case, budget, layout, pairs)),
-        _surfaces(case, budget, layout, pairs),
+        _extras(_of_bodies(case, budget, layout)),
+        np.array([surface_of(case, budget, place.body) for place in layout.places]),
         _most_rows(layout, of_links),
     )
 
@@ -198,47 +176,22 @@ def _size(own: RobotTolerance, joint: str) -> float:
     return tolerance.position + tolerance.tracking
 
 
-def _bodies_of(layout: Layout, pairs: Sequence[Pair]) -> list[tuple[int, BodyIndex | None]]:
-    """Of each body of a layout the reference that it is seen from, and what it is."""
-    found: list[tuple[int, BodyIndex | None]] = [(IN_WORLD, None)] * len(layout.world.frames)
-    for i, pair in enumerate(pairs):
-        here = layout.world.pairs[i]
-        sides = pair[::-1] if layout.swapped[i] else pair
-        for body, index in zip(here.tolist(), sides, strict=True):
-            found[body] = int(layout.references[i]), index
-    return found
-
-
-def _of_bodies(
-    case: Case, budget: Budget, layout: Layout, pairs: Sequence[Pair]
-) -> list[list[HeldFrame]]:
+def _of_bodies(case: Case, budget: Budget, layout: Layout) -> list[list[HeldFrame]]:
     """The places of the bodies that stand in the world."""
     found: list[list[HeldFrame]] = []
-    for frame, (reference, index) in zip(
-        layout.world.frames.tolist(), _bodies_of(layout, pairs), strict=True
-    ):
-        stands = frame < 0 and reference == IN_WORLD
-        if not stands or index is None or index.i_robot != OBSTACLE:
+    for frame, seen in zip(layout.world.frames.tolist(), layout.places, strict=True):
+        if frame >= 0 or seen.reference != IN_WORLD or not seen.body.is_obstacle:
             found.append([])
             continue
-        obstacle = case.obstacles[index.i_body]
+        obstacle = case.obstacles[seen.body.i_body]
         place = obstacle_tolerance(budget, obstacle).place
         found.append([] if place == EXACT else [HeldFrame(obstacle.name, np.zeros(3), place)])
     return found
 
 
-def _surfaces(case: Case, budget: Budget, layout: Layout, pairs: Sequence[Pair]) -> np.ndarray:
-    """(bodies,) [m]."""
-    found = np.zeros(len(layout.world.frames))
-    for body, (_, index) in enumerate(_bodies_of(layout, pairs)):
-        if index is not None:
-            found[body] = surface_of(case, budget, index)
-    return found
-
-
 def surface_of(case: Case, budget: Budget, body: BodyIndex) -> float:
     """[m] How far the surface of a body may stand out."""
-    if body.i_robot == OBSTACLE:
+    if body.is_obstacle:
         return obstacle_tolerance(budget, case.obstacles[body.i_body]).surface
     robot = case.robots[body.i_robot].robot
     return robot_tolerance(budget, robot).surfaces.get(body.own_name_in(case), 0.0)

@@ -71,7 +71,7 @@ class PairsWithErrors:
     @cached_property
     def errors(self) -> Errors:
         """Of the links and bodies of the layout."""
-        return errors_of(self.what.case, self.budget, self.what.layout, self.what.pairs)
+        return errors_of(self.what.case, self.budget, self.what.layout)
 
     @cached_property
     def path(self) -> JointPath:

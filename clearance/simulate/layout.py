@@ -14,17 +14,25 @@ import numpy as np
 from clearance.geometry.edges import rings_of
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import ANYTHING, Surface
+from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
 from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
-from clearance.world.kinematics import poses_by_link, seen_from
+from clearance.world.kinematics import poses_of_links, seen_from
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, Pair
 
 IN_WORLD = -1
 """The reference of a pair that is measured in the world."""
+
+
+class Place(NamedTuple):
+    """A body as it is seen from a link, or in the world."""
+
+    reference: int
+    body: BodyIndex
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,12 +45,17 @@ class Layout:
         references: (p,) the link in whose frame each pair is measured, or `IN_WORLD`.
         swapped: (p,) True where the second body of a pair is the first in `world.pairs`, since only that one
             moves.
+        places: of each body what it is, and from where it is seen.
+        origins: (links,) which link of the case's forest each is, or -1 where it stands as the origin that others
+            are seen from.
     """
 
     surface: Surface
     world: World
     references: np.ndarray
     swapped: np.ndarray
+    places: Sequence[Place]
+    origins: np.ndarray
 
     @property
     def is_in_world(self) -> bool:
@@ -63,8 +76,7 @@ class Layout:
         """
         rows = np.flatnonzero((pairs >= 0) & (self.references[pairs] != IN_WORLD))
         if len(rows):
-            poses = poses_by_link(self.world.links, positions[rows])
-            seen_from = poses[np.arange(len(rows)), self.references[pairs[rows]]]
+            seen_from = self._references_at(positions[rows], pairs[rows])
             turned = np.einsum("kij,knj->kni", seen_from[:, :3, :3], points[rows])
             points[rows] = turned + seen_from[:, None, :3, 3]
         swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
@@ -79,11 +91,15 @@ class Layout:
         points[swapped] = points[swapped][:, ::-1]
         rows = np.flatnonzero((pairs >= 0) & (self.references[pairs] != IN_WORLD))
         if len(rows):
-            poses = poses_by_link(self.world.links, positions[rows])
-            seen_from = poses[np.arange(len(rows)), self.references[pairs[rows]]]
+            seen_from = self._references_at(positions[rows], pairs[rows])
             away = points[rows] - seen_from[:, None, :3, 3]
             points[rows] = np.einsum("kji,knj->kni", seen_from[:, :3, :3], away)
         return points
+
+    def _references_at(self, positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+        """(k, 4, 4) [m] where the link stands that each pair is measured from, at positions (k, columns)."""
+        links, which = np.unique(self.references[pairs], return_inverse=True)
+        return poses_of_links(self.world.links, positions, links)[np.arange(len(pairs)), which]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +126,6 @@ class PairsInMotion:
         return lay_out(self.case, self.pairs)
 
 
-class _Place(NamedTuple):
-    """A body as it is seen from a link, or in the world."""
-
-    reference: int
-    body: BodyIndex
-
-
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
     return _laid_out(case, tuple(pairs))
@@ -135,7 +144,7 @@ def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
     measured = rows.reshape(-1, 2).astype(np.int64)
     solid_of = seen_bodies % len(solids)
     at = (seen_bodies // len(solids) - 1).tolist()
-    places = [_Place(reference, solids[i]) for reference, i in zip(at, solid_of, strict=True)]
+    places = [Place(reference, solids[i]) for reference, i in zip(at, solid_of, strict=True)]
     link_of = {
         place: int(frames[i])
         for place, i in zip(places, solid_of, strict=True)
@@ -156,7 +165,7 @@ def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
         links=links,
     )
     shapes = [body.shape_in(case) for body in solids]
-    return Layout(join(shapes), world, references, swapped)
+    return Layout(join(shapes), world, references, swapped, places, _origins(links, seen))
 
 
 def with_whole_faces(surface: Surface) -> Surface:
@@ -195,13 +204,21 @@ def _references(case: Case, links: np.ndarray) -> np.ndarray:
     return references
 
 
-def _frame_of(place: _Place, link_of: dict[_Place, int], seen: dict[tuple[int, int], int]) -> int:
+def _frame_of(place: Place, link_of: dict[Place, int], seen: dict[tuple[int, int], int]) -> int:
     """The link that carries a body, or -1 for one that stands where it is seen."""
     if place not in link_of:
         return -1
     if place.reference == IN_WORLD:
         return link_of[place]
     return -1 if place.reference == link_of[place] else seen[place.reference, link_of[place]]
+
+
+def _origins(links: Links, seen: dict[tuple[int, int], int]) -> np.ndarray:
+    """(links,) as in `Layout`: those that are seen from others lie behind all others."""
+    origins = np.arange(len(links.parents))
+    for (reference, link), place in seen.items():
+        origins[place] = -1 if link == reference else link
+    return origins
 
 
 def _groups(pairs: np.ndarray, frames: np.ndarray) -> np.ndarray:
@@ -213,7 +230,7 @@ def _groups(pairs: np.ndarray, frames: np.ndarray) -> np.ndarray:
     return groups
 
 
-def _standing(case: Case, places: Sequence[_Place]) -> np.ndarray:
+def _standing(case: Case, places: Sequence[Place]) -> np.ndarray:
     standing = np.empty((len(places), 4, 4))
     standing[:] = np.eye(4)
     for place, seen in enumerate(places):
