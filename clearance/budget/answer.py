@@ -14,6 +14,7 @@ from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_s
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
 from clearance.errors import BadInput
+from clearance.kernels.budget.sweep_state import SearchRoom
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.resources import Resources
 from clearance.simulate.section_answer import SectionAnswer
@@ -37,7 +38,8 @@ def budget_answers(
     if budget is None:
         raise ValueError("a case without tolerances")
     require_budget(case, budget, plan)
-    sections = [_of_section(budget, answer, resources) for answer in answers]
+    rooms: list[SearchRoom] = []
+    sections = [_of_section(budget, answer, resources, rooms) for answer in answers]
     n_steps = max(section.section.steps.stop for section in sections)
     names = case.limits.rule_names
     return tuple(
@@ -82,9 +84,11 @@ def _require_no_loops(case: Case, late: Sequence[str]) -> None:
             )
 
 
-def _of_section(budget: Budget, answer: SectionAnswer, resources: Resources) -> SectionBudget:
+def _of_section(
+    budget: Budget, answer: SectionAnswer, resources: Resources, rooms: list[SearchRoom]
+) -> SectionBudget:
     what, found = answer.section.in_motion, answer.found
-    pairs = PairsWithErrors(what, budget, resources.n_threads)
+    pairs = PairsWithErrors(what, budget, resources.n_threads, rooms)
     steps = proven_of_steps(pairs, found)
     between = None
     if answer.certificate is not None:

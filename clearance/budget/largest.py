@@ -256,7 +256,7 @@ def _proven(
 def _proven_of_steps(
     section: SectionBudget, pairs: PairsWithErrors, rows: np.ndarray, enough: float
 ) -> np.ndarray:
-    at = section.pairs.steps()
+    at = section.pairs.steps
     moments = PathMoments(at.intervals[rows], at.shares[rows])
     nominal = section.answer.found.clearance[rows]
     return pairs.at(moments, section.steps.pair[rows], nominal, enough).proven

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import field
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,7 +26,13 @@ from clearance.kernels.budget.sweep import (
     budget_intervals,
     budget_moments,
 )
-from clearance.kernels.budget.sweep_state import BudgetScene, new_state
+from clearance.kernels.budget.sweep_state import (
+    BudgetScene,
+    SearchRoom,
+    in_room,
+    new_room,
+    new_state,
+)
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
@@ -33,6 +41,8 @@ from clearance.simulate.measure import Measurement
 from clearance.simulate.parts import in_order, parts
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions
+
+Idle = TypeVar("Idle")
 
 ROUNDED_DOWN = 2.0**-48
 """Relative rounding of the sums that make a proven number, beyond the slacks of the bounds."""
@@ -62,11 +72,13 @@ class PairsWithErrors:
 
     Attributes:
         n_threads: how many may work at it.
+        rooms: for searches, in which no thread is at work; pairs that are asked in turn may share them.
     """
 
     what: PairsInMotion
     budget: Budget
     n_threads: int = 1
+    rooms: list[SearchRoom] = field(default_factory=list)
 
     @cached_property
     def errors(self) -> Errors:
@@ -85,7 +97,7 @@ class PairsWithErrors:
 
     def of(self, budget: Budget) -> PairsWithErrors:
         """The same with another budget."""
-        other = PairsWithErrors(self.what, budget, self.n_threads)
+        other = PairsWithErrors(self.what, budget, self.n_threads, self.rooms)
         other.__dict__["path"] = self.path  # errors are no part of it
         return other
 
@@ -102,21 +114,24 @@ class PairsWithErrors:
     @contextmanager
     def _scene(self) -> Iterator[BudgetScene]:
         """A scene for one thread."""
-        try:
-            scene = self._idle.pop()
-        except IndexError:
-            layout = self.what.layout
-            world = with_turning_balls(layout.world)  # no two threads share it
-            state = new_state(world, self.errors)
-            scene = BudgetScene(layout.whole_faces, world, self.path, self.errors, state)
-        yield scene
+        room = _last_of(self.rooms) or new_room()
+        scene = _last_of(self._idle) or self._new_scene(room)
+        yield scene._replace(state=in_room(scene.state, room))
         self._idle.append(scene)
+        self.rooms.append(room)
+
+    def _new_scene(self, room: SearchRoom) -> BudgetScene:
+        layout = self.what.layout
+        world = with_turning_balls(layout.world)  # no two threads share it
+        state = new_state(world, self.errors, room)
+        return BudgetScene(layout.whole_faces, world, self.path, self.errors, state)
 
     @property
     def n_steps(self) -> int:
         """Number of steps."""
         return self.what.motions[0].n_steps
 
+    @cached_property
     def steps(self) -> PathMoments:
         """All steps."""
         numbers = np.arange(self.n_steps)
@@ -215,7 +230,7 @@ def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
     if not what.layout.is_in_world:
         positions = positions_at(what.case, what.motions, range(pairs.n_steps))
         points = what.layout.from_world(positions, found.pair, points)
-    rows = pairs.at(pairs.steps(), found.pair, found.clearance, points=points)
+    rows = pairs.at(pairs.steps, found.pair, found.clearance, points=points)
     if pairs.n_steps > FEW:
         _sharpen_least(pairs, found, rows)
     return rows
@@ -229,7 +244,7 @@ def _sharpen_least(pairs: PairsWithErrors, found: Measurement, rows: BudgetRows)
         if len(lower) == 0:
             return
         if len(lower) > most:
-            lower = np.sort(lower[np.argpartition(rows.proven[lower], most)[:most]])
+            lower = np.sort(lower[np.lexsort((-lower, rows.proven[lower]))[:most]])
         _sharpen(pairs, found, rows, lower, enough)
         is_sharp[lower] = True
         enough = float(rows.proven[is_sharp].min()) - AS_LOW
@@ -243,7 +258,7 @@ def _sharpen(
     enough: float,
 ) -> None:
     """Proves some steps once more, as far as what is left of them is below `enough` [m]."""
-    at = pairs.steps()
+    at = pairs.steps
     moments = PathMoments(at.intervals[steps], at.shares[steps])
     sharp = pairs.at(moments, rows.pair[steps], found.clearance[steps], enough, is_exact=True)
     better = sharp.proven > rows.proven[steps]
@@ -259,6 +274,17 @@ def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> Bud
     return BudgetRows(*(np.concatenate(both) for both in zip(found, last, strict=True)))
 
 
+def _last_of(idle: list[Idle]) -> Idle | None:
+    """Takes what was put there last, if there is something; another thread may be at it as well."""
+    try:
+        return idle.pop()
+    except IndexError:
+        return None
+
+
 def _writable(numbers: np.ndarray) -> np.ndarray:
     """As the kernel takes them: compiled once, for arrays that could be written to."""
+    flags = numbers.flags
+    if flags.c_contiguous and flags.writeable:
+        return numbers
     return np.require(numbers, requirements=["C", "W"])

@@ -150,7 +150,7 @@ def _at(pairs: PairsWithErrors, low: _LowMoment) -> float:
 def _lows(section: SectionBudget) -> Iterator[_LowMoment]:
     """The least of each pair over the steps, and over the intervals of which less was seen within."""
     steps, padding = section.steps, section.section.padding
-    at = section.pairs.steps()
+    at = section.pairs.steps
     for pair in np.unique(steps.pair[steps.pair >= 0]).tolist():
         i = int(np.argmin(np.where(steps.pair == pair, steps.proven, np.inf)))
         place = int(at.intervals[i]), float(at.shares[i])

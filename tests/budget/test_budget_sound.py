@@ -67,7 +67,7 @@ def test_no_errors_come_below_what_is_proven_of_many_steps(seed):
 def test_many_steps_are_no_looser_than_the_stated_share_of_each_alone():
     case = random_case(1, n_steps=FEW + 8)
     for _, found, pairs, steps, _ in proven_sections(case):
-        at = pairs.steps()
+        at = pairs.steps
         for i in np.flatnonzero(found.clearance > 0.0):
             one = slice(i, i + 1)
             moment = PathMoments(at.intervals[one], at.shares[one])
@@ -79,7 +79,7 @@ def test_many_steps_are_no_looser_than_the_stated_share_of_each_alone():
 def test_the_least_of_many_steps_is_as_exact_as_each_alone_and_the_same_each_time():
     case = random_case(1, n_steps=FEW + 8)
     for _, found, pairs, steps, _ in proven_sections(case):
-        at, alone = pairs.steps(), []
+        at, alone = pairs.steps, []
         for i in range(len(at)):
             one = slice(i, i + 1)
             moment = PathMoments(at.intervals[one], at.shares[one])

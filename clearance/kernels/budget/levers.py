@@ -27,6 +27,9 @@ class Levers(NamedTuple):
         beside: (bodies, links) [m/rad] or [m/m] how much farther than without errors any point moves by it.
         ways: (links,) [m] how far slides get from their frames. sizes: (bodies,) [m] how far any point of each is
             from its origin.
+        are_known: (1,) True once all of these are written.
+        steps: (links,) [rad or m] how far the joint above each gets between two steps. still: (links,) True where
+            no joint above moves between them.
     """
 
     reach: np.ndarray
@@ -34,6 +37,9 @@ class Levers(NamedTuple):
     beside: np.ndarray
     ways: np.ndarray
     sizes: np.ndarray
+    are_known: np.ndarray
+    steps: np.ndarray
+    still: np.ndarray
 
 
 @shared
@@ -41,13 +47,16 @@ def new_levers(n_bodies, n_links):
     """Levers of nothing."""
     return Levers(
         np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros((n_bodies, n_links)),
-        np.zeros(n_links), np.zeros(n_bodies),
+        np.zeros(n_links), np.zeros(n_bodies), np.zeros(1, dtype=np.bool_),
+        np.zeros(n_links), np.zeros(n_links, dtype=np.bool_),
     )  # fmt: skip
 
 
 @inline
 def fill_levers(surface, world, path, errors, levers):
-    """Writes the levers of all bodies, of joints that move along a path."""
+    """Writes the levers of all bodies, of joints that move along a path, if they are not known."""
+    if levers.are_known[0]:
+        return
     for link in range(len(levers.ways)):
         if world.links.kinds[link] == SLIDING:
             levers.ways[link] = _way(path, link) + errors.joint[link]
@@ -57,6 +66,7 @@ def fill_levers(surface, world, path, errors, levers):
             levers.reach[body] = _reach_of_standing(surface, world, body, errors)
         else:
             levers.reach[body] = _fill(surface, world, body, errors, levers)
+    levers.are_known[0] = True
 
 
 @inline
@@ -164,26 +174,44 @@ def moved_from_step(world, path, step, body, levers):
     return moved * (1.0 + 1e-9)
 
 
-@inline(force=True)
-def is_still(world, path, before, step, link):
-    """True if no joint above a link moves from one step to a later one."""
-    if len(path.balls.links) > 0:
-        return False
-    while link >= 0:
-        if path.positions[step, link] != path.positions[before, link]:
+@inline
+def _turns_not(balls, ball, before, step):
+    """True if a ball joint has one orientation from one step to a later one."""
+    last = min(step, len(balls.arcs) - 1)
+    for between in range(before, step):
+        if balls.arcs[between, ball, ANGLE] != 0.0:
             return False
-        link = world.links.parents[link]
+    for between in range(before + 1, last + 1):
+        for k in range(4):
+            if balls.arcs[between, ball, k] != balls.arcs[before, ball, k]:
+                return False
     return True
+
+
+@inline
+def fill_steps(world, path, before, step, levers):
+    """Writes how far joints get from one step to a later one, and which links no joint moves meanwhile."""
+    links, still = world.links, levers.still
+    for link in range(len(links.parents)):
+        levers.steps[link] = abs(path.positions[step, link] - path.positions[before, link])
+        still[link] = levers.steps[link] == 0.0
+    for ball in range(len(path.balls.links)):
+        still[path.balls.links[ball]] = _turns_not(path.balls, ball, before, step)
+    for link in range(len(links.parents)):
+        parent = links.parents[link]
+        still[link] = still[link] and (parent == NO_PARENT or still[parent])
 
 
 @inline(force=True)
 def moved_beside(world, path, before, step, body, levers):
-    """[m] how much farther than without errors any point of a body gets from one step to a later one."""
+    """[m] how much farther than without errors any point of a body gets from one step to a later one.
+
+    What joints do between these is in `levers.steps`.
+    """
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        way = abs(path.positions[step, i] - path.positions[before, i])
-        moved += way * levers.beside[body, i]
+        moved += levers.steps[i] * levers.beside[body, i]
         i = links.parents[i]
     for ball in range(len(path.balls.links)):
         beside = levers.beside[body, path.balls.links[ball]]

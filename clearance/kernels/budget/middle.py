@@ -4,14 +4,16 @@ A joint whose clock may be off by d is, at a time of the part from t0 to t1, whe
 t0 - d to t1 + d. Before its path begins and after it ends it stands. Not for: the errors (`rows`).
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.budget.levers import bow_of
-from clearance.kernels.motion.interval_middle import IntervalMiddle, go_to_middle
-from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of
+from clearance.kernels.motion.interval_middle import IntervalMiddle
+from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of, part_of_arc
+from clearance.kernels.motion.kinematics import NO_PARENT, place_by_joint
 
 
 class Middle(NamedTuple):
@@ -20,10 +22,14 @@ class Middle(NamedTuple):
     Attributes:
         state: positions, swings, bends and poses of all links.
         turned: (links,) [rad] what ball joints turn since their clocks may be off.
+        wanted: (links,) True for those that carry a body; of no other is anything known.
+        moves: (links,) True for those that are not where they were in the last state.
     """
 
     state: IntervalMiddle
     turned: np.ndarray
+    wanted: np.ndarray
+    moves: np.ndarray
 
 
 @shared
@@ -33,8 +39,20 @@ def new_middle_of(n_links):
         IntervalMiddle(
             np.zeros(n_links), np.zeros(n_links), np.zeros(n_links), np.zeros((n_links, 4, 4))
         ),
-        np.zeros(n_links),
-    )
+        np.zeros(n_links), np.zeros(n_links, dtype=np.bool_), np.zeros(n_links, dtype=np.bool_),
+    )  # fmt: skip
+
+
+@inline
+def begin_middle(world, middle):
+    """Notes which links carry the bodies of a world; none of them is anywhere yet."""
+    middle.wanted[:] = False
+    middle.state.positions[:] = math.nan
+    for body in range(len(world.frames)):
+        link = world.frames[body]
+        while link >= 0 and not middle.wanted[link]:
+            middle.wanted[link] = True
+            link = world.links.parents[link]
 
 
 @inline
@@ -102,10 +120,33 @@ def _turned_by_arcs(path, step, low, high, ball, delay):
 
 
 @inline
+def _place(links, path, step, low, high, middle):
+    """Writes what the joints of the wanted links do, and the poses of those that are elsewhere now."""
+    state, moves = middle.state, middle.moves
+    for link in range(len(links.parents)):
+        if middle.wanted[link]:
+            part = part_of(path, step, link, low, high)
+            moves[link] = state.positions[link] != part.middle
+            state.positions[link], state.swing[link] = part.middle, part.swing
+            state.bend[link] = part.bend
+    for ball in range(len(path.balls.links)):
+        link = path.balls.links[ball]
+        arc = part_of_arc(path.balls, step, ball, low, high)
+        state.positions[link], state.swing[link] = arc.middle, arc.swing
+        moves[link] = True  # its axis may be another
+    for link in range(len(links.parents)):
+        if middle.wanted[link]:
+            parent = links.parents[link]
+            moves[link] = moves[link] or (parent != NO_PARENT and moves[parent])
+            if moves[link]:
+                place_by_joint(links, link, state.positions, state.poses)
+
+
+@inline
 def go_to_part(links, path, errors, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     state = middle.state
-    go_to_middle(links, path, step, low, high, state)
+    _place(links, path, step, low, high, middle)
     for link in range(len(links.parents)):
         if errors.delay[link] > 0.0 and links.columns[link] >= 0:
             _widen(path, step, low, high, link, errors.delay[link], state)

@@ -19,6 +19,7 @@ from clearance.kernels.budget.sweep_state import (
     BudgetScene,
     fill_body,
     moved_of_pair,
+    new_room,
     new_state,
     pose_of,
 )
@@ -54,7 +55,7 @@ def _scene_like():
     path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
     extras = Extras(places, rows, numbers, numbers)
     errors = Errors(numbers, numbers, numbers, numbers, places, extras, extras, numbers, 0)
-    return BudgetScene(surface_like(), world, path, errors, new_state(world, errors))
+    return BudgetScene(surface_like(), world, path, errors, new_state(world, errors, new_room()))
 
 
 def _like():

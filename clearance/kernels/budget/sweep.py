@@ -18,13 +18,16 @@ from clearance.kernels.budget.pair_left import Look, pair_left
 from clearance.kernels.budget.sweep_state import (
     AHEAD,
     LITTLE,
+    answer_of,
     begin_anew,
     bound_by_boxes,
     carried_bound,
     fill_body,
     go_on,
     go_on_to_step,
+    is_answered,
     next_motion,
+    note_answer,
     note_bound,
     start_at,
     start_before,
@@ -123,6 +126,21 @@ def _ahead(lent, pair):
     return ahead if ahead < LITTLE else 0.0
 
 
+@inline
+def _at_moment(lent, look, start, target, exact_looks, tally, table):
+    """What errors leave of a pair at a moment, looked into as far as a target [m], if that is not known."""
+    left = answer_of(lent, look.pair)
+    if is_answered(lent, look.pair, target):
+        tally[0] += 1
+    else:
+        refined = REFINED_OF_MANY if exact_looks < EXACT_LOOKS else REFINED
+        aim = Aim(target, math.inf, 0.0, 0.0, True, exact_looks, refined)
+        left = pair_left(table, lent, look, start, aim, tally)
+        note_answer(lent, look.pair, target, left)
+        note_bound(lent, look.pair, left.lower_bound)
+    return left
+
+
 @kernel(reference_counts=False)
 def budget_moments(scene, asked, rows, tally, table):
     """Fills `rows` with what errors leave of the nearest pair at each of some moments.
@@ -136,10 +154,9 @@ def budget_moments(scene, asked, rows, tally, table):
     """
     lent = lend(scene)
     surface, world, path, errors, state = scene
-    begin_anew(state)
+    begin_anew(world, state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
-    refined = REFINED_OF_MANY if is_rough else REFINED
     tally[:] = 0
     last, before, was_step = np.int64(-1), np.int64(-1), True
     for place in range(len(asked.intervals)):
@@ -149,6 +166,7 @@ def budget_moments(scene, asked, rows, tally, table):
         go_to_part(world.links, path, errors, interval, share, share, state.middle)
         if not (is_step and was_step):
             state.lower_bounds[:] = -math.inf
+            state.answers[:, 0] = -1.0
             state.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:
@@ -175,13 +193,11 @@ def budget_moments(scene, asked, rows, tally, table):
                 tally[0] += 1
                 continue
             ahead = _ahead(lent, pair) if turn >= 0 and is_step else 0.0
-            aim = Aim(target + ahead, math.inf, 0.0, 0.0, True, asked.exact_looks, refined)
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
             look = Look(pair, 0.0, place, is_step and is_rough)
-            left = pair_left(table, lent, look, start, aim, tally)
-            note_bound(lent, pair, left.lower_bound)
+            left = _at_moment(lent, look, start, target + ahead, asked.exact_looks, tally, table)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
                 winner = pair
@@ -248,7 +264,7 @@ def budget_intervals(scene, asked, rows, tally, table):
     """
     lent = lend(scene)
     surface, world, path, errors, state = scene
-    begin_anew(state)
+    begin_anew(world, state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     tally[:] = 0

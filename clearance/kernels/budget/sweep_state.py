@@ -13,17 +13,17 @@ from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn_back
 from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.face_left import LeftScratch
-from clearance.kernels.budget.left import KEPT, Start
+from clearance.kernels.budget.left import KEPT, PairRemainder, Start
 from clearance.kernels.budget.levers import (
     Levers,
-    is_still,
+    fill_steps,
     moved_beside,
     moved_from_step,
     moved_in_part,
     new_levers,
 )
-from clearance.kernels.budget.middle import Middle, new_middle_of
-from clearance.kernels.budget.pieces import new_pieces
+from clearance.kernels.budget.middle import Middle, begin_middle, new_middle_of
+from clearance.kernels.budget.pieces import TrianglePairs, new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
 from clearance.kernels.features.bounds import displacement
@@ -41,7 +41,7 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.front import POOL, Fronts, no_fronts
-from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.scratch import Scratch, new_scratch
 
 
 class BudgetSweepState(NamedTuple):
@@ -54,7 +54,11 @@ class BudgetSweepState(NamedTuple):
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
         poses: (links, 4, 4) at the last step. last_moved: (bodies,) [m] how far each can have moved to get there.
         moved: (bodies,) [m] how far each can have moved in all.
+        n_moves: (bodies,) how often each has moved.
         lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
+        answers: (p, 6) what came of the last search of each pair where all stands: how often its bodies had moved
+            by then, or -1; [m] how far it was looked into; [m] bound, least and what is enough, as in
+            `PairRemainder`; 1 if the search before was the same.
         waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
     """
 
@@ -68,7 +72,9 @@ class BudgetSweepState(NamedTuple):
     poses: np.ndarray
     last_moved: np.ndarray
     moved: np.ndarray
+    n_moves: np.ndarray
     lower_bounds: np.ndarray
+    answers: np.ndarray
     waiting: np.ndarray
     fronts: Fronts
     work: LeftScratch
@@ -95,31 +101,65 @@ AHEAD, LITTLE = 3.0, 0.02
 """So many motions beyond the best a pair is still looked into, so that its bound lasts, if that is little [m]."""
 
 
+class SearchRoom(NamedTuple):
+    """Room for the searches of a sweep, the same for all scenes.
+
+    Attributes:
+        entries, lower_bounds: the pool of `Fronts`. pieces, scratch: as in `LeftScratch`.
+    """
+
+    entries: np.ndarray
+    lower_bounds: np.ndarray
+    pieces: TrianglePairs
+    scratch: Scratch
+
+
 @shared
-def new_state(world, errors):
+def new_room():
+    """Room for one sweep at a time."""
+    pool = no_fronts(0, POOL)
+    return SearchRoom(pool.entries, pool.lower_bounds, new_pieces(), new_scratch())
+
+
+def in_room(state, room):
+    """A state that searches in some room, of which nothing is taken over."""
+    return state._replace(
+        fronts=state.fronts._replace(entries=room.entries, lower_bounds=room.lower_bounds),
+        work=state.work._replace(pieces=room.pieces, scratch=room.scratch),
+    )
+
+
+@shared
+def new_state(world, errors, room):
+    """A state that has seen nothing."""
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     work = LeftScratch(
         new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
-        new_along_rows(errors.most_rows), new_pieces(), new_scratch(),
+        new_along_rows(errors.most_rows), room.pieces, room.scratch,
     )  # fmt: skip
+    spans, used = np.zeros((n_pairs, 6), dtype=np.int64), np.zeros(1, dtype=np.int64)
     return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)), np.zeros(n_bodies),
-        np.zeros(n_bodies), np.full(n_pairs, -np.inf),
-        np.empty((DEPTH, 2)), no_fronts(n_pairs, POOL), work,
+        np.zeros(n_bodies), np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, -np.inf),
+        np.full((n_pairs, 6), -1.0), np.empty((DEPTH, 2)),
+        Fronts(room.entries, room.lower_bounds, spans, used), work,
     )  # fmt: skip
 
 
 @inline
-def begin_anew(state):
+def begin_anew(world, state):
     """Forgets what a sweep has carried, so that the next one is as the first."""
+    begin_middle(world, state.middle)
     state.directions[:] = 0.0
     state.filled[:] = -1
     state.placed[:] = -1
     state.last_moved[:] = 0.0
     state.moved[:] = 0.0
+    state.n_moves[:] = 0
     state.lower_bounds[:] = -math.inf
+    state.answers[:, 0] = -1.0
     state.fronts.spans[:] = 0
     state.fronts.used[0] = 0
 
@@ -265,26 +305,31 @@ def go_on_to_step(lent, before, step):
     """
     asked = borrow(lent)
     surface, world, state = asked.surface, asked.world, asked.state
-    poses = state.middle.state.poses
+    poses, levers = state.middle.state.poses, state.levers
+    goes_on = before >= 0 and not state.late and step >= before
+    if goes_on:
+        fill_steps(world, asked.path, before, step, levers)
     for body in range(len(world.frames)):
         frame = world.frames[body]
         if frame < 0 or before < 0:
             continue
-        if not state.late and step >= before and is_still(world, asked.path, before, step, frame):
+        if goes_on and levers.still[frame]:
             state.last_moved[body] = 0.0
             continue
         moved = math.inf
-        if not state.late and step >= before:
+        if goes_on:
             root = surface.roots[world.solids[body]]
             moved = displacement(surface, root, state.poses[frame], poses[frame])
-            moved += moved_beside(world, asked.path, before, step, body, state.levers)
-            moved += ROUNDED * (state.levers.sizes[body] + _far(poses[frame]))
+            moved += moved_beside(world, asked.path, before, step, body, levers)
+            moved += ROUNDED * (levers.sizes[body] + _far(poses[frame]))
         state.last_moved[body] = moved
         state.moved[body] += moved
+        state.n_moves[body] += 1
     for link in range(len(poses)):
-        for i in range(3):
-            for k in range(4):
-                state.poses[link, i, k] = poses[link, i, k]
+        if state.middle.wanted[link]:
+            for i in range(3):
+                for k in range(4):
+                    state.poses[link, i, k] = poses[link, i, k]
 
 
 @inline
@@ -300,6 +345,41 @@ def moved_of_pair(asked, pair):
     """[m] what both bodies of a pair have moved in all; infinite where that is not known."""
     pairs, moved = asked.world.pairs, asked.state.moved
     return moved[pairs[pair, 0]] + moved[pairs[pair, 1]]
+
+
+@inline(force=True)
+def _moves_of_pair(asked, pair):
+    """How often either body of a pair has moved."""
+    pairs, moves = asked.world.pairs, asked.state.n_moves
+    return np.float64(moves[pairs[pair, 0]] + moves[pairs[pair, 1]])
+
+
+@inline(force=True)
+def note_answer(lent, pair, target, left):
+    """Keeps what came of a search of a pair that looked as far as a target [m]."""
+    asked = borrow(lent)
+    answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
+    again = answer[0] == moves and answer[1] == target
+    answer[0], answer[1], answer[5] = moves, target, 1.0 if again else 0.0
+    answer[2], answer[3], answer[4] = left.lower_bound, left.least, left.enough
+
+
+@inline(force=True)
+def is_answered(lent, pair, target):
+    """True if no body of a pair has moved since two searches of it that looked as far as a target [m].
+
+    The second goes on from the front of the first and may find more; a third would come to what it has found.
+    """
+    asked = borrow(lent)
+    answer = asked.state.answers[pair]
+    return answer[0] == _moves_of_pair(asked, pair) and answer[1] == target and answer[5] == 1.0
+
+
+@inline(force=True)
+def answer_of(lent, pair):
+    """What came of the last search of a pair."""
+    answer = borrow(lent).state.answers[pair]
+    return PairRemainder(answer[2], answer[3], answer[4], True, Vec3(0.0, 0.0, 0.0))
 
 
 @inline(force=True)

@@ -129,21 +129,27 @@ def place_links(links, positions, poses, wanted, look):
         )  # fmt: skip
 
 
+@inline(force=True)
+def place_by_joint(links, link, positions, poses):
+    """Writes the pose of one link in `poses` (links, 4, 4) [m], where that of its parent is.
+
+    No joint is a ball joint; `positions` (links,) [rad or m] of the joint above each link.
+    """
+    parent = links.parents[link]
+    if parent == NO_PARENT:
+        _write(rigid(links.parent_from_joint[link]), poses[link])
+    else:
+        _place_link(
+            poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
+            positions[link], poses[link],
+        )  # fmt: skip
+
+
 @inline
 def place_by_link(links, positions, poses):
-    """Fills `poses` (links, 4, 4) [m] of all links, the joint above each at `positions` (links,) [rad or m].
-
-    There are no ball joints among them.
-    """
+    """Fills `poses` (links, 4, 4) [m] of all links, as `place_by_joint` does."""
     for link in range(len(links.parents)):
-        parent = links.parents[link]
-        if parent == NO_PARENT:
-            _write(rigid(links.parent_from_joint[link]), poses[link])
-        else:
-            _place_link(
-                poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
-                positions[link], poses[link],
-            )  # fmt: skip
+        place_by_joint(links, link, positions, poses)
 
 
 @kernel
