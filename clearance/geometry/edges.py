@@ -23,12 +23,18 @@ class Ring(NamedTuple):
     behind: np.ndarray
 
 
+def ahead_of(starts: np.ndarray) -> np.ndarray:
+    """(n,) the next half-edge of the same face, of faces whose entries begin at `starts` (m + 1,)."""
+    ahead = np.arange(1, int(starts[-1]) + 1)
+    ahead[starts[1:] - 1] = starts[:-1]
+    return ahead
+
+
 def rings_of(starts: np.ndarray) -> Ring:
     """The links of the faces whose entries begin at `starts` (m + 1,)."""
     n = int(starts[-1])
     face = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    ahead = np.arange(1, n + 1)
-    ahead[starts[1:] - 1] = starts[:-1]
+    ahead = ahead_of(starts)
     behind = np.arange(-1, n - 1)
     behind[starts[:-1]] = starts[1:] - 1
     return Ring(face, ahead, behind)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.geometry.edges import rings_of
+from clearance.geometry.edges import ahead_of
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.kinematics import Links
@@ -171,14 +171,17 @@ def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
 def with_whole_faces(surface: Surface) -> Surface:
     """The surface in which every face owns all its corners and edges, not only those it answers for."""
     starts, corners = surface.face_starts, surface.face_vertices
-    ahead = rings_of(starts).ahead
-    is_edge = ahead != np.arange(len(ahead))  # a point of a cloud has none
+    ends = np.stack([corners, corners[ahead_of(starts)]], axis=1)
+    edge_starts = starts
+    if (np.diff(starts) < 2).any():  # a point of a cloud has no edge
+        is_edge = np.repeat(np.diff(starts) > 1, np.diff(starts))
+        ends, edge_starts = ends[is_edge], np.concatenate([[0], np.cumsum(is_edge)])[starts]
     return surface._replace(
         vertex_starts=starts,
         owned_vertices=corners,
-        edge_starts=np.concatenate([[0], np.cumsum(is_edge)])[starts],
+        edge_starts=edge_starts,
         owns=np.full(len(starts) - 1, ANYTHING, dtype=np.uint16),
-        owned_edges=np.stack([corners, corners[ahead]], axis=1)[is_edge],
+        owned_edges=ends,
     )
 
 
