@@ -16,8 +16,6 @@ from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.pair_left import Look, pair_left
 from clearance.kernels.budget.sweep_state import (
-    AHEAD,
-    LITTLE,
     answer_of,
     begin_anew,
     bound_by_boxes,
@@ -26,7 +24,6 @@ from clearance.kernels.budget.sweep_state import (
     go_on,
     go_on_to_step,
     is_answered,
-    next_motion,
     note_answer,
     note_bound,
     start_at,
@@ -120,13 +117,6 @@ def _with_boxes(lent, pair, half, look, target, carried):
 
 
 @inline
-def _ahead(lent, pair):
-    """[m] how far beyond the best a pair is looked into, so that its bound lasts."""
-    ahead = AHEAD * next_motion(lent, pair)
-    return ahead if ahead < LITTLE else 0.0
-
-
-@inline
 def _at_moment(lent, look, start, target, exact_looks, tally, table):
     """What errors leave of a pair at a moment, looked into as far as a target [m], if that is not known."""
     left = answer_of(lent, look.pair)
@@ -192,12 +182,11 @@ def budget_moments(scene, asked, rows, tally, table):
                 lowest = min(lowest, carried)
                 tally[0] += 1
                 continue
-            ahead = _ahead(lent, pair) if turn >= 0 and is_step else 0.0
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
             look = Look(pair, 0.0, place, is_step and is_rough)
-            left = _at_moment(lent, look, start, target + ahead, asked.exact_looks, tally, table)
+            left = _at_moment(lent, look, start, target, asked.exact_looks, tally, table)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
                 winner = pair

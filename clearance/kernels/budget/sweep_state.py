@@ -52,8 +52,7 @@ class BudgetSweepState(NamedTuple):
         directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
         levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
-        poses: (links, 4, 4) at the last step. last_moved: (bodies,) [m] how far each can have moved to get there.
-        moved: (bodies,) [m] how far each can have moved in all.
+        poses: (links, 4, 4) at the last step. moved: (bodies,) [m] how far each can have moved in all.
         n_moves: (bodies,) how often each has moved.
         lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
         answers: (p, 6) what came of the last search of each pair where all stands: how often its bodies had moved
@@ -70,7 +69,6 @@ class BudgetSweepState(NamedTuple):
     filled: np.ndarray
     placed: np.ndarray
     poses: np.ndarray
-    last_moved: np.ndarray
     moved: np.ndarray
     n_moves: np.ndarray
     lower_bounds: np.ndarray
@@ -97,8 +95,8 @@ class BudgetScene(NamedTuple):
 ROUNDED = 2.0**-40
 """Of how far bodies are from the origin: more than poses from a chain are rounded by."""
 
-AHEAD, LITTLE = 3.0, 0.02
-"""So many motions beyond the best a pair is still looked into, so that its bound lasts, if that is little [m]."""
+LITTLE = 0.02
+"""[m] So far beyond what is enough a bound by boxes is sought, so that it lasts."""
 
 
 class SearchRoom(NamedTuple):
@@ -141,7 +139,7 @@ def new_state(world, errors, room):
     return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
-        np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)), np.zeros(n_bodies),
+        np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)),
         np.zeros(n_bodies), np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, -np.inf),
         np.full((n_pairs, 6), -1.0), np.empty((DEPTH, 2)),
         Fronts(room.entries, room.lower_bounds, spans, used), work,
@@ -155,7 +153,6 @@ def begin_anew(world, state):
     state.directions[:] = 0.0
     state.filled[:] = -1
     state.placed[:] = -1
-    state.last_moved[:] = 0.0
     state.moved[:] = 0.0
     state.n_moves[:] = 0
     state.lower_bounds[:] = -math.inf
@@ -314,7 +311,6 @@ def go_on_to_step(lent, before, step):
         if frame < 0 or before < 0:
             continue
         if goes_on and levers.still[frame]:
-            state.last_moved[body] = 0.0
             continue
         moved = math.inf
         if goes_on:
@@ -322,7 +318,6 @@ def go_on_to_step(lent, before, step):
             moved = displacement(surface, root, state.poses[frame], poses[frame])
             moved += moved_beside(world, asked.path, before, step, body, levers)
             moved += ROUNDED * (levers.sizes[body] + _far(poses[frame]))
-        state.last_moved[body] = moved
         state.moved[body] += moved
         state.n_moves[body] += 1
     for link in range(len(poses)):
@@ -330,14 +325,6 @@ def go_on_to_step(lent, before, step):
             for i in range(3):
                 for k in range(4):
                     state.poses[link, i, k] = poses[link, i, k]
-
-
-@inline
-def next_motion(lent, pair):
-    """[m] how far both bodies of a pair moved to the last step, in all."""
-    asked = borrow(lent)
-    moved = asked.state.last_moved
-    return moved[asked.world.pairs[pair, 0]] + moved[asked.world.pairs[pair, 1]]
 
 
 @inline(force=True)
