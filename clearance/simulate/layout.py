@@ -20,7 +20,7 @@ from clearance.late_dataclass import dataclass
 from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
-from clearance.world.kinematics import poses_of_links, seen_from
+from clearance.world.kinematics import links_alone, poses_by_link, seen_from
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, Pair
 
@@ -96,10 +96,18 @@ class Layout:
             points[rows] = np.einsum("kji,knj->kni", seen_from[:, :3, :3], away)
         return points
 
+    @cached_property
+    def _reference_links(self) -> tuple[Links, np.ndarray]:
+        """The links that pairs are measured from, with what they hang on, and (p,) which of these is a pair's."""
+        references = np.maximum(self.references, 0)  # nobody asks where the world stands
+        wanted, which = np.unique(references, return_inverse=True)
+        links, places = links_alone(self.world.links, wanted)
+        return links, places[which]
+
     def _references_at(self, positions: np.ndarray, pairs: np.ndarray) -> np.ndarray:
         """(k, 4, 4) [m] where the link stands that each pair is measured from, at positions (k, columns)."""
-        links, which = np.unique(self.references[pairs], return_inverse=True)
-        return poses_of_links(self.world.links, positions, links)[np.arange(len(pairs)), which]
+        links, places = self._reference_links
+        return poses_by_link(links, positions)[np.arange(len(pairs)), places[pairs]]
 
 
 @dataclass(frozen=True, eq=False)

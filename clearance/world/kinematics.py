@@ -150,20 +150,19 @@ def poses_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
     return poses
 
 
-def poses_of_links(links: Links, positions: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """(n, k, 4, 4) `world_from_link` [m] of some links (k,); nothing else is placed but what they hang on."""
-    is_above = np.zeros(len(links.parents) + 1, dtype=bool)  # the last stands for `NO_PARENT`
+def links_alone(links: Links, wanted: np.ndarray) -> tuple[Links, np.ndarray]:
+    """Some links (k,) and what they hang on, without all others, and the place (k,) of each among these."""
+    is_above = np.zeros(len(links.parents), dtype=bool)
     here = wanted
     while len(here):
         is_above[here] = True
         here = links.parents[here]
         here = here[here != NO_PARENT]
     above = np.flatnonzero(is_above)
-    places = np.full(len(is_above), NO_PARENT)
+    places = np.full(len(is_above) + 1, NO_PARENT)  # the last stands for `NO_PARENT`
     places[above] = np.arange(len(above))
-    few = Links(*(column[above] for column in links))
-    few = few._replace(parents=places[few.parents])
-    return poses_by_link(few, positions)[:, places[wanted]]
+    alone = Links(*(column[above] for column in links))
+    return alone._replace(parents=places[alone.parents]), places[wanted]
 
 
 @lru_cache(maxsize=8)

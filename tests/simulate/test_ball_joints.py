@@ -26,6 +26,7 @@ from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, p
 from clearance.world.kinematics import (
     all_links,
     floating_links,
+    links_alone,
     poses_by_link,
     rates_by_link,
     seen_from,
@@ -299,6 +300,15 @@ def test_a_ball_joint_between_two_links_is_on_the_way_of_what_is_seen():
     placed = poses_by_link(scene.links, scene.positions)
     from_slide = np.linalg.inv(placed[:, 1]) @ placed[:, 7]
     assert np.abs(placed[:, seen[1, 7]] - from_slide).max() < 1e-14
+
+
+def test_links_alone_are_where_they_are_among_all():
+    scene, _ = on_one_base()
+    placed = poses_by_link(scene.links, scene.positions)
+    for wanted in ([7], [6, 8, 1], [8, 0, 7]):
+        links, places = links_alone(scene.links, np.array(wanted))
+        assert len(links.parents) < len(scene.links.parents)
+        assert (poses_by_link(links, scene.positions)[:, places] == placed[:, wanted]).all()
 
 
 def test_floating_links_are_where_their_columns_say():
