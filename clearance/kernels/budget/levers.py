@@ -26,10 +26,9 @@ class Levers(NamedTuple):
         of_links: (bodies, links) [m/rad] or [m/m] how far any point moves at most by the joint above a link.
         beside: (bodies, links) [m/rad] or [m/m] how much farther than without errors any point moves by it.
         ways: (links,) [m] how far slides get from their frames. sizes: (bodies,) [m] how far any point of each is
-            from its origin.
-        are_known: (1,) True once all of these are written.
-        steps: (links,) [rad or m] how far the joint above each gets between two steps. still: (links,) True where
-            no joint above moves between them.
+            from its origin, or -1 where none of these is known.
+        steps: (links, 2) [rad or m] how far the joint above each gets between two steps; 1 where no joint above
+            moves between them.
     """
 
     reach: np.ndarray
@@ -37,9 +36,10 @@ class Levers(NamedTuple):
     beside: np.ndarray
     ways: np.ndarray
     sizes: np.ndarray
-    are_known: np.ndarray
     steps: np.ndarray
-    still: np.ndarray
+
+
+WAY_OF, STANDS = 0, 1
 
 
 @shared
@@ -47,15 +47,14 @@ def new_levers(n_bodies, n_links):
     """Levers of nothing."""
     return Levers(
         np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros((n_bodies, n_links)),
-        np.zeros(n_links), np.zeros(n_bodies), np.zeros(1, dtype=np.bool_),
-        np.zeros(n_links), np.zeros(n_links, dtype=np.bool_),
+        np.zeros(n_links), np.full(n_bodies, -1.0), np.zeros((n_links, 2)),
     )  # fmt: skip
 
 
 @inline
 def fill_levers(surface, world, path, errors, levers):
     """Writes the levers of all bodies, of joints that move along a path, if they are not known."""
-    if levers.are_known[0]:
+    if len(levers.sizes) == 0 or levers.sizes[0] >= 0.0:
         return
     for link in range(len(levers.ways)):
         if world.links.kinds[link] == SLIDING:
@@ -66,7 +65,6 @@ def fill_levers(surface, world, path, errors, levers):
             levers.reach[body] = _reach_of_standing(surface, world, body, errors)
         else:
             levers.reach[body] = _fill(surface, world, body, errors, levers)
-    levers.are_known[0] = True
 
 
 @inline
@@ -191,15 +189,16 @@ def _turns_not(balls, ball, before, step):
 @inline
 def fill_steps(world, path, before, step, levers):
     """Writes how far joints get from one step to a later one, and which links no joint moves meanwhile."""
-    links, still = world.links, levers.still
+    links, steps = world.links, levers.steps
     for link in range(len(links.parents)):
-        levers.steps[link] = abs(path.positions[step, link] - path.positions[before, link])
-        still[link] = levers.steps[link] == 0.0
+        way = abs(path.positions[step, link] - path.positions[before, link])
+        steps[link, WAY_OF], steps[link, STANDS] = way, 1.0 if way == 0.0 else 0.0
     for ball in range(len(path.balls.links)):
-        still[path.balls.links[ball]] = _turns_not(path.balls, ball, before, step)
+        if not _turns_not(path.balls, ball, before, step):
+            steps[path.balls.links[ball], STANDS] = 0.0
     for link in range(len(links.parents)):
-        parent = links.parents[link]
-        still[link] = still[link] and (parent == NO_PARENT or still[parent])
+        if links.parents[link] != NO_PARENT and steps[links.parents[link], STANDS] == 0.0:
+            steps[link, STANDS] = 0.0
 
 
 @inline(force=True)
@@ -211,7 +210,7 @@ def moved_beside(world, path, before, step, body, levers):
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        moved += levers.steps[i] * levers.beside[body, i]
+        moved += levers.steps[i, WAY_OF] * levers.beside[body, i]
         i = links.parents[i]
     for ball in range(len(path.balls.links)):
         beside = levers.beside[body, path.balls.links[ball]]

@@ -22,14 +22,16 @@ class Middle(NamedTuple):
     Attributes:
         state: positions, swings, bends and poses of all links.
         turned: (links,) [rad] what ball joints turn since their clocks may be off.
-        wanted: (links,) True for those that carry a body; of no other is anything known.
-        moves: (links,) True for those that are not where they were in the last state.
+        marks: (links, 2) True for those that carry a body, of no other is anything known; and for those that are
+            not where they were in the last state.
     """
 
     state: IntervalMiddle
     turned: np.ndarray
-    wanted: np.ndarray
-    moves: np.ndarray
+    marks: np.ndarray
+
+
+WANTED, MOVES = 0, 1
 
 
 @shared
@@ -39,19 +41,19 @@ def new_middle_of(n_links):
         IntervalMiddle(
             np.zeros(n_links), np.zeros(n_links), np.zeros(n_links), np.zeros((n_links, 4, 4))
         ),
-        np.zeros(n_links), np.zeros(n_links, dtype=np.bool_), np.zeros(n_links, dtype=np.bool_),
+        np.zeros(n_links), np.zeros((n_links, 2), dtype=np.bool_),
     )  # fmt: skip
 
 
 @inline
 def begin_middle(world, middle):
     """Notes which links carry the bodies of a world; none of them is anywhere yet."""
-    middle.wanted[:] = False
+    middle.marks[:, WANTED] = False
     middle.state.positions[:] = math.nan
     for body in range(len(world.frames)):
         link = world.frames[body]
-        while link >= 0 and not middle.wanted[link]:
-            middle.wanted[link] = True
+        while link >= 0 and not middle.marks[link, WANTED]:
+            middle.marks[link, WANTED] = True
             link = world.links.parents[link]
 
 
@@ -122,23 +124,24 @@ def _turned_by_arcs(path, step, low, high, ball, delay):
 @inline
 def _place(links, path, step, low, high, middle):
     """Writes what the joints of the wanted links do, and the poses of those that are elsewhere now."""
-    state, moves = middle.state, middle.moves
+    state, marks = middle.state, middle.marks
     for link in range(len(links.parents)):
-        if middle.wanted[link]:
+        if marks[link, WANTED]:
             part = part_of(path, step, link, low, high)
-            moves[link] = state.positions[link] != part.middle
+            marks[link, MOVES] = state.positions[link] != part.middle
             state.positions[link], state.swing[link] = part.middle, part.swing
             state.bend[link] = part.bend
     for ball in range(len(path.balls.links)):
         link = path.balls.links[ball]
         arc = part_of_arc(path.balls, step, ball, low, high)
         state.positions[link], state.swing[link] = arc.middle, arc.swing
-        moves[link] = True  # its axis may be another
+        marks[link, MOVES] = True  # its axis may be another
     for link in range(len(links.parents)):
-        if middle.wanted[link]:
+        if marks[link, WANTED]:
             parent = links.parents[link]
-            moves[link] = moves[link] or (parent != NO_PARENT and moves[parent])
-            if moves[link]:
+            above = parent != NO_PARENT and marks[parent, MOVES]
+            marks[link, MOVES] = marks[link, MOVES] or above
+            if marks[link, MOVES]:
                 place_by_joint(links, link, state.positions, state.poses)
 
 

@@ -15,6 +15,7 @@ from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, 
 from clearance.kernels.budget.face_left import LeftScratch
 from clearance.kernels.budget.left import KEPT, PairRemainder, Start
 from clearance.kernels.budget.levers import (
+    STANDS,
     Levers,
     fill_steps,
     moved_beside,
@@ -22,7 +23,7 @@ from clearance.kernels.budget.levers import (
     moved_in_part,
     new_levers,
 )
-from clearance.kernels.budget.middle import Middle, begin_middle, new_middle_of
+from clearance.kernels.budget.middle import WANTED, Middle, begin_middle, new_middle_of
 from clearance.kernels.budget.pieces import TrianglePairs, new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
@@ -310,7 +311,7 @@ def go_on_to_step(lent, before, step):
         frame = world.frames[body]
         if frame < 0 or before < 0:
             continue
-        if goes_on and levers.still[frame]:
+        if goes_on and levers.steps[frame, STANDS] > 0.0:
             continue
         moved = math.inf
         if goes_on:
@@ -321,7 +322,7 @@ def go_on_to_step(lent, before, step):
         state.moved[body] += moved
         state.n_moves[body] += 1
     for link in range(len(poses)):
-        if state.middle.wanted[link]:
+        if state.middle.marks[link, WANTED]:
             for i in range(3):
                 for k in range(4):
                     state.poses[link, i, k] = poses[link, i, k]
