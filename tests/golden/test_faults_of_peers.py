@@ -53,6 +53,7 @@ def test_overlapping_boxes_meet_in_a_point_of_both():
     assert np.abs(near.point_a - [0.3, -0.2, 0.0]).max() <= 1.5
 
 
+@pytest.mark.slow
 def test_a_triangle_without_area_changes_nothing():
     vertices = np.array(
         [[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6], [7, 7, 7]], dtype=float

@@ -54,6 +54,7 @@ def test_foreseeing_changes_nothing(run, narrow, monkeypatch):
     )
 
 
+@pytest.mark.slow
 def test_too_much_is_refused_before_it_is_looked_for(run, narrow):
     n = evidence_for(*question(run)).n_items
     one = EvidenceSearch(*question(run))

@@ -63,6 +63,7 @@ def test_what_tolerances_leave_is_proven(folder):
     assert "(default), at least" in found.headline and "NOMINAL" not in found.headline
 
 
+@pytest.mark.slow
 def test_intervals_in_which_tolerances_leave_nothing_are_told(tmp_path):
     case = loose(far=0.853)
     saved(case, tmp_path)
@@ -72,6 +73,7 @@ def test_intervals_in_which_tolerances_leave_nothing_are_told(tmp_path):
     assert found.headline.startswith(told)
 
 
+@pytest.mark.slow
 def test_no_raised_bound_with_tolerances_is_proven(folder):
     claims = read_receipt(folder / FILE_NAME).claims
     raised = np.minimum(claims[0], claims[1] + round(3e-4 / UNIT))
@@ -128,6 +130,7 @@ def windowed(start: float, until: float = 2.0) -> cl.Case:
     return replace(turning_arm(), limits=cl.Limits(0.01, 0.02, rules=(rule,)))
 
 
+@pytest.mark.slow
 def test_a_window_of_a_rule_cannot_be_made_another(tmp_path):
     data = saved(windowed(1.5), tmp_path)
     receipt = read_receipt(tmp_path / FILE_NAME)
@@ -168,6 +171,7 @@ def following(multiplier: float, offset: float = 0.0) -> cl.Case:
     return replace(case, robots=(replace(placed, robot=robot),))
 
 
+@pytest.mark.slow
 def test_a_joint_cannot_be_made_to_follow_otherwise(tmp_path):
     saved(following(0.5), tmp_path)
     receipt = read_receipt(tmp_path / FILE_NAME)

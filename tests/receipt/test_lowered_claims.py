@@ -55,6 +55,7 @@ def test_the_claim_that_is_too_high_is_lowered_alone_and_proven(overstated):
     assert failure_in(data.stretches, data.shapes, halves, more, Said(found)) is not None
 
 
+@pytest.mark.slow
 def test_no_claim_is_lowered_further_than_it_may_be(overstated):
     data, _, more = overstated
     with pytest.raises(BadInput):

@@ -220,6 +220,7 @@ def test_files_of_another_robot_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "whole, parse", [(LIMITS, parse_joint_limits), (CONTROLLERS, parse_controllers)]
 )
+@pytest.mark.slow
 def test_a_file_cut_off_anywhere_is_read_or_refused_in_one_line(whole, parse):
     """YAML has no end, so what is cut off between two lines is a shorter file."""
     for end in range(len(whole)):
