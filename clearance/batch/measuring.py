@@ -31,7 +31,7 @@ from clearance.world.case import Case, Source
 CELLS = 4
 """Cells that stay read in a process; work comes cell by cell."""
 
-TOGETHER, TOGETHER_SECONDS = 16, 0.1
+GROUP, GROUP_SECONDS = 16, 0.1
 """Short cases that go through each stage together: a processor's caches hold one stage, not all. As many as that
 time is enough for, so that no long case waits for another."""
 
@@ -109,20 +109,20 @@ def measure(task: Task) -> TaskResult:
         passed = time.monotonic() - begun
         if n_done and passed > task.seconds:
             break
-        some = task.items[n_done : n_done + _n_together(n_done, passed)]
+        some = task.items[n_done : n_done + _group_size(n_done, passed)]
         n_done += work.add(some, begun + task.seconds)
     return work.done(task.items[n_done:])
 
 
-def _n_together(n_done: int, passed: float) -> int:
+def _group_size(n_done: int, passed: float) -> int:
     """How many cases go on together, after so many in [s]."""
     if n_done == 0:
         return 1
-    return max(1, min(TOGETHER, int(TOGETHER_SECONDS * n_done / max(passed, 1e-9))))
+    return max(1, min(GROUP, int(GROUP_SECONDS * n_done / max(passed, 1e-9))))
 
 
-class _CaseOnItsWay:
-    """An item, and what has become of it so far; after a fault no more does."""
+class _StagedCase:
+    """A case that goes through the stages beside others, and what has become of it; after a fault no more does."""
 
     def __init__(self, item: Item) -> None:
         self.item, self.read = item, 0
@@ -132,7 +132,7 @@ class _CaseOnItsWay:
         self.run: Run
         self.row: dict[str, Any]
 
-    def take(self, stage: Callable[[_CaseOnItsWay], None]) -> None:
+    def take(self, stage: Callable[[_StagedCase], None]) -> None:
         """Goes through a stage."""
         if self.fault is not None:
             return
@@ -160,33 +160,33 @@ class _Work:
 
         What has been read of the others is read again by whoever takes them.
         """
-        on_their_way, begun = [], time.monotonic()
+        staged, begun = [], time.monotonic()
         for item in items:
-            on_their_way.append(_CaseOnItsWay(item))
-            on_their_way[-1].take(self._read)
-            if time.monotonic() - begun > TOGETHER_SECONDS:
+            staged.append(_StagedCase(item))
+            staged[-1].take(self._read)
+            if time.monotonic() - begun > GROUP_SECONDS:
                 break  # what takes so long to read is large, and more of it would fill the memory
-        for i, one in enumerate(on_their_way):
+        for i, one in enumerate(staged):
             if i and time.monotonic() > until:
-                on_their_way = on_their_way[:i]
+                staged = staged[:i]
                 break
             one.take(_answer)
-        for stage in (_find, _tell):
-            for one in on_their_way:
+        for stage in (_find, _make_row):
+            for one in staged:
                 one.take(stage)
-        for one in on_their_way:
+        for one in staged:
             if one.fault is None:
                 self._keep(one)
             else:
                 self.faults.append(one.fault)
-        return len(on_their_way)
+        return len(staged)
 
-    def _read(self, one: _CaseOnItsWay) -> None:
+    def _read(self, one: _StagedCase) -> None:
         one.read = time.time_ns()
         one.found = read_item(one.item, self.batch)
         one.question = one.item.options.question(one.found.case)
 
-    def _keep(self, one: _CaseOnItsWay) -> None:
+    def _keep(self, one: _StagedCase) -> None:
         item, found, row, read = one.item, one.found, one.row, one.read
         case, others = found.case, conditions_of(item, found.case)
         key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
@@ -212,15 +212,15 @@ class _Work:
         )
 
 
-def _answer(one: _CaseOnItsWay) -> None:
+def _answer(one: _StagedCase) -> None:
     one.run = answer(one.question, ONE_THREAD)
 
 
-def _find(one: _CaseOnItsWay) -> None:
+def _find(one: _StagedCase) -> None:
     _ = one.run.findings  # which the row takes as they are then
 
 
-def _tell(one: _CaseOnItsWay) -> None:
+def _make_row(one: _StagedCase) -> None:
     one.row = row_of(one.run)
 
 

@@ -7,7 +7,7 @@ import pytest
 from clearance.batch import measuring
 from clearance.batch.keys import program
 from clearance.batch.manifest import Changes, items_of
-from clearance.batch.measuring import TOGETHER, Task, TaskResult, measure
+from clearance.batch.measuring import GROUP, Task, TaskResult, measure
 from clearance.batch.segments import rows_in
 from tests.batch.batches import write_cell
 
@@ -29,9 +29,9 @@ def rows(found: TaskResult) -> list[dict]:
     return rows_in(found.segment).to_pylist() if found.segment else []
 
 
-@pytest.mark.parametrize("together", [1, 2, TOGETHER])
+@pytest.mark.parametrize("together", [1, 2, GROUP])
 def test_cases_of_a_task_come_to_what_each_comes_to_by_itself(items, together, monkeypatch):
-    monkeypatch.setattr(measuring, "TOGETHER", together)
+    monkeypatch.setattr(measuring, "GROUP", together)
     alone = [done([item]) for item in items]
     found = done(items)
     assert rows(found) == [row for one in alone for row in rows(one)]
@@ -41,7 +41,7 @@ def test_cases_of_a_task_come_to_what_each_comes_to_by_itself(items, together, m
 
 
 def test_after_its_time_a_task_leaves_what_it_has_read_but_not_begun(items, monkeypatch):
-    monkeypatch.setattr(measuring, "_n_together", lambda *_: TOGETHER)
+    monkeypatch.setattr(measuring, "_group_size", lambda *_: GROUP)
     found = done(items, seconds=-1.0)
     assert [told.number for told in found.measured] == [0] and found.left == items[1:]
 
@@ -58,8 +58,8 @@ def test_a_fault_of_the_program_in_one_case_is_told_of_that_alone(items, monkeyp
 
 
 def test_where_reading_takes_long_no_further_case_is_read_ahead(items, monkeypatch):
-    monkeypatch.setattr(measuring, "TOGETHER_SECONDS", -1.0)
-    monkeypatch.setattr(measuring, "_n_together", lambda *_: TOGETHER)
+    monkeypatch.setattr(measuring, "GROUP_SECONDS", -1.0)
+    monkeypatch.setattr(measuring, "_group_size", lambda *_: GROUP)
     under_way, most = set(), []
     read, tell = measuring.read_item, measuring.row_of
 
@@ -79,7 +79,7 @@ def test_where_reading_takes_long_no_further_case_is_read_ahead(items, monkeypat
 
 
 def test_only_short_cases_go_together():
-    assert measuring._n_together(0, 0.0) == 1
-    assert measuring._n_together(1, 0.005) == measuring._n_together(300, 1.5) == TOGETHER
-    assert measuring._n_together(2, 0.1) == 2
-    assert measuring._n_together(1, 60.0) == measuring._n_together(9, 30.0) == 1
+    assert measuring._group_size(0, 0.0) == 1
+    assert measuring._group_size(1, 0.005) == measuring._group_size(300, 1.5) == GROUP
+    assert measuring._group_size(2, 0.1) == 2
+    assert measuring._group_size(1, 60.0) == measuring._group_size(9, 30.0) == 1
