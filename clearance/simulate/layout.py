@@ -28,7 +28,7 @@ IN_WORLD = -1
 """The reference of a pair that is measured in the world."""
 
 
-class Place(NamedTuple):
+class SeenBody(NamedTuple):
     """A body as it is seen from a link, or in the world."""
 
     reference: int
@@ -54,7 +54,7 @@ class Layout:
     world: World
     references: np.ndarray
     swapped: np.ndarray
-    places: Sequence[Place]
+    places: Sequence[SeenBody]
     origins: np.ndarray
 
     @property
@@ -152,7 +152,7 @@ def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
     measured = rows.reshape(-1, 2).astype(np.int64)
     solid_of = seen_bodies % len(solids)
     at = (seen_bodies // len(solids) - 1).tolist()
-    places = [Place(reference, solids[i]) for reference, i in zip(at, solid_of, strict=True)]
+    places = [SeenBody(reference, solids[i]) for reference, i in zip(at, solid_of, strict=True)]
     link_of = {
         place: int(frames[i])
         for place, i in zip(places, solid_of, strict=True)
@@ -215,7 +215,9 @@ def _references(case: Case, links: np.ndarray) -> np.ndarray:
     return references
 
 
-def _frame_of(place: Place, link_of: dict[Place, int], seen: dict[tuple[int, int], int]) -> int:
+def _frame_of(
+    place: SeenBody, link_of: dict[SeenBody, int], seen: dict[tuple[int, int], int]
+) -> int:
     """The link that carries a body, or -1 for one that stands where it is seen."""
     if place not in link_of:
         return -1
@@ -241,7 +243,7 @@ def _groups(pairs: np.ndarray, frames: np.ndarray) -> np.ndarray:
     return groups
 
 
-def _standing(case: Case, places: Sequence[Place]) -> np.ndarray:
+def _standing(case: Case, places: Sequence[SeenBody]) -> np.ndarray:
     standing = np.empty((len(places), 4, 4))
     standing[:] = np.eye(4)
     for place, seen in enumerate(places):

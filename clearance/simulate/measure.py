@@ -262,7 +262,7 @@ def measure(
     return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
-class Nearest(NamedTuple):
+class NearestPairs(NamedTuple):
     """The nearest pair of some steps (n,), -1 where none is known, and how far apart it is (n,) [m]."""
 
     pairs: np.ndarray
@@ -276,7 +276,7 @@ def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray
 
 
 def pairs_within(
-    what: PairsInMotion, steps: np.ndarray, within: float, nearest: Nearest | None = None
+    what: PairsInMotion, steps: np.ndarray, within: float, nearest: NearestPairs | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,), (k,) pairs within [m] there, in order, and (k,) how far apart they are [m].
 

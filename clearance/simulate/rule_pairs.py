@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.simulate.measure import Nearest, pairs_within
+from clearance.simulate.measure import NearestPairs, pairs_within
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.names import pair_names
 from clearance.simulate.sample_moments import SampleMoments
@@ -101,7 +101,7 @@ def _near(answer: SectionAnswer, within: float) -> _Columns:
         rows, pairs = np.nonzero(found.every[steps] < reached)
         distances = found.every[steps[rows], pairs]
     elif len(steps):
-        nearest = Nearest(found.pair[steps], found.clearance[steps])
+        nearest = NearestPairs(found.pair[steps], found.clearance[steps])
         rows, pairs, distances = pairs_within(section.in_motion, steps, reached, nearest)
         near = distances < reached
         rows, pairs, distances = rows[near], pairs[near], distances[near]

@@ -14,10 +14,10 @@ from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import (
     JointCourse,
-    JointRange,
+    JointExtent,
     extremes_of,
     joint_courses,
-    joint_ranges,
+    joint_extents,
     turns,
 )
 from clearance.world.notice import Notice, Severity, listed
@@ -42,13 +42,13 @@ class _Excess(NamedTuple):
 
 
 def notices_on_joints(
-    placed: PlacedRobot, rule: str, before: str = "", ranges: Sequence[JointRange] | None = None
+    placed: PlacedRobot, rule: str, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
     """What is beyond its limits, at the samples or between them, or where the robot stands.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
-        ranges: `joint_ranges`, where they are known.
+        extents: `joint_extents`, where they are known.
 
     Raises:
         BadInput: another rule.
@@ -56,7 +56,7 @@ def notices_on_joints(
     if rule not in ("warn", "fail"):
         raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
     asked = placed.trajectory
-    if _all_within(joint_ranges(placed) if ranges is None else ranges, asked):
+    if _all_within(joint_extents(placed) if extents is None else extents, asked):
         return []
     found = [
         excess for course in joint_courses(placed) for excess in _excesses(course, asked, before)
@@ -75,12 +75,12 @@ def notices_on_joints(
     return notices
 
 
-def _all_within(ranges: Sequence[JointRange], asked: Trajectory | None) -> bool:
+def _all_within(extents: Sequence[JointExtent], asked: Trajectory | None) -> bool:
     """True if no joint is beyond its limits at a sample, and between them it goes straight."""
     if asked is not None and asked.velocities is not None:
         return False
     return all(
-        max(high - joint.upper, joint.lower - low) <= ROUNDING for joint, low, high in ranges
+        max(high - joint.upper, joint.lower - low) <= ROUNDING for joint, low, high in extents
     )
 
 

@@ -43,7 +43,7 @@ def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
             yield JointCourse(joint, np.array([factor * resting + offset]))
 
 
-class JointRange(NamedTuple):
+class JointExtent(NamedTuple):
     """How far a joint goes at the samples [rad] or [m]."""
 
     joint: Joint
@@ -51,7 +51,7 @@ class JointRange(NamedTuple):
     greatest: float
 
 
-def joint_ranges(placed: PlacedRobot) -> list[JointRange]:
+def joint_extents(placed: PlacedRobot) -> list[JointExtent]:
     """The least and the greatest of each of `joint_courses`.
 
     Exactness: those of the courses to the last bit, since rounding keeps the order of what it rounds.
@@ -66,7 +66,7 @@ def joint_ranges(placed: PlacedRobot) -> list[JointRange]:
         resting = placed.fixed_positions.get(master, 0.0)
         low, high = ends.get(master, (resting, resting))
         one, other = factor * low + offset, factor * high + offset
-        found.append(JointRange(joint, min(one, other), max(one, other)))
+        found.append(JointExtent(joint, min(one, other), max(one, other)))
     return found
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from clearance.world.case import Case, Limits
 from clearance.world.joint_limits import notices_on_joints
-from clearance.world.joint_positions import joint_ranges
+from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
@@ -40,11 +40,11 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     for placed in case.robots:
         if not any(moves):
             break  # nothing is asked of the robots
-        before, ranges = case.prefix_of(placed), joint_ranges(placed)
+        before, extents = case.prefix_of(placed), joint_extents(placed)
         if placed.trajectory is not None:
-            found += notices_on_motion(placed, before, ranges)
+            found += notices_on_motion(placed, before, extents)
             found += notices_on_speed(placed, case.limits.joints, before)
-        found += notices_on_joints(placed, case.limits.joints, before, ranges)
+        found += notices_on_joints(placed, case.limits.joints, before, extents)
     return worst_first(found)
 
 

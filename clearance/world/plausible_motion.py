@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.world.case import PlacedRobot
-from clearance.world.joint_positions import JointRange, joint_ranges, turns
+from clearance.world.joint_positions import JointExtent, joint_extents, turns
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
@@ -38,25 +38,25 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 
 
 def notices_on_motion(
-    placed: PlacedRobot, before: str = "", ranges: Sequence[JointRange] | None = None
+    placed: PlacedRobot, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
     """What of a robot's motion looks like another unit.
 
     Args:
-        before: what stands before the names of joints. ranges: `joint_ranges`, where they are known.
+        before: what stands before the names of joints. extents: `joint_extents`, where they are known.
     """
     told = [
-        *_large_positions(joint_ranges(placed) if ranges is None else ranges, before),
+        *_large_positions(joint_extents(placed) if extents is None else extents, before),
         *_odd_velocities(placed, before),
         *_creeping(placed, before),
     ]
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
-def _large_positions(ranges: Sequence[JointRange], before: str) -> list[str]:
+def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
     angles: list[tuple[float, str]] = []
     lengths: list[tuple[float, str]] = []
-    for joint, low, high in ranges:
+    for joint, low, high in extents:
         greatest = max(abs(low), abs(high))
         large, most = (angles, LARGE_TURN) if turns(joint) else (lengths, LARGE_SLIDE)
         if greatest > most:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.measure import Nearest, measure, pairs_within
+from clearance.simulate.measure import NearestPairs, measure, pairs_within
 from clearance.simulate.rule_pairs import NearRows
 from clearance.simulate.sections import section_plan
 from clearance.world.motion import kinematic_motion
@@ -62,7 +62,7 @@ def test_what_is_known_of_the_nearest_pairs_is_what_they_would_be_measured_as(na
         for answer in rule.pairs.answers:
             found, what = answer.found, answer.section.in_motion
             steps = np.flatnonzero(found.clearance < WITHIN)
-            nearest = Nearest(found.pair[steps], found.clearance[steps])
+            nearest = NearestPairs(found.pair[steps], found.clearance[steps])
             assert len(steps) == 0 or (nearest.pairs >= 0).all()
             told = pairs_within(what, steps, WITHIN, nearest)
             for one, other in zip(told, pairs_within(what, steps, WITHIN), strict=True):
@@ -76,7 +76,7 @@ def test_only_what_is_not_known_is_measured_near_a_step(seed):
     what = section.in_motion
     found = measure(what)
     steps = np.arange(len(found.clearance))
-    nearest = Nearest(found.pair, found.clearance)
+    nearest = NearestPairs(found.pair, found.clearance)
     for within in (0.0, float(np.median(found.clearance)), 10.0):
         told = pairs_within(what, steps, within, nearest)
         for one, other in zip(told, pairs_within(what, steps, within), strict=True):

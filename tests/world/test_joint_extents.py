@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_limits import ROUNDING, notices_on_joints
-from clearance.world.joint_positions import joint_courses, joint_ranges
+from clearance.world.joint_positions import joint_courses, joint_extents
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 
@@ -42,7 +42,7 @@ def test_ranges_are_the_ends_of_the_courses(samples, mimics, rests):
     resting = {"b": 0.7} if rests else {}
     placed = PlacedRobot(arm(1.0, mimics), asked, fixed_positions=resting)
     for one in (placed, replace(placed, trajectory=None)):
-        for course, ends in zip(joint_courses(one), joint_ranges(one), strict=True):
+        for course, ends in zip(joint_courses(one), joint_extents(one), strict=True):
             assert course.joint is ends.joint
             assert (ends.least, ends.greatest) == (
                 course.at_samples.min(),
