@@ -16,6 +16,7 @@ from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.pair_left import Look, pair_left
 from clearance.kernels.budget.sweep_state import (
+    MOVES,
     answer_of,
     begin_anew,
     bound_by_boxes,
@@ -156,7 +157,7 @@ def budget_moments(scene, asked, rows, tally, table):
         go_to_part(world.links, path, errors, interval, share, share, state.middle)
         if not (is_step and was_step):
             state.lower_bounds[:] = -math.inf
-            state.answers[:, 0] = -1.0
+            state.answers[:, MOVES] = -1.0
             state.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:

@@ -56,9 +56,9 @@ class BudgetSweepState(NamedTuple):
         poses: (links, 4, 4) at the last step. moved: (bodies,) [m] how far each can have moved in all.
         n_moves: (bodies,) how often each has moved.
         lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
-        answers: (p, 6) what came of the last search of each pair where all stands: how often its bodies had moved
-            by then, or -1; [m] how far it was looked into; [m] bound, least and what is enough, as in
-            `PairRemainder`; 1 if the search before was the same.
+        answers: (p, 6) what came of the last search of each pair where all stands, by `MOVES` how often its bodies
+            had moved by then, or -1; `TARGET` [m] how far it was looked into; `LOWER_BOUND`, `LEAST`, `ENOUGH` [m]
+            as in `PairRemainder`; `TWICE` 1 if the search before was the same.
         waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
     """
 
@@ -92,6 +92,9 @@ class BudgetScene(NamedTuple):
     errors: Errors
     state: BudgetSweepState
 
+
+MOVES, TARGET, LOWER_BOUND, LEAST, ENOUGH, TWICE = range(6)
+"""Columns of `BudgetSweepState.answers`."""
 
 ROUNDED = 2.0**-40
 """Of how far bodies are from the origin: more than poses from a chain are rounded by."""
@@ -157,7 +160,7 @@ def begin_anew(world, state):
     state.moved[:] = 0.0
     state.n_moves[:] = 0
     state.lower_bounds[:] = -math.inf
-    state.answers[:, 0] = -1.0
+    state.answers[:, MOVES] = -1.0
     state.fronts.spans[:] = 0
     state.fronts.used[0] = 0
 
@@ -347,9 +350,9 @@ def note_answer(lent, pair, target, left):
     """Keeps what came of a search of a pair that looked as far as a target [m]."""
     asked = borrow(lent)
     answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
-    again = answer[0] == moves and answer[1] == target
-    answer[0], answer[1], answer[5] = moves, target, 1.0 if again else 0.0
-    answer[2], answer[3], answer[4] = left.lower_bound, left.least, left.enough
+    again = answer[MOVES] == moves and answer[TARGET] == target
+    answer[MOVES], answer[TARGET], answer[TWICE] = moves, target, 1.0 if again else 0.0
+    answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH] = left.lower_bound, left.least, left.enough
 
 
 @inline(force=True)
@@ -360,14 +363,17 @@ def is_answered(lent, pair, target):
     """
     asked = borrow(lent)
     answer = asked.state.answers[pair]
-    return answer[0] == _moves_of_pair(asked, pair) and answer[1] == target and answer[5] == 1.0
+    is_same = answer[MOVES] == _moves_of_pair(asked, pair) and answer[TARGET] == target
+    return is_same and answer[TWICE] == 1.0
 
 
 @inline(force=True)
 def answer_of(lent, pair):
     """What came of the last search of a pair."""
     answer = borrow(lent).state.answers[pair]
-    return PairRemainder(answer[2], answer[3], answer[4], True, Vec3(0.0, 0.0, 0.0))
+    return PairRemainder(
+        answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, Vec3(0.0, 0.0, 0.0)
+    )
 
 
 @inline(force=True)
