@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from clearance.budget.sources import Slope, Witness, slopes
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.parts import blocks
 from clearance.world.budget import Budget
 from clearance.world.case import Case

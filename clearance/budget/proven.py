@@ -37,7 +37,7 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.layout import PairsInMotion, positions_at
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.parts import in_order, parts
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions

@@ -20,7 +20,8 @@ from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact.sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.measure import Measurement, measure
+from clearance.simulate.measure import measure
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
     CommandedCourse,

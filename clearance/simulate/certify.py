@@ -23,7 +23,8 @@ from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import COUNTERS, HELD, Measurement
+from clearance.simulate.measure import HELD
+from clearance.simulate.measurement import COUNTERS, Measurement
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources

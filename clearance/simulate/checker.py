@@ -19,7 +19,7 @@ from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.late_dataclass import dataclass
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
-from clearance.simulate.measure import SWEEP_COUNTERS
+from clearance.simulate.measurement import SWEEP_COUNTERS
 from clearance.simulate.names import pair_names
 from clearance.tolerance import REACH
 from clearance.world.body import require_no_shortfall

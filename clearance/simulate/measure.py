@@ -21,6 +21,7 @@ from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import PairsInMotion, positions_at
+from clearance.simulate.measurement import SWEEP_COUNTERS, Measurement, Minima
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 
@@ -38,56 +39,8 @@ FIRST_EFFORT = 256
 Steps = np.ndarray | range
 """(k,) increasing step indices; a range is of all steps between two."""
 
-COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
-
-SWEEP_COUNTERS = (*COUNTERS, "steps_passed_over")
-"""The last are steps at which no pose was made: all their pairs are skipped."""
-
 HELD = 128
 """Parts after which the memory of rows that are on disk is let go: 10 MB at most."""
-
-
-class Minima(NamedTuple):
-    """One row a pair: least clearance [m], the first step that has it, witness points in the world [m]."""
-
-    clearance: np.ndarray
-    step: np.ndarray
-    points: np.ndarray  # (p, 2, 3)
-
-
-@dataclass(frozen=True, eq=False)
-class Measurement:
-    """The least clearances of a motion, one row a step.
-
-    Attributes:
-        clearance: (n,) [m], NaN where only a bound was asked for.
-        lower_bound: (n,) [m] proven for the step; equal to the clearance within rounding where that is known.
-        pair: (n,) index of the pair that attains it, or -1.
-        points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
-        tally: counters by name.
-        measure_pair_minima: the least clearance of each pair, or of those that come nearest, of which there are at
-            least so many; not measured until it is called. None if it was not asked for.
-        every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
-        may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
-        touching: (n,) where the nearest bodies touch, if padding has lessened clearances; None without padding.
-        times_b: (n,) [s] when the second body of the nearest pair is where it was met, if that is not the time of
-            the step since their clocks are not tied; NaN where it is. None if all are tied.
-    """
-
-    clearance: np.ndarray
-    lower_bound: np.ndarray
-    pair: np.ndarray
-    points: np.ndarray
-    tally: dict[str, int]
-    measure_pair_minima: Callable[[int | None], Minima] | None
-    every: np.ndarray | None = None
-    may_cut_pairs: bool = False
-    touching: np.ndarray | None = None
-    times_b: np.ndarray | None = None
-
-    def touches(self, steps: slice) -> np.ndarray:
-        """(k,) where the nearest bodies touch at some steps."""
-        return self.clearance[steps] <= 0.0 if self.touching is None else self.touching[steps]
 
 
 @dataclass(frozen=True, eq=False)

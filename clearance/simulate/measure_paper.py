@@ -15,7 +15,7 @@ from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
 from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import Measurement, Minima
+from clearance.simulate.measurement import Measurement, Minima
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair

@@ -15,7 +15,7 @@ from clearance.simulate.status import STATUSES, Status, status_of
 from clearance.world.case import Limits
 
 if TYPE_CHECKING:
-    from clearance.simulate.measure import Measurement
+    from clearance.simulate.measurement import Measurement
     from clearance.simulate.rule_pairs import RulePairs
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate, motion_codes
-from clearance.simulate.measure import Measurement, Minima
+from clearance.simulate.measurement import Measurement, Minima
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.rule_answer import RuleAnswer

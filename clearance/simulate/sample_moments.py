@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.moment import Moment
 from clearance.world.motion import Motion
 

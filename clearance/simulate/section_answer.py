@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from clearance.world.case import Limits
 
 if TYPE_CHECKING:
-    from clearance.simulate.measure import Measurement
+    from clearance.simulate.measurement import Measurement
 
 
 class Status(StrEnum):

@@ -12,7 +12,7 @@ import pyarrow as pa
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact.columns import no_contact_columns
 from clearance.simulate.every_pair import EveryPair
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.name_codes import names_of
 from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names, sides_of
 from clearance.simulate.parts import blocks

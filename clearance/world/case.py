@@ -322,22 +322,14 @@ class Case:
             told.append(tuple(sorted(placed.padding.items())))
         return cell_of(held, tuple(told))
 
-    def telling(
-        self,
-        notices: tuple[Notice, ...] | None = None,
-        notes: tuple[str, ...] | None = None,
-        sources: tuple[Source, ...] | None = None,
-    ) -> Case:
-        """The same with other notices, notes or sources, of which nothing is to be checked.
+    def telling(self, **told: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]) -> Case:
+        """The same with other `notices`, `notes` or `sources`, of which nothing is to be checked.
 
         Its cell is told anew: somebody may have written into an array since.
         """
         made = object.__new__(type(self))
-        made.__dict__.update(self.__dict__)
+        made.__dict__.update(self.__dict__, **told)
         made.__dict__.pop("cell", None)
-        for name, told in (("notices", notices), ("notes", notes), ("sources", sources)):
-            if told is not None:
-                object.__setattr__(made, name, told)
         return made
 
     def prefix_of(self, placed: PlacedRobot) -> str:

@@ -20,7 +20,8 @@ from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNI
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import Measurement, measure
+from clearance.simulate.measure import measure
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.resources import Resources
 from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case

@@ -22,7 +22,8 @@ from clearance.query.distance import distance
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.certify import certify_motion
-from clearance.simulate.measure import Measurement, measure
+from clearance.simulate.measure import measure
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import (

@@ -39,7 +39,8 @@ from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_s
 from clearance.kernels.budget.sweep import BudgetRows
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
-from clearance.simulate.measure import Measurement, measure
+from clearance.simulate.measure import measure
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import Budget

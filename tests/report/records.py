@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.measure import Measurement
+from clearance.simulate.measurement import Measurement
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.simulate.rule_answer import RuleAnswer

@@ -18,7 +18,7 @@ from clearance.simulate.clocks.unsynchronised import (
     least_of_all_steps,
     least_unsynchronised,
 )
-from clearance.simulate.measure import SWEEP_COUNTERS, Measurement, Minima
+from clearance.simulate.measurement import SWEEP_COUNTERS, Measurement, Minima
 from clearance.simulate.resources import Resources
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
