@@ -185,7 +185,8 @@ def curve_of(record: Record) -> np.ndarray:
     """(k,) float32 [m] the least clearance in each of equal stretches of steps, at most `CURVE`; where only a
     bound is known, the bound. Rounded down.
     """
-    clearance = record.clearances
+    only = record.rules[0].measurement if len(record.rules) == 1 else None
+    clearance = record.clearances if only is None else only.clearance
     bound = np.min([rule.measurement.lower_bound for rule in record.rules], axis=0)
     reached = np.where(np.isnan(clearance), bound, clearance)
     n_parts = min(len(reached), CURVE)

@@ -229,12 +229,6 @@ class Record(Samples):
     body_gaps: bool = False
     budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 
-    @property
-    def clearances(self) -> np.ndarray:
-        """(n,) [m], NaN where only a bound was asked for; where one rule judges all, no table is made for it."""
-        only = self.rules[0].measurement if len(self.rules) == 1 else None
-        return super().clearances if only is None else only.clearance
-
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
         if isinstance(self.contacts, ContactSequence) and len(self.contacts):
