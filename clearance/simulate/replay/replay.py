@@ -143,7 +143,7 @@ def load_replay(path: Path) -> Replay:
             "no replay here", where=str(path), valid="a folder that `clearance check --out` wrote"
         )
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             head = json.loads(stored["head"].tobytes())
             if head["format"] != _FORMAT:
                 raise ValueError(f"format {head['format']}")

@@ -241,7 +241,7 @@ def _claim(file: io.BufferedRandom, n_bytes: int) -> None:
 def _state(path: Path) -> dict[str, np.ndarray]:
     """What a pass had noted; nothing if it had not, or the state was lost with the machine's power."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             return dict(stored)
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
         return {}
