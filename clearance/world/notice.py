@@ -19,9 +19,10 @@ class Severity(StrEnum):
     WARNING = "warning"
 
 
-KINDS = ("units", "limits", "axis", "inside")
+KINDS = ("units", "limits", "axis", "inside", "frame", "package")
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
-limits, meshes turned by their file's axis tag, and solids of which inside and outside cannot be decided."""
+limits, meshes turned by their file's axis tag, solids of which inside and outside cannot be decided, scenes in the
+frame of a link that moves or stands elsewhere, and files that stand in for those of a missing package."""
 
 
 @dataclass(frozen=True)

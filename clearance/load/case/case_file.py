@@ -165,7 +165,8 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
             carries=carries_of(given.carry),
             clock=Clock(given.clock.slack),
         )
-        case, row_notes = with_scene_rows(case, scene_at.content)
+        with at(scene_at.field.rstrip(".: ")):
+            case, row_notes = with_scene_rows(case, scene_at.content)
         names = body_names(case)
         require_allowances(case.allow, names)
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)

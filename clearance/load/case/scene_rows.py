@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from clearance.errors import UnknownLink, nearest_name
 from clearance.load.case.allow import PatternNames, body_names
 from clearance.load.scene.request import SceneContent
 from clearance.world.case import Case, PlacedRobot
@@ -17,11 +18,17 @@ from clearance.world.rules import Allowance, matches
 ORIGIN = 1e-9
 """[m] and [-] How far a link's pose may be off the world's and count as the same."""
 
+WORLD_FRAMES = ("world", "map", "odom", "earth")
+"""Names of frames that stand, beside those of links. Source: ROS, REP 105."""
+
 
 def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]:
     """The case with the rows of its scene file after its own, and notes on what could not be taken over.
 
-    A warning is added where the frame of the file is a link that is not the world's origin.
+    Suspect input is added where the frame of the file is a link that is not the world's origin.
+
+    Raises:
+        UnknownLink: the frame of the file is neither a link nor the world.
     """
     case = replace(case, notices=(*case.notices, *_on_frame(case, content.frame)))
     if not content.allow and not content.link_padding:
@@ -53,14 +60,24 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
 
 
 def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
-    """A warning for each robot of which the frame of a scene's file is a link, but not where the world is."""
+    """A notice for each robot that has the frame of a scene's file as a link, but not where the world is."""
+    if not frame or frame in WORLD_FRAMES:
+        return
+    links = body_names(case).links
+    if frame not in links:
+        raise UnknownLink(
+            f"frame {frame!r} is given, which is no link",
+            where="frame",
+            valid=nearest_name(frame, (*links, WORLD_FRAMES[0])),
+        )
     for placed in case.robots:
-        if frame in placed.robot.link_names and not _is_world(placed, frame):
+        link = frame.removeprefix(case.prefix_of(placed))
+        if link in placed.robot.link_names and not _is_world(placed, link):
             yield Notice(
-                Severity.WARNING,
+                Severity.SUSPECT,
                 "frame",
-                f"the scene's file is in the frame of link {frame!r}, which moves or does not stand at the "
-                "origin, but is taken for the world: obstacles may be elsewhere; place the robot to agree",
+                f"CHECK FRAME: the scene's file is in the frame of link {frame!r}, which moves or does not stand "
+                "at the origin, but is taken for the world: obstacles may be elsewhere; place the robot to agree",
             )
 
 

@@ -34,7 +34,7 @@ class FoundFiles:
         return notes_on_variables(self._by_variable)
 
     def notices(self) -> list[Notice]:
-        """A warning for each package that is not there, on the files that stand in for its own."""
+        """Suspect input for each package that is not there: the files that stand in for its own."""
         return _notices_on_stand_ins(self._stand_ins)
 
 
@@ -44,12 +44,13 @@ def notes_on_variables(by_variable: PathsByName) -> list[str]:
 
 
 def _notices_on_stand_ins(stand_ins: PathsByName) -> list[Notice]:
-    """A warning for each package that is not there, on the files that stand in for its own."""
+    """Suspect input for each package that is not there: the files that stand in for its own."""
     return [
         Notice(
-            Severity.WARNING,
+            Severity.SUSPECT,
             "package",
-            f"package {package!r} is not there: {_first(files, 'is taken from ')}; is it the same file?",
+            f"CHECK PACKAGE: package {package!r} is not there: {_first(files, 'is taken from ')}; "
+            "is it the same file? give the package's folder in package_dirs",
         )
         for package, files in stand_ins.items()
     ]

@@ -12,6 +12,7 @@ from typing import Any
 from clearance.errors import shown
 from clearance.late_dataclass import dataclass
 from clearance.load.text.yaml_text import flow
+from clearance.world.notice import KINDS
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield "  fail: 0.0  # assumed: contact alone is a violation; 0.005 asks for 5 mm"
     yield "  # warn: 0.02  # closer than this is a near miss"
     yield "  # joints: fail  # a joint beyond its limits is a violation, not a warning"
-    yield "# accept: [units]  # suspect input that is meant: units, limits, axis, inside"
+    yield f"# accept: [units]  # suspect input that is meant: {', '.join(KINDS)}"
     yield "# report: {author: J. Doe, revision: A}  # shown on the page, with fields to sign"
 
 

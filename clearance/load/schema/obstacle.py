@@ -157,7 +157,7 @@ class Obstacle(_Shaped):
 
 class Scene(StrictModel):
     """What stands around the robots, or moves there. `frame` is what poses are given in: it is taken for the
-    world, with a warning where it is a link that stands elsewhere. `warnings` are told by each check, a line each.
+    world, and suspect where it is a link that stands elsewhere. `warnings` are told by each check, a line each.
     """
 
     FILLED = frozenset({"frame"})

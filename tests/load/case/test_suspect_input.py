@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.errors import BadInput
-from clearance.world.notice import Severity
+from clearance.world.notice import KINDS, Severity
 from clearance.world.plausibility import notices_of
 from tests.load.making import ARM, PATH
 from tests.load.making_case import CASE, TWO_JOINTS, changed, load_small, with_obstacle
@@ -76,11 +76,9 @@ def test_joint_limits_can_be_made_a_violation(tmp_path):
 
 def test_kinds_of_suspect_input_are_accepted_by_name(tmp_path):
     assert load_small(tmp_path).accept == ()
-    case = load_small(tmp_path, CASE + "accept: [units, limits, axis, inside]\n")
-    assert case.accept == ("units", "limits", "axis", "inside")
-    with pytest.raises(
-        BadInput, match=r"accept\[1\]: 'unit' is given; .*units, limits, axis, inside"
-    ):
+    case = load_small(tmp_path, CASE + f"accept: [{', '.join(KINDS)}]\n")
+    assert case.accept == KINDS
+    with pytest.raises(BadInput, match=rf"accept\[1\]: 'unit' is given; .*{', '.join(KINDS)}"):
         load_small(tmp_path, CASE + "accept: [limits, unit]\n")
 
 

@@ -68,15 +68,15 @@ def test_the_package_is_found_by_ros_variables(tmp_path, monkeypatch, variable, 
     assert found.notes == (f"${variable} leads to package://arms/meshes/part.stl as {shown}",)
 
 
-def test_a_file_of_the_same_name_stands_in_only_with_a_warning_that_names_both(tmp_path):
+def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_path):
     part(tmp_path / "meshes" / "part.stl", tmp_path / "meshes" / "end.stl")
     two = collision('<mesh filename="package://arms/meshes/part.stl"/>')
     two += collision('<mesh filename="package://arms/meshes/end.stl"/>')
     (notice,) = load_urdf(tmp_path, robot(link(two))).notices
-    assert (notice.severity, notice.kind) == (Severity.WARNING, "package")
+    assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert notice.text == (
-        "package 'arms' is not there: package://arms/meshes/part.stl is taken from meshes/part.stl, "
-        "and 1 more likewise; is it the same file?"
+        "CHECK PACKAGE: package 'arms' is not there: package://arms/meshes/part.stl is taken from meshes/part.stl"
+        ", and 1 more likewise; is it the same file? give the package's folder in package_dirs"
     )
 
 

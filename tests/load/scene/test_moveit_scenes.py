@@ -1,14 +1,18 @@
 """MoveIt's scenes: messages, robowflex's lists and `.scene` text; what they are, and what is told of the rest."""
 
+import re
+
 import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadInput
+from clearance.errors import BadInput, UnknownLink
+from clearance.world.notice import Severity
 from clearance.world.pairs import measured_pairs
 from clearance.world.rules import matches
 from tests.load.making import CUBE, cube_stl
-from tests.load.making_case import load_small
+from tests.load.making_case import CASE, load_small
+from tests.load.making_cell import load_cell
 from tests.load.making_moveit import (
     FIRST,
     LISTS,
@@ -182,11 +186,31 @@ FRAMED = f"world: {{collision_objects: [{BALL}]}}\n"
         ("upper", "{}", True),
     ],
 )
-def test_a_frame_that_is_a_link_elsewhere_is_a_warning(tmp_path, frame, base, is_told):
+def test_a_frame_that_is_a_link_elsewhere_is_suspect(tmp_path, frame, base, is_told):
     given = NAMED.replace("urdf: arm.urdf", f"urdf: arm.urdf, base: {base}")
     case = load_small(tmp_path, given, cell__yaml=FRAMED % frame)
-    told = [one.text for one in case.notices if one.kind == "frame"]
-    assert [f"the frame of link {frame!r}" in text for text in told] == [True] * is_told
+    told = [(one.severity, one.kind) for one in case.notices if f"link {frame!r}" in one.text]
+    assert told == [(Severity.SUSPECT, "frame")] * is_told
+
+
+@pytest.mark.parametrize("frame", ["bse", "workshop"])
+def test_a_frame_that_is_nowhere_is_refused_with_the_nearest_name(tmp_path, frame):
+    nearest = {"bse": "did you mean 'base'?", "workshop": "valid: base, tip, upper, world"}[frame]
+    told = f"frame: frame '{frame}' is given, which is no link; {re.escape(nearest)}"
+    with pytest.raises(UnknownLink, match=rf"scene: cell\.yaml: {told}"):
+        load_small(tmp_path, NAMED, cell__yaml=FRAMED % frame)
+    own = f"obstacles: [{{name: post, box: {{size: [1, 1, 1]}}}}]\nframe: {frame}\n"
+    with pytest.raises(UnknownLink, match=told):
+        load_small(tmp_path, NAMED, cell__yaml=own)
+    with pytest.raises(UnknownLink, match=rf"case\.yaml: scene: {told}"):
+        load_small(tmp_path, CASE.replace("scene:\n", f"scene:\n  frame: {frame}\n"))
+
+
+def test_a_frame_is_a_link_of_any_robot_with_its_name_or_without(tmp_path):
+    frames = {"left/base": 0, "right/base": 1, "base": 1, "left/upper": 1}
+    for frame, n_elsewhere in frames.items():
+        case = load_cell(tmp_path, "scene:\n", f"scene:\n  frame: {frame}\n")
+        assert [one.kind for one in case.notices] == ["frame"] * n_elsewhere
 
 
 def objects(**n_shapes):
