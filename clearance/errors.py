@@ -55,6 +55,10 @@ class MissingFile(BadInput):
     """A file that is named but is not there or cannot be read."""
 
 
+class SuspectInput(BadInput):
+    """A value that can be right but looks wrong, and that nobody has accepted."""
+
+
 class BadSyntax(BadInput):
     """A file that is not of the format it should be (YAML, XML, CSV, mesh)."""
 

@@ -13,10 +13,11 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.errors import BadInput, BadShape, NotFinite
+from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.late_dataclass import dataclass
+from clearance.simulate.asked_positions import AskedPositions
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measurement import SWEEP_COUNTERS
@@ -27,6 +28,7 @@ from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
+from clearance.world.notice import worst_first
 from clearance.world.pairs import measured_pairs
 from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
@@ -84,6 +86,7 @@ class Checker:
     Args:
         case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
             are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
+        accept: kinds of suspect input that are meant ("units", "limits", …), beside those that the case accepts.
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
@@ -93,24 +96,28 @@ class Checker:
         notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
 
     Raises:
+        SuspectInput: what `check` calls suspect, in the case or in joints that no configuration gives.
         NothingToMeasure: no pair is left. BadInput: a body from a CAD file. BadDimension: a body far beyond any
             place that a robot works at.
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, *, accept: Sequence[str] = ()) -> None:
         if not isinstance(case, Case):
             raise BadInput(
                 f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it"
             )
-        self.case, self.notices = case, notices_of(case)
+        self._names = [placed.joints_given for placed in case.robots]
+        self.joint_names = tuple(name for names in self._names for name in names)
+        self._asked = AskedPositions(case, self._names, accept)
+        self.case = case
+        self.notices = worst_first((*notices_of(case), *self._asked.at_rest()))
+        self._asked.require_not_suspect(self.notices)
         pairs, _ = measured_pairs(case)
         bodies = [body.body_in(case) for pair in pairs for body in pair]
         require_no_shortfall(bodies, "a Checker")
         self._doubts = [(pairs[i], i, doubt) for i, doubt in doubts_of(case, pairs).items()]
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
-        self._names = [placed.joints_given for placed in case.robots]
-        self.joint_names = tuple(name for names in self._names for name in names)
         self._placing = _placing(case, self._names)
         self._layout = lay_out(case, pairs)
         no_rows = PairRows(
@@ -131,6 +138,10 @@ class Checker:
 
         Raises:
             BadShape, NotFinite, BadInput: not one number within `tolerance.REACH` for each joint.
+            SuspectInput: a joint far beyond its limits, or in another unit as it seems, unless that is accepted.
+
+        Warns:
+            UserWarning: a joint is a little beyond its limits; told once.
 
         Exactness, Ties: as `check`, method exact.
         """
@@ -147,7 +158,7 @@ class Checker:
         """The least clearance at each of n configurations (n, k), in one compiled call.
 
         Raises:
-            BadShape, NotFinite, BadInput: as `distance`.
+            BadShape, NotFinite, BadInput, SuspectInput: as `distance`.
         """
         positions = self._positions(self._given(configurations, n_dimensions=2))
         rows = _rows(len(positions))
@@ -183,12 +194,15 @@ class Checker:
                 where="configuration",
                 valid=self._wanted(n_dimensions),
             )
-        if not (np.abs(given) <= REACH).all():
-            raise NotFinite(
-                "a joint position is NaN or beyond any reach",
-                where="configuration",
-                valid=f"{REACH:g} or less",
-            )
+        if not self._asked.are_usual(given):
+            if not (np.abs(given) <= REACH).all():
+                raise NotFinite(
+                    "a joint position is NaN or beyond any reach",
+                    where="configuration",
+                    valid=f"{REACH:g} or less",
+                )
+            with at("configuration"):
+                self._asked.judge(np.atleast_2d(given))
         return given
 
     def _by_name(self, given: Mapping[str, float]) -> list[float]:

@@ -61,8 +61,8 @@ def notices_on_joints(
     found = [
         excess for course in joint_courses(placed) for excess in _excesses(course, asked, before)
     ]
-    far = [excess for excess in found if _is_far(excess)]
-    near = [excess for excess in found if not _is_far(excess)]
+    far = [excess for excess in found if excess.beyond > far_beyond(excess.joint)]
+    near = [excess for excess in found if excess not in far]
     notices = []
     if far:
         text = f"CHECK LIMITS: {_told(far)}; is this another unit, or another robot?"
@@ -127,10 +127,9 @@ def _excess(joint: Joint, name: str, beyond: np.ndarray, where: str) -> _Excess:
     )
 
 
-def _is_far(excess: _Excess) -> bool:
-    if turns(excess.joint):
-        return excess.beyond > FAR_TURN
-    return excess.beyond > max(FAR_SLIDE, excess.joint.upper - excess.joint.lower)
+def far_beyond(joint: Joint) -> float:
+    """[rad or m] A joint that is farther beyond a limit is suspect."""
+    return FAR_TURN if turns(joint) else max(FAR_SLIDE, joint.upper - joint.lower)
 
 
 def _told(found: list[_Excess]) -> str:

@@ -45,11 +45,28 @@ def notices_on_motion(
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
     """
-    told = [
-        *_large_positions(joint_extents(placed) if extents is None else extents, before),
-        *_odd_velocities(placed, before),
-        *_creeping(placed, before),
+    told = [*_odd_velocities(placed, before), *_creeping(placed, before)]
+    return [
+        *notices_on_positions(joint_extents(placed) if extents is None else extents, before),
+        *_suspect(told),
     ]
+
+
+def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:
+    """What of the places that joints go to looks like another unit.
+
+    Args:
+        before: what stands before the names of joints.
+    """
+    return _suspect(_large_positions(extents, before))
+
+
+def largest_usual(joint: Joint) -> float:
+    """[rad] or [m] A joint that goes farther from 0 is suspect."""
+    return LARGE_TURN if turns(joint) else LARGE_SLIDE
+
+
+def _suspect(told: Sequence[str]) -> list[Notice]:
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
@@ -58,9 +75,8 @@ def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
     lengths: list[tuple[float, str]] = []
     for joint, low, high in extents:
         greatest = max(abs(low), abs(high))
-        large, most = (angles, LARGE_TURN) if turns(joint) else (lengths, LARGE_SLIDE)
-        if greatest > most:
-            large.append((greatest, before + joint.name))
+        if greatest > largest_usual(joint):
+            (angles if turns(joint) else lengths).append((greatest, before + joint.name))
     told = []
     for large, unit, hint in (
         (angles, "rad", "angles are in radians, is this degrees?"),

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure
+from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure, SuspectInput
 from clearance.world.plausibility import notices_of
+from clearance.world.robot import Mimic
 from tests.examples import first_fast
 from tests.made_cases import arm, at, ball, faces_of, flying
 
@@ -141,3 +142,75 @@ def test_what_is_no_case_or_leaves_nothing_is_refused():
         cl.Checker("scenes/box_box/case.yaml")
     with pytest.raises(NothingToMeasure):
         cl.Checker(replace(swaying(), obstacles=()))
+
+
+def limited(**changes):
+    """The swaying arm, its joints limited to a turn of 1 rad either way, and without a motion."""
+    case = swaying()
+    (one,) = case.robots
+    joints = [replace(joint, lower=-1.0, upper=1.0) for joint in one.robot.joints]
+    robot = replace(one.robot, joints=tuple(joints))
+    return replace(case, robots=(replace(one, robot=robot, trajectory=None, **changes),))
+
+
+def test_configurations_in_degrees_are_suspect_each_time():
+    checker = cl.Checker(limited())
+    for degrees in ([0.0, 45.0], [[0.0, 0.0], [0.0, 45.0]]):
+        ask = checker.distance if np.ndim(degrees) == 1 else checker.distances
+        for _ in range(2):
+            with pytest.raises(SuspectInput, match=r"configuration: .*goes to 45 rad.*degrees"):
+                ask(degrees)
+    with pytest.raises(SuspectInput, match=r"leaves its limits -1 to 1 rad by up to 1\.9 rad"):
+        checker.distance([0.0, 2.9])
+    with pytest.raises(SuspectInput, match="CHECK LIMITS"):
+        cl.Checker(limited(), accept=["units"]).distance([0.0, 45.0])
+    meant = cl.Checker(limited(), accept=["units", "limits"])
+    assert meant.distance([0.0, 45.0]).distance > 0.0
+    own = cl.Checker(replace(limited(), accept=("units", "limits")))
+    assert own.distance([0.0, 45.0]).distance == meant.distance([0.0, 45.0]).distance
+
+
+def test_a_joint_a_little_beyond_its_limits_is_warned_of_once(recwarn):
+    checker = cl.Checker(limited())
+    checker.distance([0.0, 1.0])
+    assert not recwarn.list
+    checker.distance([0.0, 1.1])
+    (told,) = [str(one.message) for one in recwarn.list]
+    assert "leaves its limits -1 to 1 rad by up to 0.1 rad" in told
+    assert recwarn.list[0].filename == __file__
+    checker.distance([1.2, 1.1])
+    checker.distances([[1.2, 1.1]])
+    assert len(recwarn.list) == 1
+    with pytest.raises(SuspectInput):
+        checker.distance([0.0, 2.9])
+
+
+def test_joints_that_follow_are_held_to_their_own_limits():
+    case = limited()
+    (one,) = case.robots
+    first, second = one.robot.moving_joints
+    joints = [
+        replace(joint, mimic=Mimic(first.name, -3.0, 0.5)) if joint is second else joint
+        for joint in one.robot.joints
+    ]
+    robot = replace(one.robot, joints=tuple(joints))
+    checker = cl.Checker(replace(case, robots=(replace(one, robot=robot),)))
+    checker.distance([0.5])  # the other at -1
+    with pytest.warns(UserWarning, match=f"joint '{second.name}' leaves its limits"):
+        checker.distance([0.6])
+    with pytest.raises(SuspectInput, match=f"joint '{second.name}'"):
+        checker.distance([-0.9])  # at 3.2
+
+
+def test_a_case_that_is_suspect_is_no_checker_unless_that_is_accepted():
+    case = limited()
+    post = cl.Obstacle(cl.Body("post", cl.box((100.0, 100.0, 2000.0))), at(x=900.0))
+    wide = replace(case, obstacles=(post,))
+    with pytest.raises(SuspectInput, match=r"CHECK UNITS: .*accept=\['units'\]"):
+        cl.Checker(wide)
+    assert cl.Checker(wide, accept=["units"]).distance([0.0, 0.0]).distance > 800.0
+    name = case.robots[0].robot.moving_joints[0].name
+    with pytest.raises(SuspectInput, match="CHECK LIMITS"):
+        cl.Checker(limited(fixed_positions={name: 3.0}))
+    with pytest.raises(BadInput, match="accept: 'unit' is given"):
+        cl.Checker(case, accept=["unit"])
