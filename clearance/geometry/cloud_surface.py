@@ -13,6 +13,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.surface import Surface
+from clearance.ordered import ascending
 
 _OWNS_ITS_CORNER = 1
 
@@ -25,7 +26,8 @@ def cloud_surface(cloud: PointCloud) -> Surface:
     starts, each = np.arange(n + 1), np.arange(n)
     nothing = np.zeros((n, 3))
     centres, boxes, children = nodes_over(points, starts, each)
-    _, probes = np.unique(cloud.face_component, return_index=True)
+    _, firsts = np.unique(cloud.face_component, return_index=True)
+    probes = ascending(np.sort(firsts))  # halved to ask whether a point is one
     return Surface(
         vertices=points,
         exact=points,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.kernels.curve.bezier import Pieces, piece_spans
+from clearance.ordered import ascending
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import CURVE_SIZES
 
@@ -50,6 +51,7 @@ def assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> CurveFields
     """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
+    ascending(contour, strictly=False)
     low, high = piece_spans(rows, first)
     extent = (high[:, :2] > low[:, :2]).any(axis=1)
     size = checked_size((high.max(axis=0) - low.min(axis=0))[:2])

@@ -21,6 +21,7 @@ from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
 from clearance.kernels.motion.kinematics import BALL, TURNING, Links
 from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
+from clearance.ordered import ascending
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import HELD
@@ -205,7 +206,7 @@ def path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -
     rates = np.zeros_like(positions)
     if cubic.any():
         rates[:, : len(own)] = np.concatenate([_rates(m, steps) for m in motions], 1)
-    return joint_path(links, motions[0].times[steps], positions, rates, cubic)
+    return joint_path(links, ascending(motions[0].times[steps]), positions, rates, cubic)
 
 
 def joint_path(

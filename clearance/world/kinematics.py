@@ -20,6 +20,7 @@ from clearance.kernels.motion.kinematics import (
     forward,
     place_each,
 )
+from clearance.ordered import parents_first
 from clearance.world.case import PlacedRobot
 from clearance.world.mimics import followers
 from clearance.world.robot import JointKind, Robot
@@ -111,7 +112,9 @@ def seen_from(
 
 def all_links(*forests: Links) -> Links:
     """The links of several forests behind one another, whose parents and columns count over all of them."""
-    return Links(*(np.concatenate(arrays) for arrays in zip(*forests, strict=True)))
+    links = Links(*(np.concatenate(arrays) for arrays in zip(*forests, strict=True)))
+    parents_first(links.parents)
+    return links
 
 
 def standing_link(world_from_link: np.ndarray) -> Links:

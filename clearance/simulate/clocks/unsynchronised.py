@@ -37,6 +37,7 @@ from clearance.kernels.motion.unsynchronised_steps import (
 )
 from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
+from clearance.ordered import ascending
 from clearance.query.distance import distance
 from clearance.simulate.certify import (
     joint_path,
@@ -200,7 +201,8 @@ class _Work:
         columns = np.zeros(len(world.frames), dtype=np.int64)
         for side in bodies:
             columns[side] = np.arange(len(side))
-        times = np.concatenate([what.b.times, what.a.times, what.a.times[-1:]])
+        of_a, of_b = ascending(what.a.times), ascending(what.b.times)
+        times = np.concatenate([of_b, of_a, of_a[-1:]])
         path = joint_path(world.links, times, *what.columns())
         rounding = TIME_ROUNDING * float(np.abs(times).max() + what.slack)
         band = Band(float(what.slack), rounding if math.isfinite(rounding) else 0.0)

@@ -1,0 +1,29 @@
+"""The orders that kernels rely on, checked where an array is made for them.
+
+A kernel that halves an array, or stops at the first entry that is too far, gives a wrong answer without a word
+where the array is not in order. Each such array passes here once. Not for: what a user gives (`world.timing`).
+"""
+
+import numpy as np
+
+
+def ascending(values: np.ndarray, *, strictly: bool = True) -> np.ndarray:
+    """The values (n,), which rise from each to the next, or do not fall where that is enough.
+
+    Raises:
+        AssertionError: they are not in order, which is a fault of this package.
+    """
+    steps = np.diff(values)
+    assert (steps > 0).all() if strictly else (steps >= 0).all(), "not in ascending order"
+    return values
+
+
+def parents_first(parents: np.ndarray) -> np.ndarray:
+    """The place of the parent of each of (n,) links, which comes before the link; -1 for a root.
+
+    Raises:
+        AssertionError: one comes after it, which is a fault of this package.
+    """
+    before = (parents >= -1) & (parents < np.arange(len(parents)))
+    assert before.all(), "a link comes before its parent"
+    return parents
