@@ -13,7 +13,7 @@ from clearance.errors import BadInput
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
-from clearance.simulate.names import SIDES, columns_of, sides_of
+from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of
 from clearance.simulate.record import CrossCheck, Record
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
@@ -51,14 +51,15 @@ class Run:
     @property
     def worst(self) -> dict:
         """The moment that stands worst against its rule, without rules that of least clearance, as a row of
-        `steps`; between two steps if the certificate has found a worse one there: then `between` is true, and
-        `step` the one before it."""
+        `steps`; its bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`.
+
+        Where the certificate has found a worse one between two steps, `between` is true, and `step` the one before."""
         moment = self.record.worst
         row = self._row(moment.step)
         if moment is self.record.worst_sample:
             return row
         told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
-        for sides in {SIDES, sides_of(self.record.case)}:
+        for sides in (SIDES, LINK_AND_OBSTACLE):
             told |= _told_of(sides, moment)
         if "time_b" in row:
             told["time_b"] = moment.time_b
@@ -66,11 +67,13 @@ class Run:
 
     @property
     def worst_sample(self) -> dict:
-        """The row of the first step that stands worst, with the status of that step by itself."""
+        """The row of the first step that stands worst, with the status of that step by itself; columns as there."""
         return self._row(self.record.worst_step)
 
     def _row(self, step: int) -> dict:
         row = self.record.steps.slice(step, 1).to_pylist()[0]
+        columns = zip(columns_of(LINK_AND_OBSTACLE), columns_of(SIDES), strict=True)
+        row = {name: row[side] for name, side in columns} | row
         if row.get("between"):
             known = row["clearance"]
             moment = None if known is None else self.record.rule(row["rule"]).moment_at(step)

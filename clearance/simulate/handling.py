@@ -1,4 +1,4 @@
-"""Parts that touch something as they are picked up or let go: hints, with the line that would excuse it.
+"""Parts that touch something as they are picked up or let go: hints, with the row that would excuse it.
 
 A part stands on something before it is picked up, and fingers hold it before they carry it. That contact is real,
 and it is meant. Not for: pairs that touch all the time (`standing`).
@@ -52,16 +52,15 @@ class HandlingHint:
         return frozenset((self.part, self.mate))
 
     @property
-    def line(self) -> str:
-        """The line of the case file that excuses it."""
+    def row(self) -> str:
+        """The row of `allow` that excuses it."""
         told = [f"between: {json.dumps([self.part, self.mate], ensure_ascii=False)}"]
         told += [] if self.start is None else [f"from: {self.start!r}"]
         told += [] if self.end is None else [f"until: {self.end!r}"]
-        return f"allow: [{{{', '.join(told)}}}]"
+        return f"{{{', '.join(told)}}}"
 
     def __str__(self) -> str:
-        told = f"{self.part} touches {self.mate} when it is {self.when}"
-        return f"{told}; where that is meant, add to the case: {self.line}"
+        return f"{self.part} touches {self.mate} when it is {self.when}"
 
 
 def handling_hints(record: Record) -> list[HandlingHint]:

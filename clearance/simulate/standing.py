@@ -18,6 +18,7 @@ from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
+from clearance.world.notice import listed
 from clearance.world.pairs import BodyIndex
 
 
@@ -95,18 +96,27 @@ def _n_measured(plan: SectionPlan) -> np.ndarray:
 
 
 def standing_hint(record: Record) -> list[str]:
-    """One hint for each kind of such pairs, and for parts that touch as they change hands, with the line of the
-    case file that leaves them out."""
+    """One hint for each kind of such pairs, and for parts that touch as they change hands; the last has the block
+    of the case file that leaves all of them out."""
     standing = standing_contacts(record)
     always = [pair for pair in always_in_contact(record) if pair not in standing]
-    known = {frozenset(pair) for pair in (*standing, *always)}
     links = [pair for pair in always if _are_links(record.case, pair)]
-    return [
+    known = {frozenset(pair) for pair in (*standing, *always)}
+    parts = [hint for hint in handling_hints(record) if hint.pair not in known]
+    told = [
         *_hint(standing, "all the time, since the link never moves"),
         *_hint(links, "at every step, link against link"),
         *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
-        *(str(hint) for hint in handling_hints(record) if hint.pair not in known),
+        *map(str, parts),
     ]
+    if told:
+        rows = [json.dumps(pair, ensure_ascii=False) for pair in (*standing, *links, *always)]
+        block = ", ".join(dict.fromkeys([*rows, *(hint.row for hint in parts)]))
+        lines = (
+            f"its rows of allow: {block}" if record.case.allow else f"the case: allow: [{block}]"
+        )
+        told[-1] += f"; where that is meant, add to {lines}"
+    return told
 
 
 def _are_links(case: Case, pair: tuple[str, str]) -> bool:
@@ -117,8 +127,7 @@ def _are_links(case: Case, pair: tuple[str, str]) -> bool:
 def _hint(pairs: list[tuple[str, str]], when: str) -> Iterator[str]:
     if pairs:
         count = "1 pair touches" if len(pairs) == 1 else f"{len(pairs)} pairs touch"
-        line = ", ".join(json.dumps(pair, ensure_ascii=False) for pair in pairs)
-        yield f"{count} {when}; where that is meant, add to the case: allow: [{line}]"
+        yield f"{count} {when}: {listed([' - '.join(pair) for pair in pairs])}"
 
 
 def _touch(

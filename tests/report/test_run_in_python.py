@@ -3,10 +3,13 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, MissingFile
+from tests.made_cases import at
+from tests.report.cells import sliding
 
 CASE = "scenes/box_box/case.yaml"
 
@@ -31,6 +34,22 @@ def test_a_run_is_told_in_a_line(run):
     assert "\n" not in told and len(told) < 200
     assert told.startswith(f"<Run {run.record.case.name}: {run.verdict.text()}, ")
     assert run.worst["link"] in told and run.worst["obstacle"] in told
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_the_worst_moment_names_its_bodies_in_both_ways_whatever_moves(certify):
+    """Two cubes of 0.1 m, 0.11 m apart in height, pass each other between two samples, where they are 0.9 m aside."""
+    one = sliding("left", [(0, 0), (1, 1)])
+    other = sliding("right", [(0, 1), (1, 0)], base=at(z=0.71))
+    apart = cl.check(cl.Case("passing", (one, other), ()), certify=certify)
+    for row in (apart.worst, apart.worst_sample):
+        assert (row["link"], row["obstacle"]) == ("left/tool", "right/tool")
+        for side, name in (("body_a", "link"), ("body_b", "obstacle")):
+            stem = side.removeprefix("body_")
+            assert row[side] == row[name]
+            assert [row[f"{stem}_{x}"] for x in "xyz"] == [row[f"{name}_{x}"] for x in "xyz"]
+    assert apart.worst["between"] == certify
+    assert apart.worst["clearance"] == pytest.approx(0.11 if certify else np.hypot(0.9, 0.11))
 
 
 def test_a_notebook_shows_verdict_and_closest_pairs(run):

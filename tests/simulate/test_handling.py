@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -50,10 +51,13 @@ def test_the_part_and_what_it_stands_on_are_named_with_the_time_of_contact(recor
     )
 
 
-def test_the_line_of_each_hint_excuses_it(record):
+def test_the_row_of_each_hint_excuses_it_and_stands_in_one_block_for_all(record):
     allow = []
-    for hint in handling_hints(record):
-        (row,) = yaml.safe_load(hint.line)["allow"]
+    *others, last = standing_hint(record)
+    rows = yaml.safe_load(last.partition("add to the case: ")[2])["allow"]
+    assert len(others) == 1 and not any("allow" in hint for hint in others)
+    assert rows == [yaml.safe_load(hint.row) for hint in handling_hints(record)]
+    for row in rows:
         window = Window(row.get("from", -np.inf), row.get("until", np.inf))
         allow.append(Allowance(tuple(row["between"]), window))
     again = cl.check(lifting(allow=tuple(allow)))
@@ -94,8 +98,13 @@ def test_pairs_in_contact_whenever_they_are_measured_are_named_over_all_phases()
     found = always_in_contact(record)
     assert sorted(found) == [("left/tool", "right/tool"), ("left/tool", "tray")]
     links, riding = standing_hint(record)
-    assert '["left/tool", "right/tool"]' in links and "link against link" in links
-    assert '["left/tool", "tray"]' in riding and "whenever they are measured" in riding
+    assert "left/tool - right/tool" in links and "link against link" in links
+    assert "left/tool - tray" in riding and "whenever they are measured" in riding
+    both = 'allow: [["left/tool", "right/tool"], ["left/tool", "tray"]]'
+    assert riding.endswith(both) and "allow" not in links
+    some = cl.check(cell((), robots, obstacles, carries, allow=(Allowance(found[0]),))).record
+    (rest,) = standing_hint(some)
+    assert rest.endswith(f"add to its rows of allow: {json.dumps(found[1])}")
     excused = tuple(Allowance(pair) for pair in found)
     assert standing_hint(cl.check(cell((), robots, obstacles, carries, allow=excused)).record) == []
 

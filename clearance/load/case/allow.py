@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
 from clearance.late_dataclass import dataclass
@@ -48,21 +49,22 @@ def body_names(case: Case) -> PatternNames:
     )
 
 
-def require_allowances(rows: Sequence[Allowance], names: PatternNames) -> None:
-    """Nothing, if each pattern matches a body that it can be of: the first a link where one of the pair is.
+def checked_allowances(rows: Sequence[Allowance], names: PatternNames) -> tuple[Allowance, ...]:
+    """The rows, the link first where one of a pair is a link, once each pattern matches a body that it can be of.
 
     Raises:
         UnknownLink, UnknownObstacle: nothing matches, with the nearest name.
     """
     first = names.links + (names.obstacles if names.obstacles_meet else ())
     second = names.obstacles + (names.links if names.links_meet else ())
-    for i, row in enumerate(rows):
+    found = tuple(_link_first(row, names) for row in rows)
+    for i, row in enumerate(found):
         with at(f"allow[{i}]"):
-            _refuse_turned_round(*row.between, names)
             what = "body" if names.obstacles_meet else "link"
             _refuse_unmatched(row.between[0], first, what, UnknownLink)
             what = "body" if names.links_meet and names.obstacles_meet else "obstacle"
             _refuse_unmatched(row.between[1], second, what, UnknownObstacle)
+    return found
 
 
 def require_patterns(given: Sequence[str], names: PatternNames) -> None:
@@ -103,14 +105,14 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
     return tuple(given)
 
 
-def _refuse_turned_round(first: str, second: str, names: PatternNames) -> None:
-    """Refuses an obstacle before a link, which would be of no pair."""
-    is_obstacle = _matches(first, names.obstacles) and not _matches(first, names.links)
-    is_link = _matches(second, names.links) and not _matches(second, names.obstacles)
-    if is_obstacle and is_link:
-        raise UnknownLink(
-            f"{first!r} is an obstacle and {second!r} a link", valid="the link comes first"
-        )
+def _link_first(row: Allowance, names: PatternNames) -> Allowance:
+    """The row; turned round where it is of an obstacle and a link, and of no pair as it stands."""
+    first, second = row.between
+    if not _matches(first, names.obstacles) or _matches(second, names.obstacles):
+        return row
+    is_link, is_known = _matches(first, names.links), _matches(second, names.links)
+    stays = is_known and names.links_meet if is_link else not is_known and names.obstacles_meet
+    return row if stays else replace(row, between=(second, first))
 
 
 def _matches(pattern: str, names: Iterable[str]) -> bool:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from clearance.errors import BadInput, at
 from clearance.late_dataclass import dataclass
-from clearance.load.case.allow import body_names, require_allowances, require_patterns
+from clearance.load.case.allow import body_names, checked_allowances, require_patterns
 from clearance.load.case.case_document import ScenePlace, read_schema
 from clearance.load.case.held_parts import with_held_parts
 from clearance.load.case.motion_names import note_on_joints_at_zero
@@ -168,7 +168,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
         with at(scene_at.field.rstrip(".: ")):
             case, row_notes = with_scene_rows(case, scene_at.content)
         names = body_names(case)
-        require_allowances(case.allow, names)
+        case = replace(case, allow=checked_allowances(case.allow, names))
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
         _require_mounts(case, entries, scene_at)
         for i, carry in enumerate(case.carries):

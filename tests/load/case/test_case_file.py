@@ -16,8 +16,10 @@ from clearance.errors import (
     UnknownKey,
 )
 from clearance.load.case.case_file import load_case
+from clearance.world.pairs import measured_pairs
 from tests.load.making import ARM, CASE, cube_stl, signed_volume, write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small, with_obstacle
+from tests.load.making_cell import load_cell
 
 
 def test_a_small_case_arrives_whole(tmp_path):
@@ -155,6 +157,22 @@ def test_allow_takes_wildcards_and_names(tmp_path):
     case = load_small(tmp_path, text.replace(', ["up*", post]', ""))
     assert [row.between for row in case.allow] == [("base", "po?t")]
     assert case.contact_response is True
+
+
+@pytest.mark.parametrize("row", ["[post, base]", "['*', base]", "{between: [post, 'ba*']}"])
+def test_allow_takes_the_obstacle_first_too(tmp_path, row):
+    case = load_small(tmp_path, CASE + f"allow: [{row}]\n")
+    assert case.allow[0].between[0].startswith("ba")
+    assert [pair.a.name_in(case) for pair in measured_pairs(case)[0]] == ["upper"]
+
+
+def test_allow_takes_a_part_before_a_link_of_several_robots(tmp_path):
+    rows = "[workpiece, left/base]", "{between: [post, 'left/*'], until: 0.5}", "['*', left/tip]"
+    case = load_cell(tmp_path, "allow:\n", "allow:\n  - " + "\n  - ".join(rows) + "\n")
+    assert [row.between for row in case.allow[:3]] == [
+        ("left/base", "workpiece"), ("left/*", "post"), ("*", "left/tip"),
+    ]  # fmt: skip
+    assert case.allow[1].window.end == 0.5
 
 
 def test_joints_that_nobody_names_are_zero_with_a_note(tmp_path):

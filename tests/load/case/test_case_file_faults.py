@@ -209,7 +209,11 @@ FAULTS = [
     ),
     (CASE + "allow: [['arm_*', post]]\n", UnknownLink, "no link matches 'arm_*'"),
     (CASE + "allow: [[base, 'car_*']]\n", UnknownObstacle, "no obstacle matches 'car_*'"),
-    (CASE + "allow: [[post, base]]\n", UnknownLink, "the link comes first"),
+    (
+        CASE + "allow: [[post, bse]]\n",
+        UnknownLink,
+        "allow[0]: unknown link 'bse'; did you mean 'base'?",
+    ),
     (CASE + "allow: [[base]]\n", BadShape, "allow[0]: ['base'] is given; 2 values are needed"),
     (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given"),
     (CASE + "contact_response: 1\n", BadInput, "contact_response: 1 is given"),

@@ -248,11 +248,6 @@ FAULTS = [
         "allow[0]: unknown body 'left/bas'; did you mean",
     ),
     (
-        ("[left/base, post]", "[post, left/base]"),
-        UnknownLink,
-        "allow[0]: 'post' is an obstacle and",
-    ),
-    (
         ("[door, post]", "[door, pst]"),
         UnknownObstacle,
         "allow[1]: unknown body 'pst'; did you mean 'post'?",
