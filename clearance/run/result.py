@@ -53,7 +53,7 @@ class Run:
         """The moment that stands worst against its rule, without rules that of least clearance, as a row of
         `steps`; its bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`.
 
-        Where the certificate has found a worse one between two steps, `between` is true, and `step` the one before."""
+        Where the certificate found a worse one between two steps, `between` is true, and `step` the one before."""
         moment = self.record.worst
         row = self._row(moment.step)
         if moment is self.record.worst_sample:
@@ -67,7 +67,7 @@ class Run:
 
     @property
     def worst_sample(self) -> dict:
-        """The row of the first step that stands worst, with the status of that step by itself; columns as there."""
+        """The row of the first step that stands worst, as `worst` has it, with the status of that step itself."""
         return self._row(self.record.worst_step)
 
     def _row(self, step: int) -> dict:
