@@ -18,7 +18,7 @@ from clearance.kernels.budget.sweep_state import SearchRoom
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.resources import Resources
 from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import SectionPlan
+from clearance.simulate.sections import SectionPlan, rule_limits
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 
@@ -113,7 +113,7 @@ def _of_rule(
             last = one.section.phase.last == n_steps - 1
             held = slice(rows.start, rows.stop if last else rows.stop - 1)
             np.minimum(between[held], own if last else own[:-1], out=between[held])
-    limits = case.limits.of_rule(rule)
+    limits = rule_limits(case, rule, [one.section for one in sections])
     return RuleBudget(name, limits, proven, expected, between, WorstMoments(name, limits, sections))
 
 

@@ -95,6 +95,7 @@ def _headline(record: Record, verdict: Verdict) -> Text:
     else:
         told = f"  {record.case.name}: least clearance {mm(record.worst.clearance)} mm"
         told += f" ({limits_text(limits.fail, limits.warn)})"
+    told += f", {verdict.at_level}" if verdict.at_level else ""
     return text.append(told, style="default not bold")
 
 

@@ -14,11 +14,12 @@ from weakref import WeakKeyDictionary
 
 from clearance.findings.finding import UNPROVEN, AppliedWaiver, Finding, FindingName
 from clearance.findings.of_rule import RuleFindings
-from clearance.findings.standing import code_of
+from clearance.findings.standing import code_of, why_undecided
 from clearance.late_dataclass import dataclass
 from clearance.simulate.record import PairTest, Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
+from clearance.world.case import Limits
 from clearance.world.waiver import Waiver
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
@@ -141,9 +142,9 @@ class _WaivedRecord:
         findings.sort(key=lambda finding: finding.standing)
         return Judgement(tuple(findings), rest, uses, n_of_others, is_rest)
 
-    def _of_pairs(self, is_meant: PairTest) -> tuple[RuleAnswer, ...]:
+    def _of_pairs(self, is_meant: PairTest, *levels: float) -> tuple[RuleAnswer, ...]:
         assert self.record.of_pairs is not None, "the record of a run can be asked again"
-        return self.record.of_pairs(is_meant)
+        return self.record.of_pairs(is_meant, levels=levels)
 
     def _owner(self, rule: str, one: tuple[str, ...], other: tuple[str, ...]) -> int:
         """The last waiver that holds and is of a pair; -1 for none."""
@@ -162,19 +163,20 @@ class _WaivedRecord:
         def is_of(*pair: Any) -> bool:
             return self._owner(*pair) == i
 
-        answers = self._of_pairs(is_of) if broken else ()
+        answers = self._of_pairs(is_of, waiver.at_least) if broken else ()
         findings = [f for rule in answers for f in self._covered(waiver, rule)]
         if not any(finding.broken for finding in findings):
             why = f"is not needed: {self._why_not_needed(i)}"
             return WaiverUse(waiver, fault=_stale(waiver, why))
         failing = [finding for finding in findings if finding.fails]
-        fault = _fault(waiver, failing[0]) if failing else ""
+        why = why_undecided(self.record.case)
+        fault = _fault(waiver, failing[0], why) if failing else ""
         return WaiverUse(waiver, answers, tuple(findings), fault, is_of)
 
     def _covered(self, waiver: Waiver, rule: RuleAnswer) -> list[Finding]:
         """What of a waiver's pairs is not clear; waived what breaks a rule and stays above the waiver's level."""
         found = [one for one in RuleFindings(self.record, rule) if one.status != Status.CLEAR]
-        return [_waived(self._of_waiver(one, waiver), waiver) for one in found]
+        return [_waived(self._of_waiver(one, waiver), waiver, rule.limits) for one in found]
 
     def _of_waiver(self, finding: Finding, waiver: Waiver) -> Finding:
         """A finding without bodies as one of what the waiver is of."""
@@ -197,14 +199,14 @@ def _stale(waiver: Waiver, why: str) -> str:
     return "" if waiver.shared else f"{waiver} {why}"
 
 
-def _waived(finding: Finding, waiver: Waiver) -> Finding:
+def _waived(finding: Finding, waiver: Waiver, limits: Limits) -> Finding:
     """The finding as its waiver leaves it: waived if it stays above the waiver's level, as far as proven."""
     known = [value for value in (finding.clearance, finding.proven) if value is not None]
     if (
         not finding.broken
         or finding.status == Status.CONTACT
         or not known
-        or min(known) < waiver.at_least
+        or limits.below(min(known), waiver.at_least)
     ):
         return finding
     until = str(waiver.until)
@@ -212,11 +214,11 @@ def _waived(finding: Finding, waiver: Waiver) -> Finding:
     return replace(finding, waived=told)
 
 
-def _fault(waiver: Waiver, failing: Finding) -> str:
-    """Why a waiver does not cover a finding."""
+def _fault(waiver: Waiver, failing: Finding, undecided: str) -> str:
+    """Why a waiver does not cover a finding; `undecided` says why its level may be neither proven nor passed."""
     level = f"{waiver.at_least * 1000:g} mm"
     if failing.status == Status.CONTACT:
         return f"{waiver} is of no contact"
     if failing.clearance is not None and failing.clearance < waiver.at_least:
         return f"{waiver} is of at least {level}, and less occurs"
-    return f"{waiver} is of at least {level}, and that is not proven; a finer proof takes a smaller --certify-mm"
+    return f"{waiver} is of at least {level}, and that is not proven; {undecided}"

@@ -69,9 +69,10 @@ class NearCourse:
         worst = self.worst(slice(0, len(self.positions)))
         return next(rows for rows in self.stretches if rows.start <= worst < rows.stop)
 
-    def broken(self, fail: float) -> list[slice]:
-        """The rows of each stretch in which the pair is below the fail limit [m], or at 0."""
-        below = (self.clearances < fail) | (self.clearances <= 0.0) | self.touching
+    def broken(self, limits: Limits) -> list[slice]:
+        """The rows of each stretch in which the pair is below the fail limit, or at 0."""
+        below = limits.below(self.clearances, limits.fail)
+        below |= (self.clearances <= 0.0) | self.touching
         if not below.any():
             return []
         return [rows for rows in self.stretches if below[rows].any()]

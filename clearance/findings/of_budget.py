@@ -70,7 +70,7 @@ def _of_waivers(record: Record, judgement: Judgement | None) -> Iterator[Finding
     for use in () if judgement is None else judgement.covering:
         if record.budget_of_pairs is not None and use.is_of is not None:
             for one in record.budget_of_pairs(use.is_of):
-                if not (one.least >= use.waiver.at_least and one.least > 0.0):
+                if one.limits.below(one.least, use.waiver.at_least) or one.least <= 0.0:
                     yield _not_kept(record, _of_waiver(record, use, one), one)
 
 

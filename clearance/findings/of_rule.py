@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
 from clearance.findings.occurrences import NearCourse, release_level
+from clearance.findings.standing import why_undecided
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
@@ -22,6 +23,7 @@ from clearance.simulate.record import Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.rule_pairs import NearRows
 from clearance.simulate.status import Status, status_of
+from clearance.world.case import Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,16 +45,17 @@ class RuleFindings:
     @property
     def _anything_near(self) -> bool:
         """True if a pair is seen below the warn limit."""
-        limit = max(self.rule.limits.warn, self.rule.limits.fail)
-        worst = self.rule.worst
-        return worst is not None and (worst.clearance < limit or worst.clearance <= 0.0)
+        limits, worst = self.rule.limits, self.rule.worst
+        if worst is None:
+            return False
+        return limits.below(worst.clearance, limits.warn) or worst.clearance <= 0.0
 
     def _of_pairs(self) -> Iterator[Finding]:
         limits = self.rule.limits
         for pair in sorted({*self._rows.pairs.tolist(), *self._seen_pairs.tolist()}):
             course = self._course(pair)
-            stretches = course.broken(limits.fail)
-            if not stretches and (course.clearances < limits.warn).any():
+            stretches = course.broken(limits)
+            if not stretches and limits.below(course.clearances, limits.warn).any():
                 stretches = [course.nearest_stretch]
             for occurrence, part in enumerate(stretches):
                 yield self._of_stretch(pair, course, part, occurrence)
@@ -154,13 +157,14 @@ class RuleFindings:
         certificate = self.rule.certificate
         if certificate is None:
             return None
-        open_at = _not_reached(certificate, self.rule.limits.fail)
+        limits = self.rule.limits
+        open_at = _not_reached(certificate, limits, limits.fail)
         for one in of_pairs:
             if one.broken and one.first_step is not None and one.last_step is not None:
                 open_at[max(0, one.first_step - 1) : one.last_step + 1] = False
         if open_at.any():
             return self._of_open(certificate, np.flatnonzero(open_at), "violated")
-        open_at = _not_reached(certificate, self.rule.limits.warn)
+        open_at = _not_reached(certificate, limits, limits.warn)
         if of_pairs or not open_at.any():
             return None
         return self._of_open(certificate, np.flatnonzero(open_at), "near")
@@ -181,7 +185,7 @@ class RuleFindings:
             end=float(times[min(open_at[-1] + 1, len(times) - 1)]),
             first_step=int(open_at[0]),
             last_step=int(open_at[-1]),
-            text="a finer proof takes a smaller --certify-mm",
+            text=why_undecided(self.record.case),
         )
 
     def _kept(self) -> Finding:
@@ -230,9 +234,10 @@ def joints_of(record: Record, moment: Moment) -> dict[str, float]:
     return found
 
 
-def _not_reached(certificate: Certificate, limit: float) -> np.ndarray:
-    """(n,) True where the motion to the next step is not proven above a limit [m] and not seen below it."""
-    return (certificate.lower_bound < limit) & (certificate.upper_bound >= limit)
+def _not_reached(certificate: Certificate, limits: Limits, level: float) -> np.ndarray:
+    """(n,) True where the motion to the next step is not proven above a level [m] and not seen below it."""
+    seen = limits.below(certificate.upper_bound, level)
+    return limits.below(certificate.lower_bound, level) & ~seen
 
 
 def _point(point: tuple[float, float, float]) -> tuple[float, float, float]:

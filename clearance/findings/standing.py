@@ -5,6 +5,7 @@ from __future__ import annotations
 from clearance.simulate.certificate import motion_codes
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
+from clearance.world.case import Case
 
 
 def code_of(answer: RuleAnswer) -> int:
@@ -13,3 +14,10 @@ def code_of(answer: RuleAnswer) -> int:
     if answer.certificate is not None:
         codes.append(int(motion_codes(answer.certificate, answer.limits, slice(None)).max()))
     return max(codes)
+
+
+def why_undecided(case: Case) -> str:
+    """Why a level is neither proven nor seen to be passed, and what helps."""
+    if case.clock.slack > 0.0:
+        return "a finer proof takes a smaller --certify-mm"
+    return "undecided: the motion stays so near the level that the work for one level is spent"

@@ -63,7 +63,7 @@ def way_needed(approach: Approach, margin: float) -> np.ndarray:
     """(k,) [m] how far the bodies must at least be moved against each other."""
     depths, padding = approach.depths_at_least, approach.section.padding
     apart = np.where(depths > 0.0, 0.0, approach.clearances + padding)
-    return approach.rule.limits.fail + margin + padding - apart + depths
+    return approach.rule.limits.least_kept + margin + padding - apart + depths
 
 
 def _way_of_unit(offsets: JointOffsets, approach: Approach) -> float:

@@ -102,7 +102,7 @@ def worst_pair(state: State, why: str) -> Obstruction | None:
     What is wanted beyond, for the motion between the steps, does not count.
     """
     rows = [(float(own.max()), i, int(own.argmax())) for i, one in enumerate(state.near)
-            if len(own := state.margin + one.rule.limits.fail - one.clearances)]  # fmt: skip
+            if len(own := state.margin + one.rule.limits.least_kept - one.clearances)]  # fmt: skip
     if not rows or max(rows)[0] <= 0.0:
         return None
     _, i, row = max(rows)
@@ -120,7 +120,7 @@ def unproven(record: Record, margin: float) -> Obstruction:
 
 def _worst(state: State, approach: Approach, gradient: Gradient) -> Obstruction | None:
     missing, by_unit = state.missing(approach), gradient(approach, None)
-    stays = missing > 0.0
+    stays = missing > state.wanted.beyond
     if by_unit is not None:
         stays &= ~by_unit.any(axis=1)
     rows = np.flatnonzero(stays)

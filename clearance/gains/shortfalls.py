@@ -143,7 +143,7 @@ class State:
         """True if the nearest pair of each step has what is wanted, so that no other need be looked at."""
         wanted = self.wanted.margin + self.wanted.beyond + self._extra
         return not any(
-            (rule.measurement.clearance < rule.limits.fail + wanted).any()
+            rule.limits.below(rule.measurement.clearance, rule.limits.fail + wanted).any()
             for rule in self.record.rules
         )
 
@@ -163,7 +163,7 @@ class State:
 
     def missing(self, approach: Approach) -> np.ndarray:
         """(k,) [m] how far an approach is below what is wanted; negative above it."""
-        level = approach.rule.limits.fail + self.wanted.margin + self.wanted.beyond
+        level = approach.rule.limits.least_kept + self.wanted.margin + self.wanted.beyond
         return level + self._extra[approach.steps] - approach.clearances
 
     @cached_property
@@ -178,7 +178,7 @@ class State:
             own = self.missing(approach)
             if found is None:
                 found = np.zeros((len(own), len(self.x)))
-            kept = (own > 0.0) | found.any(axis=1)
+            kept = (own > self.wanted.beyond) | found.any(axis=1)
             missing.append(own[kept])
             gradients.append(found[kept])
         if self.beside is not None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
+from clearance.findings.standing import why_undecided
 from clearance.report.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.record import PairTest
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.world.case import Case
 from clearance.world.rules import PairPattern, checked_level, matches
 
 CONTACT = "contact is not ruled out"
@@ -28,10 +30,10 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     def is_meant(_: str, one: tuple[str, ...], other: tuple[str, ...]) -> bool:
         return pattern.matches(one, other)
 
-    answers = run.record.of_pairs(is_meant, "steps")
+    answers = run.record.of_pairs(is_meant, "steps", () if level is None else (level,))
     if not answers:
         raise _no_such_pair(run, between)
-    found = {answer.name: [*_faults(answer, level)] for answer in answers}
+    found = {one.name: [*_faults(run.record.case, one, level)] for one in answers}
     for left in _budgets(run, is_meant):
         if not found[left.rule]:
             found[left.rule] += _with_tolerances(left, between, level)
@@ -48,7 +50,7 @@ def _with_tolerances(
     left: RuleBudget, between: tuple[str, str], at_least: float | None
 ) -> Iterator[str]:
     level = left.limits.fail if at_least is None else at_least
-    if left.least >= level and left.least > 0.0:
+    if not left.limits.below(left.least, level) and left.least > 0.0:
         return
     proven = f"only {mm(left.least)} mm is proven" if left.least > 0.0 else CONTACT
     yield f"{between[0]} - {between[1]}: with tolerances {proven}; {_wanted(left, level, at_least)}"
@@ -61,17 +63,17 @@ def _wanted(answer: RuleAnswer | RuleBudget, level: float, at_least: float | Non
     return f"the fail limit{of_rule(name)} is {limit_mm(level)} mm"
 
 
-def _faults(answer: RuleAnswer, at_least: float | None) -> Iterator[str]:
+def _faults(case: Case, answer: RuleAnswer, at_least: float | None) -> Iterator[str]:
     level = answer.limits.fail if at_least is None else at_least
     wanted = _wanted(answer, level, at_least)
     worst, certificate = answer.worst, answer.certificate
-    if worst is not None and (worst.clearance < level or worst.touches):
+    if worst is not None and (answer.limits.below(worst.clearance, level) or worst.touches):
         near = "contact" if worst.touches else f"{mm(worst.clearance)} mm"
         yield f"{worst.link} - {worst.obstacle}: {near} at {moment_text(worst)}; {wanted}"
-    elif certificate is not None and float(certificate.lower_bound.min()) < level:
+    elif certificate is not None and answer.limits.below(certificate.lower_bound.min(), level):
         proven = mm(float(certificate.lower_bound.min()))
         told = f"only {proven} mm is proven, though nothing nearer is seen"
-        yield f"{told}; {wanted}; a smaller certify_gap proves more"
+        yield f"{told}; {wanted}; {why_undecided(case)}"
 
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:

@@ -131,7 +131,7 @@ def _beside(summary: dict[str, Any]) -> Markup:
     rows += [element("li", text, class_="text-violated") for text in failing]
     rows += [element("li", f"Waived: {text}", class_="text-near") for text in summary["waived"]]
     rows += _with_tolerances(summary)
-    doubts = [summary["unproven"]] if summary["unproven"] else []
+    doubts = [text for text in (summary["at_level"], summary["unproven"]) if text]
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]

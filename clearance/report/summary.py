@@ -119,6 +119,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "waived": list(verdict.waived),
         "n_waivers": verdict.n_waivers,
         "stale": list(verdict.stale),
+        "at_level": verdict.at_level,
     }
 
 

@@ -5,6 +5,7 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
-from clearance.findings.standing import code_of
+from clearance.findings.standing import code_of, why_undecided
 from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import finding_line, waived_lines
 from clearance.report.wording import (
@@ -72,6 +73,7 @@ class Verdict:
         tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
             that is so and may pass; empty without any.
         with_tolerances: what they leave, one line each.
+        at_level: that the worst is at a limit but for rounding; empty where none is.
     """
 
     status: str
@@ -91,6 +93,7 @@ class Verdict:
     stale: tuple[str, ...] = ()
     tolerances: str = ""
     with_tolerances: tuple[str, ...] = ()
+    at_level: str = ""
 
     @property
     def exit_code(self) -> int:
@@ -190,6 +193,7 @@ def verdict_of(record: Record) -> Verdict:
         stale=stale,
         tolerances=_tolerances(record.case, measured, open_limits),
         with_tolerances=with_tolerances,
+        at_level=_at_level(judging),
     )
 
 
@@ -249,7 +253,7 @@ def moment_line(record: Record, moment: Moment) -> str:
     if moment.touches:
         return f"contact{_judged_by(moment)}: {where}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
-        if moment.clearance < limit:
+        if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
             return f"{mm(moment.clearance)} mm, {below}: {where}"
     if moment.clearance <= 0.0:
@@ -293,14 +297,24 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     step = certificate.worst_interval
     least, limit = float(certificate.lower_bound[step]), getattr(rule.limits, name)
     seen = np.inf if rule.worst is None else rule.worst.clearance
-    if not least < limit <= seen:
+    if not rule.limits.below(least, limit) or rule.limits.below(seen, limit):
         return None
     times = record.motions[0].times[step : step + 2]
     return (
         f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(rule.name)}: at least "
-        f"{mm(least)} mm, {span_text(float(times[0]), float(times[-1]))}; a finer proof takes a smaller "
-        "--certify-mm"
+        f"{mm(least)} mm, {span_text(float(times[0]), float(times[-1]))}; {why_undecided(record.case)}"
     )
+
+
+def _at_level(judging: Sequence[RuleAnswer]) -> str:
+    """That the worst of a rule is at a limit of it but for rounding, and how it is then judged."""
+    for rule, name in itertools.product(judging, ("fail", "warn")):
+        level, worst = getattr(rule.limits, name), rule.worst
+        if level > 0.0 and worst is not None:
+            off = abs(worst.clearance - level)
+            if off <= rule.limits.rounding:
+                return f"equal to the {name} limit{of_rule(rule.name)} but for rounding ({off:.2g} m): kept"
+    return ""
 
 
 def profile_text(answer: ProfileAnswer) -> str:

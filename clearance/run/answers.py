@@ -190,8 +190,9 @@ def _certificate(
 ) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
+    levels = tuple(level + section.padding for level in section.levels)
     gap, need = question.certify_gap, question.need
-    return certify_motion(section.in_motion, found, gap, need, resources)
+    return certify_motion(section.in_motion, found, gap, need, resources, levels)
 
 
 def _budget(
@@ -322,10 +323,13 @@ def _commanded(question: Question) -> CommandedCourse:
 
 
 def _of_pairs(
-    plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
+    plan: MeasurementPlan,
+    is_meant: PairTest,
+    need: str | None = None,
+    levels: tuple[float, ...] = (),
 ) -> tuple[RuleAnswer, ...]:
     """What the rules come to of some pairs alone, as if there were no others."""
-    some, found = _some(plan, is_meant, need)
+    some, found = _some(plan, is_meant, need, levels)
     return judged(some, found, plan.question.case, plan.motions).rules if found else ()
 
 
@@ -338,13 +342,16 @@ def _budget_of_pairs(plan: MeasurementPlan, is_meant: PairTest) -> tuple[RuleBud
 
 
 def _some(
-    plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
+    plan: MeasurementPlan,
+    is_meant: PairTest,
+    need: str | None = None,
+    levels: tuple[float, ...] = (),
 ) -> tuple[SectionPlan, list[SectionAnswer]]:
     """The sections of some pairs alone, and what they come to; none where no pair is meant."""
     case = plan.question.case
     question = plan.question if need is None else replace(plan.question, need=need)
     parts = [_part(case, section, is_meant) for section in plan.sections.sections]
-    sections = tuple(part for part in parts if part.pairs)
+    sections = tuple(replace(part, levels=levels) for part in parts if part.pairs)
     found = [_of_section(question, section, DEFAULT_RESOURCES) for section in sections]
     return replace(plan.sections, sections=sections), found
 

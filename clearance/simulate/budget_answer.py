@@ -89,4 +89,4 @@ class RuleBudget:
     @property
     def keeps(self) -> bool:
         """True if the fail limit is proven to be kept whatever the errors are."""
-        return self.least >= self.limits.fail and self.least > 0.0
+        return not self.limits.below(self.least, self.limits.fail) and self.least > 0.0

@@ -69,6 +69,9 @@ def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.n
     """
     lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
     seen = certificate.pair[steps] >= 0
-    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
+    below = [
+        limits.below(lower, limit) & (seen | ~limits.below(upper, limit))
+        for limit in (limits.fail, limits.warn)
+    ]
     below[0] |= upper <= 0.0
     return np.select([certificate.touches(steps), *below], [3, 2, 1], default=0)

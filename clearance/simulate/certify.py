@@ -23,11 +23,12 @@ from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
 from clearance.ordered import ascending
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.layout import PairsInMotion
+from clearance.simulate.layout import Layout, PairsInMotion
 from clearance.simulate.measure import HELD
 from clearance.simulate.measurement import COUNTERS, Measurement
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.refine import Refinement
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
@@ -53,13 +54,15 @@ def certify_motion(
     gap: float,
     need: str = "steps",
     resources: Resources = DEFAULT_RESOURCES,
+    levels: Sequence[float] = (),
 ) -> Certificate:
-    """Lower bounds that are within `gap` [m] of a distance that really occurs.
+    """Lower bounds that are within `gap` [m] of a distance that really occurs, nearer where a limit is open.
 
     Args:
         need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
+        levels: [m] that are to be decided beside the limits.
     """
     gap, notices = no_finer_than_rounding(what.case, what.motions, gap)
     work = _Work(what, _Question.of(found, what.limits, need, gap))
@@ -71,11 +74,15 @@ def certify_motion(
         if resources.progress:
             resources.progress(done + 1, n_steps)
     resources.rows.let_go()
+    limits = what.limits
+    finest = FINEST_CERTIFY_GAP * farthest_reach(what.case, tuple(what.motions))
+    refinement = Refinement(work.prove, gap, finest, limits.rounding)
+    bounds, counts = refinement.decided(log.bounds, (limits.fail, limits.warn, *levels))
     return Certificate(
-        *log.bounds,
+        *bounds,
         gap,
-        dict(zip(COUNTERS, log.tally.tolist(), strict=True)),
-        _moment_of(MomentQuery(what.case, what.motions, what.pairs), log.bounds, found),
+        dict(zip(COUNTERS, (log.tally + counts).tolist(), strict=True)),
+        _moment_of(MomentQuery(what.case, what.motions, what.pairs), bounds, found),
         notices,
     )
 
@@ -177,7 +184,8 @@ class _Work:
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
-        world, surface = self.what.layout.world, self.what.layout.whole_faces
+        layout = self.what.layout
+        world, surface = layout.world, layout.whole_faces
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
@@ -191,6 +199,27 @@ class _Work:
             return span.stop, counts
 
         return run_part
+
+    def prove(
+        self, step: int, asked: np.ndarray, aim: CertificateGoal
+    ) -> tuple[IntervalBounds, np.ndarray]:
+        """Proves the interval after a step again, asked about (2,) [m] at its ends."""
+        path = path_of(
+            self.what.layout.world.links, self.what.case, self.what.motions, slice(step, step + 2)
+        )
+        first = np.maximum(self.question.found.pair[step : step + 1], 0)
+        return prove_path(self.what.layout, path, CertifiedSteps(0, 1, first, asked), aim)
+
+
+def prove_path(
+    layout: Layout, path: JointPath, steps: CertifiedSteps, aim: CertificateGoal
+) -> tuple[IntervalBounds, np.ndarray]:
+    """What is proven of all pairs of a layout along a path, and counters as `COUNTERS`."""
+    n, counts = len(path.times) - 1, _no_counts()
+    bounds = IntervalBounds(np.empty(n), np.empty(n), np.empty(n), np.empty(n, dtype=np.int64))
+    motion = CertifiedMotion(with_turning_balls(layout.world), path)  # no two threads share it
+    call(certify, layout.whole_faces, motion, steps, aim, bounds, counts)
+    return bounds, counts
 
 
 def _no_counts() -> np.ndarray:

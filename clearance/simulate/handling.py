@@ -147,7 +147,7 @@ class _PairGaps:
     def _is_clear(self, section: Section, step: int) -> bool:
         """True if they are apart, and not below the fail limit of the rule that judges them there."""
         gap = self._gap(section, step)
-        return gap > TOUCHING and gap >= section.limits.fail
+        return gap > TOUCHING and not section.limits.below(gap, section.limits.fail)
 
     def _gap(self, section: Section, step: int) -> float:
         """[m] at one of a section's steps, paddings left out."""

@@ -33,8 +33,14 @@ PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 class PairMeasurer(Protocol):
     """Measures and proves some pairs of a run alone."""
 
-    def __call__(self, is_meant: PairTest, need: str | None = None) -> tuple[RuleAnswer, ...]:
-        """What the rules come to of the pairs that are meant; `need` as of the run if it is not given."""
+    def __call__(
+        self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()
+    ) -> tuple[RuleAnswer, ...]:
+        """What the rules come to of the pairs that are meant.
+
+        Args:
+            need: as of the run if it is not given. levels: [m] that are to be decided beside the limits.
+        """
 
 
 @dataclass(frozen=True)

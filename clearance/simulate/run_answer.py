@@ -21,7 +21,7 @@ from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.rule_pairs import RulePairs
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import Section, SectionPlan
+from clearance.simulate.sections import Section, SectionPlan, rule_limits
 from clearance.simulate.status import sample_codes
 from clearance.world.case import Case
 from clearance.world.motion import Motion
@@ -82,7 +82,8 @@ def judged(
         name = limits.rule_names[rule]
         moment_at = partial(samples.at, found, name)
         pairs = RulePairs(own, name)
-        rules.append(RuleAnswer(name, limits.of_rule(rule), found, certificate, moment_at, pairs))
+        own_limits = rule_limits(case, rule, [answer.section for answer in own])
+        rules.append(RuleAnswer(name, own_limits, found, certificate, moment_at, pairs))
     if len(rules) == 1:
         only = rules[0]
         return RunAnswer((only,), only.measurement, None, only.measurement, only.certificate)

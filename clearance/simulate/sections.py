@@ -17,10 +17,12 @@ import numpy as np
 from clearance.late_dataclass import dataclass
 from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.layout import PairsInMotion
+from clearance.tolerance import AT_LEVEL
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
 from clearance.world.phase import Phase
+from clearance.world.reach import farthest_reach
 from clearance.world.timeline import Timeline
 
 
@@ -34,6 +36,7 @@ class Section:
         pairs: those of the section. places: (p,) of each in the pairs of the run.
         other: the phase that the second bodies are in, where their clock is not tied to that of the first; else
             None.
+        levels: [m] of clearance that are to be decided beside the limits, as a waiver's.
     """
 
     number: int
@@ -43,6 +46,7 @@ class Section:
     pairs: tuple[Pair, ...]
     places: np.ndarray
     other: Phase | None = None
+    levels: tuple[float, ...] = ()
 
     @property
     def tied(self) -> bool:
@@ -53,9 +57,14 @@ class Section:
     def limits(self) -> Limits:
         """Those of the distances of the bodies without their padding."""
         limits = self.phase.case.limits.of_rule(self.rule)
-        if not self.padding:
-            return limits
-        return Limits(limits.fail + self.padding, limits.warn + self.padding, limits.joints)
+        phases = (self.phase,) if self.other is None else (self.phase, self.other)
+        reach = max(farthest_reach(phase.case, phase.motions) for phase in phases)
+        return replace(
+            limits,
+            fail=limits.fail + self.padding,
+            warn=limits.warn + self.padding,
+            rounding=AT_LEVEL * reach,
+        )
 
     @cached_property
     def in_motion(self) -> PairsInMotion:
@@ -76,6 +85,12 @@ class Section:
     def steps(self) -> slice:
         """The steps of the run that it is of."""
         return slice(self.phase.first, self.phase.last + 1)
+
+
+def rule_limits(case: Case, rule: int, sections: Sequence[Section]) -> Limits:
+    """The limits of a rule, as `Limits.rule_names` counts, with the rounding of its sections."""
+    rounding = max(section.limits.rounding for section in sections)
+    return replace(case.limits.of_rule(rule), rounding=rounding)
 
 
 @dataclass(frozen=True, eq=False)

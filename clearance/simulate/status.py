@@ -35,21 +35,22 @@ def status_codes(
             padding alone brings to 0 is violated.
     """
     is_contact = clearance <= 0.0 if touching is None else touching
-    is_violated = (clearance < limits.fail) | (clearance <= 0.0)
-    return np.select([is_contact, is_violated, clearance < limits.warn], [3, 2, 1], default=0)
+    is_violated = limits.below(clearance, limits.fail) | (clearance <= 0.0)
+    is_near = limits.below(clearance, limits.warn)
+    return np.select([is_contact, is_violated, is_near], [3, 2, 1], default=0)
 
 
 def status_of(clearance: float, limits: Limits, touches: bool | None = None) -> str:
     """How one clearance [m] stands against the limits."""
     if touches or (touches is None and clearance <= 0.0):
         return str(Status.CONTACT)
-    if clearance < limits.fail or clearance <= 0.0:
+    if limits.below(clearance, limits.fail) or clearance <= 0.0:
         return str(Status.VIOLATED)
-    return str(Status.NEAR if clearance < limits.warn else Status.CLEAR)
+    return str(Status.NEAR if limits.below(clearance, limits.warn) else Status.CLEAR)
 
 
 def sample_codes(found: Measurement, limits: Limits, steps: slice | np.ndarray) -> np.ndarray:
     """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
-    undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
+    undecided = (found.pair[steps] < 0) & limits.below(found.lower_bound[steps], limits.warn)
     touching = None if found.touching is None else found.touching[steps]
     return np.where(undecided, -1, status_codes(found.clearance[steps], limits, touching))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -56,6 +56,7 @@ class Limits:
         warn: as `fail` if not given.
         joints: what a joint beyond its limits is: "warn" for a warning, "fail" for a violation.
         rules: limits of some pairs; the last that is of a pair holds, and where none is, these limits.
+        rounding: [m] a clearance that is less than a level by no more is at the level; a run knows it.
 
     Raises:
         BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. DuplicateName: two rules of
@@ -66,6 +67,7 @@ class Limits:
     warn: float = None  # type: ignore[assignment]  # always a number once it is made
     joints: str = "warn"
     rules: tuple[Rule, ...] = ()
+    rounding: float = field(default=0.0, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.warn is None:
@@ -80,6 +82,20 @@ class Limits:
         require_own_names("rule", [rule.name for rule in self.rules])
         for rule in self.rules:
             rule.levels(self.fail)
+
+    @overload
+    def below(self, clearance: float, level: float) -> bool: ...
+    @overload
+    def below(self, clearance: np.ndarray, level: float) -> np.ndarray: ...
+
+    def below(self, clearance: float | np.ndarray, level: float) -> bool | np.ndarray:
+        """True where a clearance [m] is below a level [m] by more than rounding."""
+        return clearance < level - self.rounding
+
+    @property
+    def least_kept(self) -> float:
+        """[m] A clearance of so much keeps the fail limit."""
+        return self.fail - self.rounding
 
     @property
     def rule_names(self) -> tuple[str, ...]:

@@ -46,7 +46,7 @@ def test_a_shift_keeps_within_its_room(slot, capsys):
 def test_how_far_the_tool_is_moved_is_told(slot, capsys):
     code, text, _ = said(capsys, slot, "--kind", "waypoints", "--keep-tool", "1.0s=21mm,0.1deg")
     assert (
-        code == 0 and "tool      tool at 1.000 s is moved 20.0005 mm of 21 and turned 0 deg" in text
+        code == 0 and "tool      tool at 1.000 s is moved 20.0004 mm of 21 and turned 0 deg" in text
     )
 
 

@@ -28,7 +28,7 @@ def course(clearances, between=None, bridges=()) -> NearCourse:
 def spans(found: NearCourse) -> list[tuple[int, int]]:
     return [
         (int(found.positions[rows.start]), int(found.positions[rows.stop - 1]))
-        for rows in found.broken(FAIL)
+        for rows in found.broken(Limits(FAIL))
     ]
 
 

@@ -13,10 +13,13 @@ from clearance.gains.joint_ranges import joint_ranges
 from clearance.gains.sentences import lines_of
 from clearance.gains.shortfalls import proven
 from clearance.tolerance import CERTIFY_GAP
+from clearance.world.body import Body, Obstacle
 from clearance.world.motion_limits import MotionLimit
 from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
+from tests.made_cases import at
+from tests.simulate.test_refine import sliding
 
 FINE = 1e-6
 
@@ -398,3 +401,11 @@ def test_a_clearance_that_hardly_grows_with_a_joint_is_gained_all_the_same():
     case = cl.Case("roof", (cl.PlacedRobot(robot, path),), (roof,), cl.Limits(fail=0.05002))
     found = gain(case, "waypoints", keep_ends=False)
     assert found.kept and found.size == pytest.approx(2.0 * 0.01, rel=0.05)
+
+
+def test_a_pair_that_nothing_moves_may_be_at_its_limit_but_for_rounding():
+    """The wall is as far as the limit, the post 2 mm from where the cube ends."""
+    one = sliding(0.005)
+    post = Obstacle(Body("post", cl.box((0.1, 0.02, 0.1))), at(0.602))
+    found = gain(replace(one, obstacles=(*one.obstacles, post)), "obstacle", obstacle="post")
+    assert found.kept and found.change == pytest.approx([0.003, 0.0, 0.0], abs=FINE)

@@ -15,6 +15,7 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.load.case.case_list import cases_in
 from clearance.pytest_plugin import assert_clear
+from clearance.simulate import refine
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
 
@@ -221,13 +222,19 @@ def test_what_keeps_its_distance_is_clear(run):
             "box - gate_a: 3.000 mm at 0.350 s, step 7; at least 4 mm was asked for",
         ),
         ({"between": ("box", B), "at_least": 0.2}, "box - gate_b: 100.0 mm at"),
-        ({"between": ("box", B), "at_least": 0.1}, "only 99.9"),
     ],
 )
 def test_what_comes_nearer_is_told(run, asked, told):
     with pytest.raises(AssertionError) as error:
         assert_clear(run, **asked)
     assert told in str(error.value) and "gates is not clear" in str(error.value)
+
+
+def test_exactly_as_far_as_asked_for_is_far_enough_where_the_work_suffices(run, monkeypatch):
+    assert_clear(run, between=("box", B), at_least=0.1)
+    monkeypatch.setattr(refine, "MOST_QUERIES", -1)
+    with pytest.raises(AssertionError, match=r"only 99\.9.*undecided"):
+        assert_clear(run, between=("box", B), at_least=0.1)
 
 
 @pytest.mark.parametrize("certify", [True, False])

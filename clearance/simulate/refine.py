@@ -1,0 +1,79 @@
+"""Goes on proving where a decision hangs on it: a level lies between what is proven and what occurs.
+
+The gap of such an interval is made a thousandth, down to rounding, until the level is decided or a budget of work
+is spent. Not for: the first proof (`certify`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from clearance.kernels.motion.certify import CertificateGoal, IntervalBounds
+from clearance.late_dataclass import dataclass
+
+FINER = 2.0**-10
+"""The share of a gap that is asked for next; the kernel goes on by itself to a thousandth of a gap at a level."""
+
+MOST_PARTS = 2**17
+"""Parts of one interval and pair until its gap is widened: no more is spent on one of them."""
+
+MOST_QUERIES = 2**19
+"""Searches that are spent on one level: a few seconds."""
+
+Prove = Callable[[int, np.ndarray, CertificateGoal], tuple[IntervalBounds, np.ndarray]]
+"""Proves an interval, given the distance (2,) [m] that is asked about at its ends; bounds of it, and counters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """Proves intervals again for some levels.
+
+    Attributes:
+        prove: an interval. gap, finest: [m] what was allowed, and the least that rounding allows.
+        rounding: [m] a distance that is less than a level by no more is at it.
+    """
+
+    prove: Prove
+    gap: float
+    finest: float
+    rounding: float
+
+    def decided(
+        self, bounds: IntervalBounds, levels: Sequence[float]
+    ) -> tuple[IntervalBounds, np.ndarray]:
+        """The bounds, finer in the intervals by which a level [m] is open, and counters.
+
+        Where something is seen below a level, it is decided; one of 0 is that of contact.
+        """
+        counts = np.zeros(4, dtype=np.int64)
+        for level in sorted(set(levels)):
+            held = level - self.rounding
+            if held > 0.0 and ((bounds.lower < held) & (bounds.upper >= held)).any():
+                if not bounds.lower.flags.owndata:
+                    bounds = IntervalBounds(*(np.array(column) for column in bounds))
+                counts += self._decide(bounds, held)
+        return bounds, counts
+
+    def _decide(self, bounds: IntervalBounds, held: float) -> np.ndarray:
+        """Proves again, into `bounds`, what is not proven to be `held` [m] apart; counters."""
+        counts, gap = np.zeros(4, dtype=np.int64), self.gap
+        while True:
+            aim = CertificateGoal(gap, held, MOST_PARTS)
+            is_open = (bounds.lower[:-1] < held) & (bounds.upper[:-1] >= held)
+            for step in np.flatnonzero(is_open).tolist():
+                if counts[1] > MOST_QUERIES:
+                    return counts
+                counts += self._again(bounds, step, aim)
+            if gap <= self.finest or not is_open.any():
+                return counts
+            gap = max(gap * FINER, self.finest)
+
+    def _again(self, bounds: IntervalBounds, step: int, aim: CertificateGoal) -> np.ndarray:
+        own, counts = self.prove(step, np.full(2, bounds.upper[step]), aim)
+        bounds.lower[step] = max(bounds.lower[step], own.lower[0])
+        if own.share[0] >= 0.0 and own.upper[0] < bounds.upper[step]:
+            bounds.upper[step], bounds.share[step] = own.upper[0], own.share[0]
+            bounds.pair[step] = own.pair[0]
+        return counts
