@@ -113,6 +113,7 @@ def check(
     recorded: Path | None,
     recorded_offset: float | None,
     recorded_robot: str | None,
+    recorded_gaps: str | None,
     as_json: bool,
     junit: Path | None,
     receipt: str | None,
@@ -135,7 +136,8 @@ def check(
     change it: `clearance compare` has an exit code of its own.
     """
     _require_proof_or_samples(samples_only, certify or certify_mm is not None)
-    require_recorded(motion, recorded, recorded_offset, recorded_robot)
+    recording = recorded, recorded_offset, recorded_robot, recorded_gaps
+    require_recorded(motion, *recording)
     _require_extras(cross_check, motion)
     outputs = Outputs(out, junit, CiOutputs(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
@@ -144,9 +146,7 @@ def check(
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    case = with_recording(
-        with_tolerances(case, tolerance), recorded, recorded_offset, recorded_robot
-    )
+    case = with_recording(with_tolerances(case, tolerance), *recording)
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli.options import in_order, motion_option
+from clearance.world.notice import GAPS
 
 if TYPE_CHECKING:
     from clearance.world.case import Case
@@ -28,6 +29,12 @@ _OPTIONS = (
         metavar="NAME",
         help="Whose run it is, where several robots have trajectories.",
     ),
+    click.option(
+        "--recorded-gaps",
+        type=click.Choice(GAPS),
+        help="What joints do in holes of RUN: they stay until just before their next message, go straight, or are "
+        "not measured.  [default: holes are suspect]",
+    ),
 )
 
 
@@ -35,7 +42,11 @@ recorded_options = in_order(*_OPTIONS)
 
 
 def require_recorded(
-    motion: str, recorded: Path | None, offset: float | None, robot: str | None
+    motion: str,
+    recorded: Path | None,
+    offset: float | None,
+    robot: str | None,
+    gaps: str | None,
 ) -> None:
     """Nothing, if a recording is given exactly where one is meant.
 
@@ -50,12 +61,14 @@ def require_recorded(
         return
     if recorded is not None:
         raise click.UsageError(f"{str(recorded)!r} says nothing without --motion recorded")
-    for option, given in (("offset", offset), ("robot", robot)):
+    for option, given in (("offset", offset), ("robot", robot), ("gaps", gaps)):
         if given is not None:
             raise click.UsageError(f"--recorded-{option} says nothing without --motion recorded")
 
 
-def with_recording(case: Case, path: Path | None, offset: float | None, robot: str | None) -> Case:
+def with_recording(
+    case: Case, path: Path | None, offset: float | None, robot: str | None, gaps: str | None
+) -> Case:
     """The case as it was driven, where a recording is given.
 
     Raises:
@@ -65,4 +78,4 @@ def with_recording(case: Case, path: Path | None, offset: float | None, robot: s
         return case
     from clearance.load.case.recorded_run import with_recorded
 
-    return with_recorded(case, path, offset or 0.0, robot)
+    return with_recorded(case, path, offset or 0.0, robot, gaps)

@@ -15,6 +15,7 @@ from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.motion.bag_files import files_of, is_bag
 from clearance.load.motion.pose_formats import read_poses, read_samples
 from clearance.load.motion.pose_table_request import PoseRequest, ReadPoses, ReadSamples
+from clearance.load.motion.recording_gaps import as_recorded
 from clearance.load.motion.trajectory_file import read_trajectory
 from clearance.load.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.load.schema.pose import PoseFile, TrajectoryFile
@@ -29,12 +30,19 @@ Table = TypeVar("Table")
 
 
 def trajectory_of(
-    given: TrajectoryFile, field: str, folder: Path, robot: Robot, files: InputFiles
+    given: TrajectoryFile,
+    field: str,
+    folder: Path,
+    robot: Robot,
+    files: InputFiles,
+    *,
+    recorded: bool = False,
 ) -> ReadTrajectory:
     """The trajectory that a case file names for a robot.
 
     Args:
-        field: where it is named. folder: against which the path is looked up.
+        field: where it is named. folder: against which the path is looked up. recorded: True for what a robot did,
+            which a table does not show by itself.
 
     Raises:
         BadInput: with the field and the file.
@@ -44,7 +52,8 @@ def trajectory_of(
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
         request = TrajectoryRequest(opened, n_bytes, bool(kinds), given.choice, kinds)
-        return read_trajectory(request, shown)
+        found = read_trajectory(request, shown)
+        return as_recorded(found, given.gaps) if recorded or given.gaps else found
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):

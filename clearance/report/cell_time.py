@@ -66,10 +66,13 @@ def _hands(summary: dict[str, Any], part: str) -> list[Markup]:
 
 
 def _absences(summary: dict[str, Any], actor: dict[str, Any]) -> list[Markup]:
-    """The bars of an actor while it is not in the cell."""
-    return [
-        _bar(summary, start, end, "absent", "not in the cell") for start, end in actor["absent"]
-    ]
+    """The bars of an actor while it is not in the cell, or not measured."""
+    return [_bar(summary, *span, "absent", _why(summary, *span)) for span in actor["absent"]]
+
+
+def _why(summary: dict[str, Any], start: float, end: float) -> str:
+    left_out = any(start < until and since < end for since, until in summary["not_measured"])
+    return "not measured" if left_out else "not in the cell"
 
 
 N_COLOURS = 4

@@ -30,7 +30,15 @@ from clearance.report.rules import name_shown, rules
 from clearance.report.sensitivity import sensitivity_table
 from clearance.report.tolerance_section import tolerances
 from clearance.report.verdict import ACCEPTED, STALE, verdict_text
-from clearance.report.wording import count, joint_value, limits_text, mm, other_time, seconds
+from clearance.report.wording import (
+    count,
+    joint_value,
+    least_proven,
+    limits_text,
+    mm,
+    other_time,
+    seconds,
+)
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
@@ -151,7 +159,7 @@ def _with_tolerances(summary: dict[str, Any]) -> list[Markup]:
 def _certified_word(certified: dict[str, Any] | None) -> str:
     if certified is None:
         return "no, looked at the samples only"
-    return f"at least {mm(certified['lower_bound'])} mm at every moment"
+    return least_proven(certified)
 
 
 def moment_of(worst: dict[str, Any]) -> str:

@@ -32,6 +32,7 @@ from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.motion import Motion
+from clearance.world.plausible_recordings import not_measured
 
 FORMAT = 3
 """Which keys there are: `NOTES.md`."""
@@ -51,6 +52,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "actors": actors_of(record),
         "carries": carried_of(record),
         "clock": clock_of(record),
+        "not_measured": [[*span] for span in not_measured(record.case)],
         "paddings": paddings_of(record),
         "sides": list(record.sides[:2]),
         "method": record.method,
@@ -199,6 +201,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         "end": float(times[min(step + 1, len(times) - 1)]),
         "allowed_gap": certificate.gap,
         "greatest_gap": _greatest_gap(certificate),
+        "not_measured": [[*span] for span in not_measured(record.case)],
         "tally": dict(certificate.tally),
     }
 

@@ -23,6 +23,7 @@ from clearance.report.wording import (
     limit_mm,
     mm,
     moment_text,
+    not_measured_text,
     of_rule,
     span_text,
 )
@@ -32,6 +33,7 @@ from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
+from clearance.world.plausible_recordings import not_measured
 from clearance.world.rules import DEFAULT
 
 if TYPE_CHECKING:
@@ -67,7 +69,8 @@ class Verdict:
         not_checked: what was not looked at.
         broken: rules of the case that are broken, beside its limits of clearance.
         nearest: the moment of least clearance of all, in one line, where that is not the one that stands worst.
-        clocks: how far the actors' clocks may be apart for it to hold; empty for one clock.
+        clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
+            for one clock and all of the run.
         waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
         stale: what is wrong with waivers, one line each.
         tolerances: what they make of limits that are kept as measured: "kept", "not proven", or "accepted" where
@@ -115,6 +118,11 @@ class Verdict:
         """The verdict in a few words, the status written as `shown` says."""
         told = self.status, self.measured, self.basis, self.disputed_by, self.clocks
         return verdict_text(*told, self.n_waivers, shown, self.tolerances)
+
+
+def _when(case: Case) -> str:
+    told = (clock_text(case.clock.slack), not_measured_text(not_measured(case)))
+    return ", ".join(filter(None, told))
 
 
 def verdict_text(
@@ -187,7 +195,7 @@ def verdict_of(record: Record) -> Verdict:
         not_checked=tuple(not_checked(record.case)),
         broken=tuple(broken),
         nearest=_nearest(record),
-        clocks=clock_text(record.case.clock.slack),
+        clocks=_when(record.case),
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
         stale=stale,

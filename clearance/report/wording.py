@@ -4,9 +4,11 @@ down."""
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from clearance.simulate.moment import Moment
+from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
 
@@ -139,6 +141,14 @@ def clock_text(slack: float) -> str:
     return "clocks not tied" if math.isinf(slack) else f"clocks up to {slack:g} s apart"
 
 
+def not_measured_text(spans: Sequence[tuple[float, float]]) -> str:
+    """Which stretches [s] of a run are left out; empty for none."""
+    if not spans:
+        return ""
+    told = [f"from {start:.6g} to {end:.6g} s" for start, end in spans]
+    return f"not measured {listed(told)}"
+
+
 def span_text(start: float, end: float) -> str:
     """A stretch of time: `0.500-1.220 s`, or `at 1.220 s` where it is no longer than shown."""
     if f"{start:.3f}" == f"{end:.3f}":
@@ -146,12 +156,18 @@ def span_text(start: float, end: float) -> str:
     return f"{start:.3f}-{seconds(end)}"
 
 
+def least_proven(certified: dict) -> str:
+    """The least proven clearance, and of which moments."""
+    when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
+    return f"at least {mm(certified['lower_bound'])} mm {when}"
+
+
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
     way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[
         certified["joints"]
     ]
-    proven = f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps"
+    proven = f"{least_proven(certified)}, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven
     moment = f"from {seconds(certified['start'])} to {seconds(certified['end'])}"

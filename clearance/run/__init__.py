@@ -22,10 +22,11 @@ __all__ = ["Question", "Resources", "Run", "answer", "check"]
 
 
 class CheckOptions(TypedDict, total=False):
-    """The options of `check`, as in `Question`; `recorded` and `recorded_offset` are of motion "recorded" alone.
+    """The options of `check`, as in `Question`; those of a recorded run are of motion "recorded" alone.
 
     Attributes:
         recorded: a bag or a table of what the robot did. recorded_offset: [s] added to its times.
+        recorded_gaps: what joints do in holes of it: "hold", "linear" or "not_measured".
     """
 
     need: str
@@ -35,6 +36,7 @@ class CheckOptions(TypedDict, total=False):
     motion: str
     recorded: str | PathLike[str] | None
     recorded_offset: float
+    recorded_gaps: str | None
 
 
 def check(
@@ -53,7 +55,7 @@ def check(
         tolerance: instead of the case's: a budget, the block of a case file as plain data, or a file with it.
         resources: threads, progress, and where rows are kept; the answer does not depend on them.
         options: need, certify, cross_check, contact, motion as in `Question`, which has further ones for `answer`;
-            with motion "recorded", recorded and recorded_offset.
+            with motion "recorded", recorded, recorded_offset and recorded_gaps.
 
     Raises:
         BadInput: an unknown motion or need, or some that do not go together; tolerances of what is not there.
@@ -67,7 +69,8 @@ def check(
         asked = with_tolerance(asked, tolerance)
     given: dict[str, Any] = {**options}
     path, offset = given.pop("recorded", None), given.pop("recorded_offset", 0.0)
-    asked = _with_recorded(asked, given.get("motion", "kinematic"), path, offset)
+    gaps = given.pop("recorded_gaps", None)
+    asked = _with_recorded(asked, given.get("motion", "kinematic"), path, offset, gaps)
     return answer(Question(asked, **given), resources)
 
 
@@ -93,7 +96,7 @@ def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
 
 
 def _with_recorded(
-    case: Case, motion: str, path: str | PathLike[str] | None, offset: float
+    case: Case, motion: str, path: str | PathLike[str] | None, offset: float, gaps: str | None
 ) -> Case:
     """The case as it was driven, where a recording is given.
 
@@ -109,7 +112,7 @@ def _with_recorded(
         )
     from clearance.load.case.recorded_run import with_recorded
 
-    return with_recorded(case, Path(path), offset)
+    return with_recorded(case, Path(path), offset, gaps=gaps)
 
 
 def _loaded(path: str | PathLike[str]) -> Case:

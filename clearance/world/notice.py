@@ -19,10 +19,15 @@ class Severity(StrEnum):
     WARNING = "warning"
 
 
-KINDS = ("units", "limits", "axis", "inside", "frame", "package")
+KINDS = ("units", "limits", "axis", "inside", "frame", "package", "gaps", "clocks")
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
 limits, meshes turned by their file's axis tag, solids of which inside and outside cannot be decided, scenes in the
-frame of a link that moves or stands elsewhere, and files that stand in for those of a missing package."""
+frame of a link that moves or stands elsewhere, files that stand in for those of a missing package, holes in
+recordings, which are then bridged straight, and tables that never move together."""
+
+HOLD, LINEAR, NOT_MEASURED = GAPS = ("hold", "linear", "not_measured")
+"""What joints do in a hole of a recording, as a case says it: they stay until just before their next message, they
+go straight, or the stretch is left out."""
 
 
 @dataclass(frozen=True)

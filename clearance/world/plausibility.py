@@ -15,6 +15,7 @@ from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
 
@@ -44,6 +45,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
         if placed.trajectory is not None:
             found += notices_on_motion(placed, before, extents)
             found += notices_on_speed(placed, case.limits.joints, before)
+            found += notices_on_holes(placed, before)
         found += notices_on_joints(placed, case.limits.joints, before, extents)
     return worst_first(found)
 

@@ -72,7 +72,7 @@ def recording_of(
     _require_joints(driven, commanded)
     if timing.after == "loop":
         raise BadInput("what was asked begins again and again", valid="after: hold")
-    times = _times_of_both(driven.times, timing.run_times(commanded.times))
+    times = _times_of_both(driven, timing.run_times(commanded.times))
     was = dict(zip(driven.joint_names, positions_along(driven, times).T, strict=True))
     own = positions_along(commanded, (times - timing.start) * timing.rate).T
     wanted = dict(zip(commanded.joint_names, own, strict=True))
@@ -108,17 +108,24 @@ def _require_joints(driven: Trajectory, commanded: Trajectory) -> None:
         )
 
 
-def _times_of_both(driven: np.ndarray, commanded: np.ndarray) -> np.ndarray:
-    """(n,) [s] the samples of both, from when both are known until one ends."""
-    start, end = max(driven[0], commanded[0]), min(driven[-1], commanded[-1])
+def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
+    """(n,) [s] the samples of both, from when both are known until one ends, but for what is not measured."""
+    start, end = max(driven.times[0], commanded[0]), min(driven.times[-1], commanded[-1])
     if not start < end:
-        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven, commanded)]
+        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven.times, commanded)]
         raise BadTime(
             f"it is of {spans[0]}, and what the robot was asked of {spans[1]}",
             valid="--recorded-offset S, which is added to the recording's times",
         )
-    times = np.union1d(driven, commanded)
-    return times[(times >= start) & (times <= end)]
+    times = np.union1d(driven.times, commanded)
+    times = times[(times >= start) & (times <= end)]
+    for hole in driven.not_measured:
+        times = times[(times <= hole.start) | (times >= hole.end)]
+    if not len(times):
+        raise BadTime(
+            f"it has a hole over all of {start:g} to {end:g} s", valid="gaps: hold or linear"
+        )
+    return times
 
 
 def _error(joint: str, off: np.ndarray, times: np.ndarray) -> JointError:

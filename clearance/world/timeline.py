@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadTime, UnknownObstacle, at, nearest_name
+from clearance.errors import BadInput, BadTime, UnknownObstacle, at, nearest_name
 from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
@@ -27,6 +27,9 @@ from clearance.world.mount import Mount
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
+
+LEFT_OUT = "after: absent, or gaps: not_measured"
+"""Why an actor may not be there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +63,20 @@ class _Table:
         knots: those of the whole run; one where it stands.
         once: [s] the first and the last time of its own samples.
         moves: False where it stands, and so says nothing of when the run begins and ends.
+        not_measured: stretches of the run in which it is left out as if it were not in the cell.
     """
 
     knots: Knots
     once: tuple[float, float]
     timing: Timing
     moves: bool = True
+    not_measured: tuple[Window, ...] = ()
 
     def is_absent(self, times: np.ndarray) -> bool:
         """True if it is not in the cell over a stretch in which that does not change."""
         first, last = self.once
+        if any(window.holds(times[0], times[-1]) for window in self.not_measured):
+            return True
         return self.timing.after == "absent" and bool(times[0] < first or times[-1] > last)
 
 
@@ -148,7 +155,7 @@ def _require_carried_present(phase: Phase) -> None:
         if carry is not None:
             start, end = phase.span
             raise BadTime(
-                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s (after: absent)",
+                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s ({LEFT_OUT})",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window in which it is, or after: hold",
             )
@@ -171,8 +178,8 @@ def _require_carriers_present(phase: Phase, end: float) -> None:
         if start == carry.window.start or until == carry.window.end < end:
             deed = "picks up" if start == carry.window.start else "lets go of"
             raise BadTime(
-                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s (after: absent), and {deed} "
-                f"part {carry.part!r} then",
+                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s ({LEFT_OUT}), and {deed} part "
+                f"{carry.part!r} then",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window at whose ends it is, or after: hold",
             )
@@ -184,7 +191,15 @@ def _of_robot(motion: Motion) -> _Table:
     if rates is not None and timing.rate != 1.0:
         rates = rates * timing.rate
     knots = knots_of(timing.run_times(motion.times), motion.positions, rates)
-    return _Table(knots, _ends(knots), timing, moves=asked is not None)
+    left_out = asked.not_measured if asked is not None else ()
+    if left_out and timing.after == "loop":
+        raise BadInput(
+            f"the recording of robot {motion.placed.robot.name!r} has holes and begins again and again",
+            valid="after: hold, or gaps: hold or linear",
+        )
+    spans = (timing.run_times(np.array(window.ends)) for window in left_out)
+    windows = tuple(Window(*map(float, span)) for span in spans)
+    return _Table(knots, _ends(knots), timing, asked is not None, windows)
 
 
 def _of_obstacle(obstacle: Obstacle) -> _Table:
@@ -218,6 +233,7 @@ def _cuts(case: Case, tables: Sequence[_Table], start: float, end: float) -> np.
     """The times [s] inside the run at which a phase ends and the next begins."""
     found = [jumps for table in tables if len(jumps := table.knots.jumps)]
     found += [np.array(table.once) for table in tables if table.timing.after == "absent"]
+    found += [np.array(window.ends) for table in tables for window in table.not_measured]
     for where, window in _windows(case):
         with at(where):
             _require_within(window, start, end)

@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, DuplicateName, NotFinite
 from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST
-from clearance.world.timing import require_increasing
+from clearance.world.notice import NOT_MEASURED, listed
+from clearance.world.timing import Timing, Window, require_increasing
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A stretch of a recording without a message, many times longer than usual.
+
+    Attributes:
+        joints: those that nobody tells of. start, end: [s] of the trajectory's own time.
+        usual: [s] between two messages. means: one of `notice.GAPS`; None where nobody says it.
+    """
+
+    joints: tuple[str, ...]
+    start: float
+    end: float
+    usual: float
+    means: str | None = None
+
+    @property
+    def text(self) -> str:
+        """When it is, how long, and of which joints."""
+        return (
+            f"no message of {listed([*self.joints], 4)} from {self.start:.6g} to {self.end:.6g} s "
+            f"({self.end - self.start:.3g} s, usually {self.usual:.2g} s)"
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +48,7 @@ class Trajectory:
         joint_names: (k,) of the robot's moving joints, in column order.
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
+        holes: stretches of a recording in which it was not known where joints were.
 
     Raises:
         BadShape, NotFinite: not one finite number for each time and joint. BadTime: times that do not increase.
@@ -31,6 +59,7 @@ class Trajectory:
     joint_names: tuple[str, ...]
     positions: np.ndarray
     velocities: np.ndarray | None = None
+    holes: tuple[Hole, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
@@ -44,6 +73,23 @@ class Trajectory:
     def n_steps(self) -> int:
         """Number of samples."""
         return len(self.times)
+
+    @property
+    def not_measured(self) -> tuple[Window, ...]:
+        """The stretches of its time [s] that are left out."""
+        return tuple(Window(one.start, one.end) for one in self.holes if one.means == NOT_MEASURED)
+
+    def shifted(self, seconds: float) -> Trajectory:
+        """The same, some seconds later.
+
+        Raises:
+            BadTime: doubles cannot hold its times apart.
+        """
+        times = Timing(start=seconds).run_times(self.times)
+        holes = (
+            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.holes
+        )
+        return replace(self, times=times, holes=tuple(holes))
 
     def _refuse_bad_samples(self) -> None:
         wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))

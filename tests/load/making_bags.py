@@ -115,12 +115,13 @@ def _start(types, header):
 
 
 def state(seconds, positions, names=JOINTS, velocities=()):
-    """A JointState that is stamped some seconds after others."""
+    """A JointState that is stamped some seconds after others; not at all where they are None."""
 
     def make(types, header):
         none, moving = np.empty(0), np.array(velocities, dtype=float)
         kind = types["sensor_msgs/msg/JointState"]
-        return kind(header(100 + seconds), [*names], np.array(positions), moving, none)
+        at = 0 if seconds is None else 100 + seconds
+        return kind(header(at), [*names], np.array(positions), moving, none)
 
     return "sensor_msgs/msg/JointState", make
 
@@ -132,7 +133,8 @@ def write_bag(folder: Path, container: str, topics) -> Path:
     types = store.types
 
     def header(seconds):
-        stamp = types["builtin_interfaces/msg/Time"](seconds, 0)
+        nanoseconds = round(seconds * 1e9)
+        stamp = types["builtin_interfaces/msg/Time"](*divmod(nanoseconds, 10**9))
         made = types["std_msgs/msg/Header"]
         return made(0, stamp, "") if container == "bag" else made(stamp, "")
 

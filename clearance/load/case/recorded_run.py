@@ -17,9 +17,9 @@ from clearance.load.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case, PlacedRobot, index_of_robot
 from clearance.world.joint_positions import turns
-from clearance.world.notice import Notice, Severity
+from clearance.world.notice import GAPS, Notice, Severity
 from clearance.world.recording import Recording, motion_left_out, recording_of
-from clearance.world.timing import AS_GIVEN, Timing
+from clearance.world.timing import AS_GIVEN
 from clearance.world.trajectory import Trajectory
 
 MOST = {"rad": MOST_ANGLE, "m": MOST_OFFSET}
@@ -27,13 +27,18 @@ MOST = {"rad": MOST_ANGLE, "m": MOST_OFFSET}
 
 
 def with_recorded(
-    case: Case, path: str | Path, offset: float = 0.0, robot: str | None = None
+    case: Case,
+    path: str | Path,
+    offset: float = 0.0,
+    robot: str | None = None,
+    gaps: str | None = None,
 ) -> Case:
     """The case in which a robot does what was recorded, its errors being the tracking of its joints.
 
     Args:
         path: a bag or a table. offset: [s] added to its times to have the run's; none is estimated.
         robot: whose run it is; needed where several move by trajectories.
+        gaps: what joints do in holes of it: one of `world.notice.GAPS`.
 
     Raises:
         BadInput: with the file; joints that are not recorded, no time in common, errors of a size that only
@@ -45,10 +50,12 @@ def with_recorded(
         raise BadTime(f"an offset of {offset} s", valid="a finite number of seconds")
     files = InputFiles(path.parent)
     shown = files.shown(path)
-    given = TrajectoryFile(file=path.name)
-    read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files)
+    if gaps is not None and gaps not in GAPS:
+        raise BadInput(f"gaps is {gaps!r:.60}", valid=f"one of {', '.join(GAPS)}")
+    given = TrajectoryFile(file=path.name).model_copy(update={"gaps": gaps})
+    read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files, recorded=True)
     with at(f"recorded: {shown}"):
-        driven = replace(read, times=Timing(start=offset).run_times(read.times))
+        driven = read.shifted(offset)
         resting = placed.fixed_positions
         found = recording_of(shown, offset, driven, placed.given_trajectory, placed.timing, resting)
         notices = _of_motion_left_out(placed, found)

@@ -19,6 +19,7 @@ from clearance.load.motion.trajectory_request import Choice
 from clearance.load.scene.request import SceneRequest
 from clearance.load.text.notes import counted
 from clearance.load.timed_files import load_samples, load_trajectory
+from clearance.world.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -91,10 +92,24 @@ def _refuse_idle(asked: Conversion, kind: FileKind) -> None:
 def _trajectory(asked: Conversion) -> ConvertedFiles:
     trajectory, notes = load_trajectory(asked.source, asked.choice, asked.files)
     with at(asked.source.name):
+        _refuse_holes(trajectory)
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
     told = f"{counted(trajectory.n_steps, 'sample')} of {n_joints}"
     return ConvertedFiles({asked.target.name: content}, told, (*notes, *_of_target(asked, changes)))
+
+
+def _refuse_holes(trajectory: Trajectory) -> None:
+    """Nothing, if a table can say all that is known.
+
+    Raises:
+        BadInput: a recording with a hole, which samples alone would bridge.
+    """
+    for hole in trajectory.holes:
+        raise BadInput(
+            f"{hole.text}; a table would bridge it by a straight line",
+            valid="a recording without holes, or the file itself in a case, with gaps:",
+        )
 
 
 def _poses(asked: Conversion) -> ConvertedFiles:

@@ -12,9 +12,10 @@ import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadTime
 from clearance.load.message.times import NANO
+from clearance.load.motion.recording_gaps import Track, holes_of
 from clearance.load.motion.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
-from clearance.world.notice import listed
+from clearance.world.notice import HOLD, listed
 from clearance.world.trajectory import Trajectory
 
 MOST_LEFT_OUT = 0.1
@@ -22,12 +23,17 @@ MOST_LEFT_OUT = 0.1
 
 
 class JointState(NamedTuple):
-    """A message: when, which joints, where; and whether velocities came along."""
+    """A message: when, which joints, where; whether velocities came along, and whether it is stamped.
+
+    Attributes:
+        nanoseconds: of its stamp, or when it was received.
+    """
 
     nanoseconds: int
     names: tuple[str, ...]
     positions: list[float]
     has_velocities: bool = False
+    is_stamped: bool = True
 
 
 class _Joint(NamedTuple):
@@ -36,8 +42,14 @@ class _Joint(NamedTuple):
     times: list[int]
     positions: list[float]
 
+    @property
+    def track(self) -> Track:
+        return Track(np.array(self.times), np.array(self.positions))
 
-def trajectory_of_states(states: Sequence[JointState], turns: Mapping[str, bool]) -> ReadTrajectory:
+
+def trajectory_of_states(
+    states: Sequence[JointState], turns: Mapping[str, bool], gaps: str | None = None
+) -> ReadTrajectory:
     """What the robot did, in seconds from when all of its joints were known.
 
     Where several drivers tell of different joints, there is a sample at each time of each, and the other joints
@@ -45,6 +57,8 @@ def trajectory_of_states(states: Sequence[JointState], turns: Mapping[str, bool]
 
     Args:
         turns: names the joints that the robot can move; empty where it is not known.
+        gaps: what joints do where they are not told of for long, one of `GAPS`; with "hold", after their last
+            message too.
 
     Raises:
         BadInput: no joint that can be moved, or joints that are not known at one time. BadShape, BadTime: with the
@@ -57,11 +71,17 @@ def trajectory_of_states(states: Sequence[JointState], turns: Mapping[str, bool]
             f"none of the joints {listed([*joints], 8)} can be moved",
             valid=f"the robot moves {listed([*turns], 8)}",
         )
-    start, end = _known_span({name: joints[name] for name in kept})
-    every = np.unique(np.concatenate([np.array(joints[name].times) for name in kept]))
-    times = every[(every >= start) & (every <= end)] - start
-    positions = [_positions_at(joints[name], times, start) for name in kept]
-    trajectory = Trajectory(times / NANO, tuple(kept), np.column_stack(positions))
+    start, end = _known_span({name: joints[name] for name in kept}, ends_hold=gaps == HOLD)
+    tracks = {name: joints[name].track for name in kept}
+    holes = holes_of(tracks, gaps, (start, end), NANO)
+    if gaps == HOLD:
+        tracks = {name: track.held() for name, track in tracks.items()}
+    every = np.unique(np.concatenate([track.times for track in tracks.values()]))
+    times = every[(every >= start) & (every <= end)]
+    positions = [np.interp(times - start, t.times - start, t.positions) for t in tracks.values()]
+    trajectory = Trajectory(
+        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes
+    )
     return ReadTrajectory(trajectory, tuple(_notes(states, joints, kept, (start, end))))
 
 
@@ -88,14 +108,17 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
     return joints
 
 
-def _known_span(joints: Mapping[str, _Joint]) -> tuple[int, int]:
+def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, int]:
     """From when until when [ns] all joints are known.
+
+    Args:
+        ends_hold: True where a joint is known after its last message.
 
     Raises:
         BadInput: that is never, or too little of the recording.
     """
     last_to_begin = max(joints, key=lambda name: joints[name].times[0])
-    first_to_end = min(joints, key=lambda name: joints[name].times[-1])
+    first_to_end = (max if ends_hold else min)(joints, key=lambda name: joints[name].times[-1])
     start, end = joints[last_to_begin].times[0], joints[first_to_end].times[-1]
     times = [time for joint in joints.values() for time in (joint.times[0], joint.times[-1])]
     whole = max(times) - min(times)
@@ -108,11 +131,6 @@ def _known_span(joints: Mapping[str, _Joint]) -> tuple[int, int]:
     return start, end
 
 
-def _positions_at(joint: _Joint, times: np.ndarray, start: int) -> np.ndarray:
-    """(n,) where a joint is at times [ns] from a start: straight between its own samples, which stay."""
-    return np.interp(times, np.array(joint.times) - start, np.array(joint.positions))
-
-
 def _notes(
     states: Sequence[JointState],
     joints: Mapping[str, _Joint],
@@ -120,6 +138,11 @@ def _notes(
     span: tuple[int, int],
 ) -> list[str]:
     notes = ["recorded joint states: joints move linearly between them, from the first at 0 s"]
+    n_received = sum(not state.is_stamped for state in states)
+    if n_received:
+        notes.append(
+            f"{n_received} of {len(states)} messages are not stamped: their time is that of their receipt"
+        )
     if any(state.has_velocities for state in states):
         notes.append("recorded velocities are not followed: they are as measured, noise and all")
     if len({tuple(joints[name].times) for name in kept}) > 1:

@@ -63,8 +63,8 @@ def read_bag(path: Path, choice: Choice, turns: Mapping[str, bool]) -> ReadTraje
     with _as_ours(), _opened(path) as reader:
         topic, kind = _topic(reader, choice.topic)
         if kind == _STATES:
-            choice.refuse_others({"topic"}, "recorded joint states")
-            return trajectory_of_states(_states(reader, topic), turns)
+            choice.refuse_others({"topic", "gaps"}, "recorded joint states")
+            return trajectory_of_states(_states(reader, topic), turns, choice.gaps)
         choice.refuse_others({"topic", "which"}, "messages in a bag")
         plain = (_plain(one) for _, one in _messages(reader, topic))
         planned = messages_in([*_goals_once(plain)], sys.maxsize)
@@ -155,7 +155,8 @@ def _states(reader: AnyReader, topic: str) -> list[JointState]:
         stamp = message.header.stamp
         stamped = stamp.sec * NANO + stamp.nanosec
         positions, names = message.position.tolist(), tuple(message.name)
-        states.append(JointState(stamped or recorded, names, positions, len(message.velocity) > 0))
+        moving = len(message.velocity) > 0
+        states.append(JointState(stamped or recorded, names, positions, moving, stamped != 0))
     return states
 
 

@@ -41,7 +41,7 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
         file. BadDimension: a velocity that no joint can have. BadInput: a unit that a joint cannot have.
     """
     choice = request.choice
-    choice.refuse_others({"units", "joints", "period"}, "a CSV table")
+    choice.refuse_others({"units", "joints", "period", "gaps"}, "a CSV table")
     table = as_written(request.opened, _names_given(choice))
     header = header_of(table, "joint names")
     columns = columns_in(header, request.turns, choice.units)

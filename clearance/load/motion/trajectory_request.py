@@ -22,6 +22,7 @@ class Choice:
         joints: the columns beside time of a table without a header.
         period: [s] from row to row of a table without times.
         topic: of a bag.
+        gaps: what joints do in holes of a recording: one of `world.notice.GAPS`.
     """
 
     which: int | None = None
@@ -29,6 +30,7 @@ class Choice:
     joints: tuple[str, ...] | None = None
     period: float | None = None
     topic: str | None = None
+    gaps: str | None = None
 
     def refuse_others(self, used: Collection[str], what: str) -> None:
         """Nothing, if all that is said is of use.

@@ -74,7 +74,8 @@ class TimedFile(StrictModel):
     @property
     def timing(self) -> Timing:
         """When the table is followed."""
-        return Timing(self.start, self.rate, self.after)
+        said = self.model_fields_set & {"start", "after"}
+        return Timing(self.start, self.rate, self.after, frozenset(said))
 
 
 class Units(StrictModel):
@@ -106,23 +107,25 @@ class PoseFile(TimedFile):
 class TrajectoryFile(TimedFile):
     """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
     `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
-    `topic` is that of a bag.
+    `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go straight (linear), or are
+    not measured.
     """
 
-    FILLED = frozenset({"which", "units", "joints", "period", "topic"})
+    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps"})
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None
     joints: Annotated[list[Name], Field(min_length=1)] | None = None
     period: Annotated[float | None, Field(gt=0)] = None
     topic: Name | None = None
+    gaps: Literal["hold", "linear", "not_measured"] | None = None
 
     @property
     def choice(self) -> Choice:
         """What is said beside path and times."""
         units = None if self.units is None else (self.units.angle, self.units.length)
         joints = None if self.joints is None else tuple(self.joints)
-        return Choice(self.which, units, joints, self.period, self.topic)
+        return Choice(self.which, units, joints, self.period, self.topic, self.gaps)
 
 
 class WindowedEntry(StrictModel):

@@ -1,0 +1,59 @@
+"""Holes in recordings: suspect until the case says what joints do there, and told where they are not measured.
+
+Not for: finding them (`load.motion.recording_gaps`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.notice import GAPS, HOLD, LINEAR, NOT_MEASURED, Notice, Severity, listed
+from clearance.world.timing import Timing
+from clearance.world.trajectory import Hole
+
+
+_MEANING = {
+    None: (
+        "a hole in the recording{whose}, bridged by a straight line: {holes}; "
+        f"gaps: {' | '.join(GAPS)} beside the file says what is meant"
+    ),
+    HOLD: "assumed{whose}: joints stay until a usual interval before their next message (gaps: hold); {holes}",
+    LINEAR: "assumed{whose}: joints go straight from message to message (gaps: linear); {holes}",
+    NOT_MEASURED: "not measured{whose}: {holes}",
+}
+
+
+def notices_on_holes(placed: PlacedRobot, before: str = "") -> list[Notice]:
+    """What a verdict says of the holes in a robot's recording: one notice for all of a meaning, the longest first.
+
+    Args:
+        before: what stands before the names of joints.
+    """
+    about, found = placed.robot.name, []
+    for means, text in _MEANING.items():
+        holes = [hole for hole in placed.given_trajectory.holes if hole.means == means]
+        if holes:
+            holes.sort(key=lambda hole: hole.start - hole.end)
+            told = listed([hole.text for hole in holes], 1)
+            text = text.format(whose=f" of robot {about!r}" if before else "", holes=told)
+            severity = Severity.SUSPECT if means is None else Severity.WARNING
+            found.append(Notice(severity, "gaps", text, about))
+    return found
+
+
+def not_measured(case: Case) -> list[tuple[float, float]]:
+    """The stretches of a run [s] in which some robot is left out, in order of time, each once."""
+    spans = {
+        _span(hole, placed.timing)
+        for placed in case.robots
+        if placed.trajectory is not None
+        for hole in placed.trajectory.holes
+        if hole.means == NOT_MEASURED
+    }
+    return sorted(spans)
+
+
+def _span(hole: Hole, timing: Timing) -> tuple[float, float]:
+    start, end = timing.run_times(np.array([hole.start, hole.end])).tolist()
+    return start, end
