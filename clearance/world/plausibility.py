@@ -14,6 +14,7 @@ from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.plausible_clocks import notices_on_clocks
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_sizes import notices_on_sizes
@@ -36,6 +37,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     found += _notices_on_padding(case)
     found += notices_on_sizes(case)
     found += notices_on_tables(case)
+    found += notices_on_clocks(case)
     moves = [placed.trajectory is not None for placed in case.robots]
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import field
 
 import numpy as np
 
@@ -22,6 +23,7 @@ class Timing:
         start: [s] the run's time at the table's time 0.
         rate: how many seconds of the table pass in one of the run; 0.5 is half as fast.
         after: one of `AFTER`. Before its first sample an actor holds, unless it is absent.
+        said: those of "start" and "after" that are given though they are as by default.
 
     Raises:
         BadTime: a start that is not finite, or a rate that is not above 0. BadInput: an unknown `after`.
@@ -30,6 +32,7 @@ class Timing:
     start: float = 0.0
     rate: float = 1.0
     after: str = "hold"
+    said: frozenset[str] = field(default=frozenset(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.start):
@@ -40,6 +43,16 @@ class Timing:
             )
         if self.after not in AFTER:
             raise BadInput(f"after is {self.after!r:.60}", valid=f"one of {', '.join(AFTER)}")
+
+    @property
+    def says_start(self) -> bool:
+        """True if somebody says when it begins."""
+        return self.start != 0.0 or "start" in self.said
+
+    @property
+    def says_after(self) -> bool:
+        """True if somebody says what comes after its last sample."""
+        return self.after != "hold" or "after" in self.said
 
     def run_times(self, times: np.ndarray) -> np.ndarray:
         """(n,) [s] the run's times of a table's times; the same array where nothing changes.

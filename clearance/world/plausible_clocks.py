@@ -1,0 +1,63 @@
+"""Tables of one case that have no time in common: they may be of two clocks, and then never meet in a run.
+
+Not for: clocks that are said not to be tied (`clocks`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.world.case import Case
+from clearance.world.notice import Notice, Severity
+from clearance.world.timing import Timing
+
+
+class _Table(NamedTuple):
+    """Whose it is, and from when to when it goes [s] in the run; without end where it begins again."""
+
+    start: float
+    end: float
+    name: str
+    timing: Timing
+
+    @property
+    def text(self) -> str:
+        until = "on" if self.end == math.inf else f"to {self.end:.12g} s"
+        return f"{self.name} moves from {self.start:.12g} {until}"
+
+
+def notices_on_clocks(case: Case) -> list[Notice]:
+    """The tables that end before others begin, where neither `after` nor `start` of them says so."""
+    if case.clock.slack == math.inf:
+        return []
+    tables, found = sorted(_tables(case)), []
+    for i, later in enumerate(tables[1:], 1):
+        earlier = max(tables[:i], key=lambda table: table.end)
+        meant = earlier.timing.says_after or later.timing.says_start
+        if earlier.end < later.start and not meant:
+            text = (
+                f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; are their times of "
+                "one clock? `start:` of the later table, or `after: hold` of the earlier, says that this is meant"
+            )
+            found.append(Notice(Severity.SUSPECT, "clocks", text))
+    return found
+
+
+def _tables(case: Case) -> Iterator[_Table]:
+    for placed in case.robots:
+        if placed.trajectory is not None and placed.trajectory.n_steps > 1:
+            name = f"robot {placed.robot.name!r}"
+            yield _table(name, placed.trajectory.times, placed.timing)
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None and len(obstacle.moves) > 1:
+            name = f"obstacle {obstacle.name!r}"
+            yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+
+
+def _table(name: str, times: np.ndarray, timing: Timing) -> _Table:
+    start, end = timing.run_times(times)[[0, -1]].tolist()
+    return _Table(start, math.inf if timing.after == "loop" else end, name, timing)

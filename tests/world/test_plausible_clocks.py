@@ -1,0 +1,79 @@
+"""Tables that never move together are suspect, unless a case says when one begins or what the other does after."""
+
+from dataclasses import replace
+
+import pytest
+
+from clearance.world.case import Clock
+from clearance.world.plausibility import notices_of
+from tests.load.making_cell import DOOR, load_cell
+
+EPOCH = 1750851666.25
+PATH = "time,shoulder\n{0},0\n{1},0.5\n"
+TOLD = (
+    "CHECK CLOCKS: obstacle 'door' moves from 0 to 1 s, robot 'left' moves from 1750851666.25 to 1750851667.25 s: "
+    "they never move together; are their times of one clock? `start:` of the later table, or `after: hold` of the "
+    "earlier, says that this is meant"
+)
+
+
+def cell(folder, start, *changes, **files):
+    """The door moves from 0 to 1 s, and the left arm for a second from `start` on."""
+    windows = ("from: 0.25, until: 0.75", f"from: {start + 0.25}, until: {start + 0.75}", "from: 0.5, until: 1",
+               f"from: {start}", "until: 0.5", f"until: {start + 0.5}")  # fmt: skip
+    path = PATH.format(repr(start), repr(start + 1.0))
+    return load_cell(folder, *windows, *changes, trajectory=path, **files)
+
+
+def told(case):
+    return [notice.text for notice in notices_of(case) if notice.kind == "clocks"]
+
+
+def test_an_arm_by_the_clock_on_the_wall_and_a_door_from_0_are_suspect(tmp_path):
+    assert told(cell(tmp_path, EPOCH)) == [TOLD]
+
+
+@pytest.mark.parametrize("start", [0.0, 0.5, 1.0])
+def test_tables_with_a_moment_in_common_are_not(tmp_path, start):
+    assert not told(cell(tmp_path, start))
+
+
+@pytest.mark.parametrize(
+    ("door", "arm"),
+    [("{file: door.csv, after: hold}", None), ("{file: door.csv, after: absent}", None),
+     ("{file: door.csv, after: loop}", None), (None, "{file: path.csv, start: 0}"),
+     ("{file: door.csv, start: 2.5}", None)],
+)  # fmt: skip
+def test_what_the_case_says_is_meant(tmp_path, door, arm):
+    changes = ["moves: door.csv", f"moves: {door}"] if door else []
+    changes += ["trajectory: path.csv", f"trajectory: {arm}"] if arm else []
+    assert not told(cell(tmp_path, 3.0, *changes))
+
+
+def test_when_the_earlier_begins_does_not_say_why_the_later_is_later(tmp_path):
+    assert told(cell(tmp_path, EPOCH, "moves: door.csv", "moves: {file: door.csv, start: 0}"))
+
+
+def test_a_table_between_two_ties_them(tmp_path):
+    """The right arm moves from 0.5 to 3.5 s, so all three are of one clock."""
+    right = "joints: {shoulder: 0.2}", "trajectory: right.csv"
+    between = PATH.format(0.5, 3.5)
+    found = cell(tmp_path, 3.0, *right, right__csv=between)
+    assert not told(found)
+
+
+def test_clocks_that_are_not_tied_may_be_any(tmp_path):
+    case = cell(tmp_path, EPOCH)
+    assert not told(replace(case, clock=Clock(float("inf"))))
+    assert told(replace(case, clock=Clock(0.5)))
+
+
+def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
+    case = cell(tmp_path, EPOCH)
+    door = next(one for one in case.obstacles if one.moves is not None)
+    moves = replace(
+        door.moves,
+        **{key: getattr(door.moves, key)[:1] for key in ("times", "positions", "quaternions")},
+    )
+    obstacles = [replace(one, moves=moves) if one is door else one for one in case.obstacles]
+    assert not told(replace(case, obstacles=tuple(obstacles)))
