@@ -17,7 +17,7 @@ BY_DEFAULT = "off by default"
 
 @dataclass(frozen=True)
 class CollisionMatrix:
-    """The rows of an SRDF that speak of pairs of links.
+    """Which pairs of links an SRDF, or the robot's own file, excuses.
 
     The order of precedence is MoveIt's: a link that is off by default is excused with every other link; pairs
     that are enabled are not; pairs that are disabled are, whatever was said before.

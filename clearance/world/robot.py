@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.world.body import Body
+from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.notice import Notice
 
 
@@ -68,7 +69,7 @@ class Robot:
         bodies: the links that have a shape (in the link frame), in the order of `link_names`.
         notes: what loading had to mend or leave out, one line each, for the report.
         notices: suspect input and warnings that only loading can find.
-        excluded: pairs of links that the robot's own file takes out of contact.
+        own_matrix: which pairs of links the robot's own file excuses, and why; None where it says nothing of them.
         states: positions of joints [rad] or [m] that its own file names, by the state's name and the joint's.
     """
 
@@ -78,7 +79,7 @@ class Robot:
     bodies: tuple[Body, ...]
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
-    excluded: tuple[tuple[str, str], ...] = ()
+    own_matrix: CollisionMatrix | None = None
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @cached_property

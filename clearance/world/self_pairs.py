@@ -16,9 +16,6 @@ from clearance.world.robot import JointKind, Robot
 RIGID = "joined by fixed joints"
 """Why a pair that nothing moves is left out."""
 
-EXCLUDED = "excluded by the robot's own file"
-"""Why a pair is left out of which no SRDF speaks."""
-
 Reasons = Callable[[str, str], str | None]
 """Why two links need not be measured, or None."""
 
@@ -38,11 +35,12 @@ def self_pairs(
     """All pairs of links with geometry in the robot's order.
 
     Args:
-        matrix: of an SRDF; without one, neighbours are excused as adjacent, and what the robot's file excludes.
+        matrix: of an SRDF; without one the robot's own counts; without that, `neighbours` are excused as adjacent.
         trust_never: excuse its pairs of reason Never too, which were not seen to meet in random poses.
     """
     rigid = rigid_bodies(robot)
-    reason = _own_reasons(robot, rigid) if matrix is None else _reasons_in(matrix, trust_never)
+    given = robot.own_matrix if matrix is None else matrix
+    reason = _of_neighbours(robot) if given is None else _reasons_in(given, trust_never)
     return [
         SelfPair(a, b, RIGID if rigid[a] == rigid[b] else reason(a, b))
         for a, b in itertools.combinations((body.name for body in robot.bodies), 2)
@@ -58,39 +56,32 @@ def rigid_bodies(robot: Robot) -> dict[str, int]:
     return bodies
 
 
-def adjacent_bodies(robot: Robot) -> frozenset[frozenset[int]]:
-    """Pairs of rigid bodies with geometry between which there are joints and bodies without geometry only."""
-    rigid = rigid_bodies(robot)
-    solid = {rigid[body.name] for body in robot.bodies}
-    above = {
-        rigid[joint.child]: rigid[joint.parent]
-        for joint in robot.joints
-        if joint.kind is not JointKind.FIXED
-    }
-    upward: dict[int, set[int]] = {}  # by a body without geometry, or the root: what meets there
+def neighbours(robot: Robot) -> frozenset[frozenset[str]]:
+    """Pairs of links with a shape that one movable joint joins, the one below the other.
+
+    Between them there may be fixed joints and links without a shape. Two links on one, and what fixed joints hold
+    beside a joint, are no neighbours: nothing keeps them apart.
+    """
+    solid = {body.name for body in robot.bodies}
+    above = {joint.child: joint for joint in robot.joints}
     found = set()
-    for body in sorted(solid):
-        parent = above.get(body)
-        while parent is not None and parent not in solid:
-            upward.setdefault(parent, set()).add(body)
-            parent = above.get(parent)
-        if parent is not None:
-            found.add(frozenset((body, parent)))
-    for met in upward.values():
-        found |= {frozenset(pair) for pair in itertools.combinations(sorted(met), 2)}
+    for link in solid:
+        moving = set()  # joints of several degrees of freedom count once
+        joint = above.get(link)
+        while joint is not None:
+            if joint.kind is not JointKind.FIXED:
+                moving.add(joint.part_of or joint.name)
+            if joint.parent in solid or len(moving) > 1:
+                break
+            joint = above.get(joint.parent)
+        if joint is not None and len(moving) == 1:
+            found.add(frozenset((link, joint.parent)))
     return frozenset(found)
 
 
-def _own_reasons(robot: Robot, rigid: dict[str, int]) -> Reasons:
-    adjacent = adjacent_bodies(robot)
-    excluded = frozenset(map(frozenset, robot.excluded))
-
-    def reason(a: str, b: str) -> str | None:
-        if frozenset((rigid[a], rigid[b])) in adjacent:
-            return ADJACENT
-        return EXCLUDED if frozenset((a, b)) in excluded else None
-
-    return reason
+def _of_neighbours(robot: Robot) -> Reasons:
+    adjacent = neighbours(robot)
+    return lambda a, b: ADJACENT if frozenset((a, b)) in adjacent else None
 
 
 def _reasons_in(matrix: CollisionMatrix, trust_never: bool) -> Reasons:

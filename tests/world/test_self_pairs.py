@@ -9,7 +9,7 @@ from clearance.geometry.shapes import box
 from clearance.world.body import Body
 from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
 from clearance.world.robot import Joint, JointKind, Robot
-from clearance.world.self_pairs import EXCLUDED, RIGID, self_pairs
+from clearance.world.self_pairs import RIGID, self_pairs
 
 SHAPE = box((0.1, 0.1, 0.1))
 
@@ -42,20 +42,38 @@ def test_neighbours_are_adjacent():
     }  # fmt: skip
 
 
-def test_neighbours_through_links_without_geometry_are_adjacent():
-    chain = tree("abcd", "acd", ab="revolute", bc="revolute", cd="revolute")
-    assert excuses(chain) == {"ac": ADJACENT, "ad": None, "cd": ADJACENT}
-    fork = tree("abcd", "acd", ab="revolute", bc="revolute", bd="revolute")
-    assert excuses(fork) == {"ac": ADJACENT, "ad": ADJACENT, "cd": ADJACENT}
-    bare_root = tree("abc", "bc", ab="revolute", ac="revolute")
-    assert excuses(bare_root) == {"bc": ADJACENT}
+def test_neighbours_through_links_without_geometry_have_one_joint_that_moves_between_them():
+    bolted = tree("abcd", "ad", ab="fixed", bc="revolute", cd="fixed")
+    assert excuses(bolted) == {"ad": ADJACENT}
+    two_joints = tree("abcd", "acd", ab="revolute", bc="revolute", cd="revolute")
+    assert excuses(two_joints) == {"ac": None, "ad": None, "cd": ADJACENT}
 
 
-def test_links_joined_by_fixed_joints_are_one_body():
+def test_links_on_two_joints_of_one_link_are_measured_whether_that_has_a_shape_or_not():
+    for solid in ("acd", "abcd"):
+        fork = excuses(tree("abcd", solid, ab="revolute", bc="revolute", bd="prismatic"))
+        assert fork["cd"] is None and fork["ac"] is None
+    assert excuses(tree("abc", "bc", ab="revolute", ac="revolute")) == {"bc": None}
+
+
+def test_links_that_stand_about_a_bare_world_are_measured():
+    walled = tree("wabc", "abc", wa="fixed", wb="fixed", bc="prismatic")
+    assert excuses(walled) == {"ab": RIGID, "ac": None, "bc": ADJACENT}
+    assert excuses(tree("wab", "ab", wa="fixed", wb="prismatic")) == {"ab": None}
+
+
+def test_of_links_joined_by_fixed_joints_only_those_that_the_moving_joint_joins_are_adjacent():
     robot = tree("abcd", "abcd", ab="fixed", bc="revolute", cd="fixed")
     assert excuses(robot) == {
-        "ab": RIGID, "ac": ADJACENT, "ad": ADJACENT, "bc": ADJACENT, "bd": ADJACENT, "cd": RIGID,
+        "ab": RIGID, "ac": None, "ad": None, "bc": ADJACENT, "bd": None, "cd": RIGID,
     }  # fmt: skip
+
+
+def test_a_joint_of_several_degrees_of_freedom_is_one_joint():
+    chain = tree("abcd", "ad", ab="prismatic", bc="prismatic", cd="continuous")
+    assert excuses(chain) == {"ad": None}
+    joints = tuple(replace(joint, part_of=("planar", "base")) for joint in chain.joints)
+    assert excuses(replace(chain, joints=joints)) == {"ad": ADJACENT}
 
 
 def test_with_a_file_only_what_it_says_is_excused_and_never_is_not():
@@ -65,10 +83,11 @@ def test_with_a_file_only_what_it_says_is_excused_and_never_is_not():
     assert excuses(robot, matrix, trust_never=True) == {"ab": None, "ac": "Never", "bc": "User"}
 
 
-def test_what_the_robots_own_file_excludes_counts_where_no_srdf_speaks():
+def test_what_the_robots_own_file_says_counts_where_no_srdf_speaks_and_then_nothing_else():
     plain = tree("abcd", "abcd", ab="revolute", bc="revolute", cd="fixed")
-    robot = replace(plain, excluded=(("d", "a"), ("a", "b"), ("c", "d")))
+    own = CollisionMatrix(disabled=(("d", "a", "its author"), ("c", "d", "its author")))
+    robot = replace(plain, own_matrix=own)
     assert excuses(robot) == {
-        "ab": ADJACENT, "ac": None, "ad": EXCLUDED, "bc": ADJACENT, "bd": ADJACENT, "cd": RIGID,
+        "ab": None, "ac": None, "ad": "its author", "bc": None, "bd": None, "cd": RIGID,
     }  # fmt: skip
     assert excuses(robot, CollisionMatrix())["ad"] is None

@@ -135,10 +135,10 @@ def test_equalities_of_joints_are_followed_or_told(tmp_path, row, mimic, says):
 def test_pairs_that_are_excluded_are_not_measured_and_told(tmp_path):
     bodies = f'{FOLLOWS}<body name="c" pos="3 0 0"><joint name="m"/>{BALL}</body>'
     excluded = mjcf(bodies, '<contact><exclude body1="c" body2="b"/></contact>')
-    said = "pairs that the model excludes from contact are not measured by self_clearance, unless srdf is given"
+    said = "self_clearance without srdf leaves out (<exclude> in the model): b - c"
     assert said in load_mjcf(tmp_path, excluded).notes[-1]
     path = "time,j,k,m\n0,0,0,0\n1,0.1,0.1,0.1\n"
-    for text, keys, n_links in ((mjcf(bodies), "", 1), (excluded, "", 0), (excluded, SRDF, 3)):
+    for text, keys, n_links in ((mjcf(bodies), "", 2), (excluded, "", 1), (excluded, SRDF, 3)):
         asked = f"urdf: toy.xml, self_clearance: true{keys}"
         case = load_small(
             tmp_path, changed("urdf: arm.urdf", asked), trajectory=path, toy__xml=text,
@@ -147,8 +147,8 @@ def test_pairs_that_are_excluded_are_not_measured_and_told(tmp_path):
         pairs, left_out = measured_pairs(case)
         assert sum(not pair.b.is_obstacle for pair in pairs) == n_links
         why = {(one.link, one.obstacle): one.reason for one in left_out}
-        told = "excused: excluded by the robot's own file"
-        assert (why.get(("c", "b")) == told) == (n_links == 0)
+        told = "excused: <exclude> in the model"
+        assert (why.get(("c", "b")) == told) == (n_links == 1)
 
 
 def test_meshes_are_read_from_their_files_with_all_their_faces(tmp_path):

@@ -187,7 +187,9 @@ def _copies(element: Element) -> int:
 def _reduce(document: MjcfDocument) -> None:
     root = document.root
     for section in list(root):
-        if section.tag not in _NEEDED:
+        if section.tag == "option":
+            _keep_filter(section)
+        elif section.tag not in _NEEDED:
             root.remove(section)
     for element in list(root.iter(*_IDLE)):
         element.getparent().remove(element)
@@ -208,6 +210,16 @@ def _reduce(document: MjcfDocument) -> None:
             del key.attrib[name]
     for mesh in root.iterfind("asset/mesh"):
         _name(mesh)
+
+
+def _keep_filter(option: Element) -> None:
+    """Leaves of the options whether bodies collide with their parents; the rest is of simulation."""
+    option.attrib.clear()
+    for child in list(option):
+        if child.tag != "flag":
+            option.remove(child)
+        for name in set(child.attrib) - {"filterparent"}:
+            del child.attrib[name]
 
 
 def _loops(root: Element) -> Iterator[Element]:

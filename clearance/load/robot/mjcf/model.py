@@ -38,6 +38,7 @@ class MjcfGeom(NamedTuple):
         kind: "box", "sphere", "capsule", "cylinder", "ellipsoid", "plane", "hfield", "mesh" or "sdf".
         size: (3,) half sizes, radius and half length, or semi-axes [m], as MuJoCo has them.
         pose: (4, 4) of the shape, of a mesh as `MjcfMesh` makes it, in the body [m]. mesh: its name.
+        contype, conaffinity: bits; two geoms may collide where the first of one meets the second of the other.
         collides: it takes part in contacts. shown: it is of a group that MuJoCo's viewer shows from the start.
     """
 
@@ -47,6 +48,8 @@ class MjcfGeom(NamedTuple):
     size: np.ndarray
     pose: np.ndarray
     mesh: str
+    contype: int
+    conaffinity: int
     collides: bool
     shown: bool
 
@@ -70,10 +73,16 @@ class MjcfJoint(NamedTuple):
 
 
 class MjcfBody(NamedTuple):
-    """A body; `parent` is the place of its parent, of the world (the first) its own. `pose`: (4, 4) in it [m]."""
+    """A body.
+
+    Attributes:
+        parent: the place of its parent; of the world (the first) its own. pose: (4, 4) in it [m].
+        welded_to: the place of the topmost body that no joint lies between; its own where it has a joint.
+    """
 
     name: str
     parent: int
+    welded_to: int
     pose: np.ndarray
     is_mocap: bool
 
@@ -99,7 +108,8 @@ class MjcfModel:
     """A compiled model; bodies with parents before children, the world first.
 
     Attributes:
-        excludes: pairs of bodies that do not collide.
+        excludes: pairs of bodies that do not collide. pairs: of geoms that do, whatever else is said.
+        filters_parents: bodies do not collide with their parents.
     """
 
     name: str
@@ -108,4 +118,6 @@ class MjcfModel:
     geoms: tuple[MjcfGeom, ...]
     follows: tuple[MjcfFollower, ...]
     excludes: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[int, int], ...]
+    filters_parents: bool
     keys: tuple[MjcfKey, ...]

@@ -164,7 +164,8 @@ class _ModelReader:
     def model(self) -> MjcfModel:
         """All of it."""
         compiled = self.compiled
-        paired = {*compiled.pair_geom1.tolist(), *compiled.pair_geom2.tolist()}
+        pairs = tuple(zip(compiled.pair_geom1.tolist(), compiled.pair_geom2.tolist(), strict=True))
+        paired = {geom for pair in pairs for geom in pair}
         return MjcfModel(
             self.name,
             tuple(self._body(i) for i in range(compiled.nbody)),
@@ -175,6 +176,8 @@ class _ModelReader:
                 (self.bodies[pair >> 16], self.bodies[pair & 0xFFFF])
                 for pair in compiled.exclude_signature.tolist()
             ),
+            pairs,
+            not compiled.opt.disableflags & self.mujoco.mjtDisableBit.mjDSBL_FILTERPARENT,
             tuple(
                 MjcfKey(compiled.key(i).name or f"key{i}", compiled.key_qpos[i].copy())
                 for i in range(compiled.nkey)
@@ -193,6 +196,7 @@ class _ModelReader:
         return MjcfBody(
             self.bodies[i],
             int(compiled.body_parentid[i]),
+            int(compiled.body_weldid[i]),
             _pose(compiled.body_pos[i], compiled.body_quat[i]),
             bool(compiled.body_mocapid[i] >= 0),
         )
@@ -221,10 +225,10 @@ class _ModelReader:
             mesh = compiled.mesh(i_mesh).name
             pose = pose @ inverse(_pose(compiled.mesh_pos[i_mesh], compiled.mesh_quat[i_mesh]))
         body = int(compiled.geom_bodyid[i])
-        collides = bool(compiled.geom_contype[i] or compiled.geom_conaffinity[i] or is_paired)
+        bits = int(compiled.geom_contype[i]), int(compiled.geom_conaffinity[i])
         return MjcfGeom(
             compiled.geom(i).name or f"geom{i - int(compiled.body_geomadr[body])}",
-            kind, body, compiled.geom_size[i].copy(), pose, mesh, collides,
+            kind, body, compiled.geom_size[i].copy(), pose, mesh, *bits, any(bits) or is_paired,
             0 <= compiled.geom_group[i] <= _LAST_SHOWN,
         )  # fmt: skip
 

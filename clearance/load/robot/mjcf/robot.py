@@ -7,12 +7,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 from clearance.errors import at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.compound_joints import notes_on_parts
 from clearance.load.robot.mjcf.document import MjcfDocument, mjcf_document
+from clearance.load.robot.mjcf.filters import MjcfFilters
 from clearance.load.robot.mjcf.followers import with_followers
 from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
 from clearance.load.robot.mjcf.shapes import MjcfShapes, compiled
@@ -30,6 +32,7 @@ from clearance.world.body import Body
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
+from clearance.world.self_pairs import neighbours
 
 WORLD = "world"
 """What MuJoCo calls the body that stands: the root link."""
@@ -57,17 +60,19 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         measured = _measured(model, kinds, request.geometry)
         bodies = [_body(name, measured[name], shapes) for name in link_names if measured.get(name)]
     told = [*notes, *notes_on_parts(ordered), *_notes(model, kinds, measured)]
-    file = request.path.name
-    return Robot(
+    robot = Robot(
         model.name or "robot",
         link_names,
         ordered,
         tuple(bodies),
-        (*shapes.notes(), *(f"{file}: {note}" for note in told)),
+        (),
         (*notices, *_notices(document, model), *unseen(kinds, request.geometry)),
-        model.excludes,
-        states_of(model),
+        states=states_of(model),
     )
+    colliding = (n for n, has in kinds.items() if chosen_kind(has, request.geometry) == "collision")
+    filters = MjcfFilters(model, frozenset(colliding), neighbours(robot))
+    told = [f"{request.path.name}: {note}" for note in (*told, *filters.notes())]
+    return replace(robot, notes=(*shapes.notes(), *told), own_matrix=filters.matrix)
 
 
 def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
@@ -164,10 +169,4 @@ def _notes(
     limited = [joint.name for joint in model.joints if joint.kind == "ball"]
     if limited:
         notes.append(f"limits of ball joints are not looked at: {listed(limited, 6)}")
-    if model.excludes:
-        pairs = [f"{a} - {b}" for a, b in model.excludes]
-        notes.append(
-            f"pairs that the model excludes from contact are not measured by self_clearance, unless srdf is "
-            f"given, which then says which are: {listed(pairs, 6)}"
-        )
     return [*notes, *notes_on_bare(kinds)]

@@ -1,0 +1,108 @@
+"""Which pairs of bodies an MJCF model lets collide, as a matrix of those that it does not, with a reason each.
+
+MuJoCo asks about two geoms where a `<pair>` says so; else where no `<exclude>` names their bodies, neither body is
+the other's parent (bodies welded together count as one, and what is welded to the world is no parent), and the
+bits of contype and conaffinity meet. Not for: what the pairs do (`world.self_pairs`).
+
+Source: MuJoCo, Computation, "Collision detection: selection"; engine_collision_driver.c (`filterBodyPair`).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from functools import cached_property
+
+from clearance.late_dataclass import dataclass
+from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
+from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
+from clearance.world.notice import listed
+
+PARENT = "parent and child in MuJoCo"
+EXCLUDE = "<exclude> in the model"
+BITS = "contype and conaffinity"
+"""Why MuJoCo asks nothing about two bodies, where one joint alone does not say it."""
+
+
+@dataclass(frozen=True, eq=False)
+class MjcfFilters:
+    """What keeps the bodies of a model from colliding.
+
+    Args:
+        colliding: bodies that are measured by the geoms that collide; of others the bits say nothing.
+        neighbours: pairs of bodies that one joint joins.
+    """
+
+    model: MjcfModel
+    colliding: frozenset[str]
+    neighbours: frozenset[frozenset[str]]
+
+    @cached_property
+    def rows(self) -> tuple[tuple[str, str, str], ...]:
+        """Pairs of bodies with geoms, and why MuJoCo asks nothing about them."""
+        bodies = self.model.bodies
+        return tuple(
+            (bodies[a].name, bodies[b].name, reason)
+            for a, b in itertools.combinations(self._geoms, 2)
+            if bodies[a].welded_to != bodies[b].welded_to and (reason := self._reason(a, b))
+        )
+
+    @property
+    def matrix(self) -> CollisionMatrix:
+        """The rows as an SRDF has them."""
+        return CollisionMatrix(disabled=self.rows)
+
+    def notes(self) -> Iterator[str]:
+        """A line for each filter that leaves out more than neighbours, and for pairs that are asked for."""
+        for reason in (EXCLUDE, PARENT, BITS):
+            told = [f"{a} - {b}" for a, b, why in self.rows if why == reason]
+            if told:
+                yield f"self_clearance without srdf leaves out ({reason}): {listed(told, 6)}"
+        if self._asked_for:
+            bodies = self.model.bodies
+            told = [f"{bodies[a].name} - {bodies[b].name}" for a, b in sorted(self._asked_for)]
+            yield f"self_clearance without srdf measures, as <pair> says: {listed(told, 6)}"
+
+    @cached_property
+    def _geoms(self) -> dict[int, list[MjcfGeom]]:
+        """The geoms of each body that has any."""
+        found: dict[int, list[MjcfGeom]] = {}
+        for geom in self.model.geoms:
+            found.setdefault(geom.body, []).append(geom)
+        return dict(sorted(found.items()))
+
+    @cached_property
+    def _asked_for(self) -> frozenset[tuple[int, int]]:
+        ends = ([self.model.geoms[i].body for i in pair] for pair in self.model.pairs)
+        return frozenset((min(one), max(one)) for one in ends)
+
+    @cached_property
+    def _excluded(self) -> frozenset[frozenset[str]]:
+        return frozenset(map(frozenset, self.model.excludes))
+
+    def _reason(self, a: int, b: int) -> str | None:
+        bodies = self.model.bodies
+        names = frozenset((bodies[a].name, bodies[b].name))
+        if (a, b) in self._asked_for:
+            return None
+        if names in self._excluded:
+            return EXCLUDE
+        if self.model.filters_parents and self._is_parent(a, b):
+            return ADJACENT if names in self.neighbours else PARENT
+        if names <= self.colliding and not self._bits_meet(a, b):
+            return BITS
+        return None
+
+    def _is_parent(self, a: int, b: int) -> bool:
+        """True if one is welded to what the other, or what that is welded to, hangs on; the world is no parent."""
+        bodies = self.model.bodies
+        one, other = bodies[a].welded_to, bodies[b].welded_to
+        parents = [bodies[bodies[end].parent].welded_to for end in (one, other)]
+        return 0 not in (one, other) and (one == parents[1] or other == parents[0])
+
+    def _bits_meet(self, a: int, b: int) -> bool:
+        """True if two of their geoms may collide."""
+        return any(
+            one.contype & other.conaffinity or other.contype & one.conaffinity
+            for one, other in itertools.product(self._geoms[a], self._geoms[b])
+        )
