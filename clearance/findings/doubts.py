@@ -29,6 +29,9 @@ SURROUNDINGS = "surroundings (the scene is empty)"
 SELF_COLLISION = "self-collision"
 """What is not measured unless the case asks for it."""
 
+OWN_FLOOR = "floor and walls of the robot's own file"
+"""What is not measured either then, where there are some."""
+
 
 @dataclass(frozen=True)
 class Doubt:
@@ -70,6 +73,9 @@ def not_checked(case: Case) -> Iterator[str]:
         yield SELF_COLLISION
     else:
         yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
+    for placed in case.robots:
+        if placed.robot.brings_surroundings and not placed.self_clearance:
+            yield OWN_FLOOR if len(case.robots) == 1 else f"{OWN_FLOOR} ({placed.robot.name})"
 
 
 def _of_input(record: Record) -> Iterator[Doubt]:

@@ -11,13 +11,19 @@ import numpy as np
 
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
-from clearance.world.robot import JointKind
+from clearance.world.robot import JointKind, Robot
 
 
 def reach_of(placed: PlacedRobot) -> float:
     """[m] length of its longest chain of joints, slides included, and of its median body."""
-    lengths = [length_of(body) for body in placed.robot.bodies]
+    lengths = [length_of(body) for body in own_bodies(placed.robot)]
     return chain_of(placed) + (float(np.median(lengths)) if lengths else 0.0)
+
+
+def own_bodies(robot: Robot) -> list[Body]:
+    """Its links that have a shape, but for what holds the floor and walls of its own file."""
+    first = 1 if robot.brings_surroundings else 0
+    return [*robot.bodies[first:]]
 
 
 def chain_of(placed: PlacedRobot) -> float:

@@ -19,6 +19,7 @@ from clearance.world.case import Case, Omission, SelfClearance
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.phase import Phase
+from clearance.world.robot import WORLD_LINK
 from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
 
@@ -80,6 +81,13 @@ class BodyIndex(NamedTuple):
         if self.is_obstacle:
             return case.obstacles[self.i_body].padding + shortfall
         return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0) + shortfall
+
+    def is_floor_in(self, case: Case) -> bool:
+        """True for the link that holds floor and walls of a robot's own file, where that stands in the world."""
+        if self.is_obstacle or case.robots[self.i_robot].mount is not None:
+            return False
+        robot = case.robots[self.i_robot].robot
+        return robot.brings_surroundings and self.own_name_in(case) == WORLD_LINK
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""
@@ -262,7 +270,17 @@ class _Selector:
                 return why
         if self._is_rigid(one, other):
             return "moves with it"
-        return None
+        return "both stand in the world" if self._stand_together(one, other) else None
+
+    def _stand_together(self, one: BodyIndex, other: BodyIndex) -> bool:
+        """True if one is the floor of a robot's own file, and the other stands as well: nothing moves them."""
+        case = self.case
+        if one.is_floor_in(case) and other.is_floor_in(case):
+            return True
+        for floor, body in ((one, other), (other, one)):
+            if floor.is_floor_in(case) and body.is_obstacle:
+                return self._rigid_part(body) == WORLD
+        return False
 
     def _is_rigid(self, one: BodyIndex, other: BodyIndex) -> bool:
         """True if two bodies, not of one robot, are joined by fixed joints and neither stands in the world."""

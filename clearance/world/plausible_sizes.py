@@ -13,7 +13,15 @@ from clearance.geometry.shapes import SHAPES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.cell import once_a_cell
-from clearance.world.extents import chain_of, greatest, length_of, metres, reach_of, slides_of
+from clearance.world.extents import (
+    chain_of,
+    greatest,
+    length_of,
+    metres,
+    own_bodies,
+    reach_of,
+    slides_of,
+)
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.plausible_places import odd_places
 
@@ -71,7 +79,7 @@ def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
 
 def _odd_links(placed: PlacedRobot, before: str) -> list[str]:
     """Links that are much longer than the robot reaches, and meshes that are much shorter."""
-    bodies = placed.robot.bodies
+    bodies = own_bodies(placed.robot)
     lengths = [length_of(body) for body in bodies]
     if not lengths:
         return []

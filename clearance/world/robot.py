@@ -14,6 +14,9 @@ from clearance.world.body import Body
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.notice import Notice
 
+WORLD_LINK = "world"
+"""A root link that is called so holds what stands around the robot in its own file, as a floor and walls."""
+
 
 class JointKind(StrEnum):
     """How a joint's child moves in its parent."""
@@ -86,3 +89,9 @@ class Robot:
     def moving_joints(self) -> tuple[Joint, ...]:
         """The joints that a trajectory can name: not fixed and not mimicking."""
         return tuple(j for j in self.joints if j.kind is not JointKind.FIXED and j.mimic is None)
+
+    @property
+    def brings_surroundings(self) -> bool:
+        """True if its own file has a floor or walls: its root link is called `WORLD_LINK` and has a shape."""
+        root = self.link_names[0]
+        return root == WORLD_LINK and any(body.name == root for body in self.bodies)

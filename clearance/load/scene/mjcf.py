@@ -13,8 +13,14 @@ from clearance.load.mesh.off_file import off_text
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.mjcf.document import mjcf_document
 from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
-from clearance.load.robot.mjcf.shapes import MjcfShapes, compiled, primitive, triangles_of
-from clearance.load.scene.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.load.robot.mjcf.shapes import (
+    MjcfShapes,
+    body_from_shape,
+    compiled,
+    primitive,
+    triangles_of,
+)
+from clearance.load.robot.plane_box import note_on_planes
 from clearance.load.scene.pose_row import pose_row
 from clearance.load.scene.request import SceneContent, SceneRequest
 from clearance.world.notice import Notice, Severity, listed
@@ -57,15 +63,10 @@ def _row(
     geom: MjcfGeom, world_from_body: np.ndarray, shapes: MjcfShapes, asked: SceneRequest
 ) -> dict[str, Any]:
     """The row of a YAML scene for a geom, but for its name."""
-    pose = world_from_body @ geom.pose
+    pose = world_from_body @ body_from_shape(geom)
     if geom.kind == "mesh":
         with at(f"mesh {geom.mesh!r}"):
             return {"mesh": _mesh(geom.mesh, shapes, asked), "pose": pose_row(pose)}
-    if geom.kind == "plane":
-        below = np.eye(4)
-        below[2, 3] = -0.5 * PLANE_DEPTH
-        box = {"size": [PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH]}
-        return {"box": box, "pose": pose_row(pose @ below)}
     kind, dimensions = primitive(geom)
     return {kind: dimensions, "pose": pose_row(pose)}
 
@@ -97,8 +98,7 @@ def _notes(model: MjcfModel, kept: list[MjcfGeom]) -> list[str]:
         )
     planes = [repr(geom.name) for geom in kept if geom.kind == "plane"]
     if planes:
-        size = f"{PLANE_SIDE:g} m wide and {PLANE_DEPTH:g} m deep"
-        notes.append(f"planes are boxes {size} below them: {listed(planes, 6)}")
+        notes.append(note_on_planes(planes))
     return notes
 
 

@@ -23,8 +23,8 @@ from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
 
 LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
-"""Kinds of bodies as they are drawn: links, obstacles that stand, that move, and parts that are carried at some
-time."""
+"""Kinds of bodies as they are drawn: links, obstacles that stand (a robot's own floor too), that move, and parts
+that are carried at some time."""
 
 SAME_PLACE = 1e-6
 """[m] A clearance that differs by less is that of the poses drawn."""
@@ -90,7 +90,7 @@ def bodies_of(case: Case) -> list[BodyIndex]:
 def kind_of(case: Case, body: BodyIndex) -> str:
     """What a body is drawn as."""
     if not body.is_obstacle:
-        return LINK
+        return STANDING if body.is_floor_in(case) else LINK
     if any(carry.part == body.name_in(case) for carry in case.carries):
         return PART
     return STANDING if case.obstacles[body.i_body].stands else MOVING

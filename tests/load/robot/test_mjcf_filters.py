@@ -11,6 +11,7 @@ from clearance.load.robot.mjcf.filters import BITS, EXCLUDE, PARENT
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.self_pairs import RIGID, self_pairs
 from tests.load.making_mjcf import BALL, load_mjcf, mjcf
+from tests.made_cases import at
 
 JOINT = '<joint type="slide"/>'
 JOINTS = JOINT + '<joint type="slide" axis="1 0 0"/>'
@@ -144,12 +145,42 @@ STAND = '<geom type="box" size="0.1 0.1 0.1"/>'
 SLIDE = f'<body name="moved" pos="1 0 0"><joint name="j" type="slide" axis="1 0 0"/>{STAND}</body>'
 
 
+def run_of(robot, *obstacles, end=-0.886, self_clearance=True):
+    """The run of a robot whose joint j goes from 0 to an end."""
+    path = cl.Trajectory(np.array([0.0, 1.0]), ("j",), np.array([[0.0], [end]]))
+    asked = cl.SelfClearance() if self_clearance else None
+    placed = cl.PlacedRobot(robot, path, self_clearance=asked)
+    return cl.check(cl.Case("stand", (placed,), obstacles))
+
+
 @pytest.mark.parametrize("model", [STAND + SLIDE, f"<body>{STAND}{SLIDE}</body>"])
 def test_a_link_that_hits_the_stand_that_it_slides_on_is_found(tmp_path, model):
     """Stand and slider are 0.1 m to each side; the slider goes from 1 m away to 0.114 m."""
     robot = load_mjcf(tmp_path, mjcf(model))
-    path = cl.Trajectory(np.array([0.0, 1.0]), ("j",), np.array([[0.0], [-0.886]]))
-    placed = cl.PlacedRobot(robot, path, self_clearance=cl.SelfClearance())
-    run = cl.check(cl.Case("stand", (placed,), ()))
+    run = run_of(robot)
     assert run.verdict.status == "contact"
     assert run.record.deepest.numbers.penetration == pytest.approx(0.086)
+
+
+DROP = f'<body name="moved" pos="0 0 1"><joint name="j" type="slide" axis="0 0 1"/>{STAND}</body>'
+FLOOR = '<geom name="floor" type="plane" size="1 1 1" pos="0 0 0.05" euler="0 0 30"/>'
+
+
+def test_a_link_that_sinks_into_the_models_own_floor_is_found(tmp_path):
+    robot = load_mjcf(tmp_path, mjcf(FLOOR + DROP))
+    run = run_of(robot)
+    assert (run.worst["link"], run.worst["obstacle"]) == ("moved", "world")
+    assert run.record.clearances[0] == pytest.approx(0.85)
+    assert run.record.deepest.numbers.penetration == pytest.approx(0.036)
+
+
+def test_the_models_own_floor_is_told_where_it_is_not_measured(tmp_path):
+    robot = load_mjcf(tmp_path, mjcf(FLOOR + DROP))
+    table = cl.Obstacle(cl.Body("table", cl.box((0.1, 0.1, 0.1))), at(1.0, 0.0, 0.0))
+    floor = "floor and walls of the robot's own file"
+    for asked in (False, True):
+        run = run_of(robot, table, end=-0.5, self_clearance=asked)
+        assert (floor in run.verdict.not_checked) == (not asked)
+        why_not = {(one.link, one.obstacle): one.reason for one in run.record.unmeasured}
+        assert why_not["world", "table"] == "both stand in the world"
+        assert (run.verdict.status, run.verdict.reasons) == ("clear", ())

@@ -93,17 +93,18 @@ def test_a_model_that_is_only_seen_says_what_to_give(tmp_path):
         load_mjcf(tmp_path, text)
 
 
-def test_geoms_of_the_world_stand_with_the_robot_and_planes_do_not(tmp_path):
+def test_geoms_of_the_world_stand_with_the_robot_planes_among_them(tmp_path):
     loaded = load_mjcf(tmp_path, mjcf(f'<geom type="plane" size="1 1 1" name="floor"/>{BALL}'))
-    assert [body.name for body in loaded.bodies] == ["world"]
-    assert "toy.xml: geoms: 1 collide" in loaded.notes  # the plane is in the warning alone
+    (world,) = loaded.bodies
+    assert world.name == "world" and world.origin == "sphere, box"
+    np.testing.assert_allclose(world.shape.bounds, [[-20, -20, -1], [20, 20, 0.1]], atol=1e-4)
+    stand = "2 geoms of the world itself stand with the robot, as its link 'world'"
     assert (
-        "toy.xml: 1 geoms of the world itself stand with the robot, as its link 'world'"
+        f"toy.xml: {stand}; self_clearance: true measures the other links against it"
         in loaded.notes
     )
-    assert [notice.text for notice in loaded.notices] == [
-        "planes are no part of a robot and not measured: 'floor'; name the file as scene to measure them"
-    ]
+    assert "toy.xml: planes are boxes 40 m wide and 1 m deep below them: 'floor'" in loaded.notes
+    assert loaded.notices == ()
 
 
 SRDF = ", srdf: toy.srdf"

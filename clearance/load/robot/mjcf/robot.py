@@ -20,6 +20,7 @@ from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
 from clearance.load.robot.mjcf.shapes import MjcfShapes, compiled
 from clearance.load.robot.mjcf.states import states_of
 from clearance.load.robot.mjcf.tree import joints_of
+from clearance.load.robot.plane_box import note_on_planes
 from clearance.load.robot.request import Geometry, RobotRequest
 from clearance.load.robot.shape_kinds import (
     chosen_kind,
@@ -31,11 +32,8 @@ from clearance.load.robot.tree import links_from_root
 from clearance.world.body import Body
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice, Severity, listed
-from clearance.world.robot import Robot
+from clearance.world.robot import WORLD_LINK, Robot
 from clearance.world.self_pairs import neighbours
-
-WORLD = "world"
-"""What MuJoCo calls the body that stands: the root link."""
 
 
 def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
@@ -76,19 +74,13 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
 
 
 def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
-    """Warnings on what holds bodies together in MuJoCo and not here, and on floors that a robot cannot have."""
+    """Warnings on what holds bodies together in MuJoCo and not here."""
     found = []
     if document.left_out:
         counts = ", ".join(f"{n} {tag}" for tag, n in document.left_out.items())
         found.append(
             f"equalities that close loops are not followed ({counts}): the trajectory, or joints, must "
             "give every joint of the loop its value"
-        )
-    planes = [repr(geom.name) for geom in model.geoms if geom.kind == "plane"]
-    if planes:
-        found.append(
-            f"planes are no part of a robot and not measured: {listed(planes, 6)}; "
-            "name the file as scene to measure them"
         )
     return [Notice(Severity.WARNING, "geometry", text) for text in found]
 
@@ -99,18 +91,25 @@ def _kinds(model: MjcfModel) -> dict[str, frozenset[str]]:
             kind for kind in ("collision", "visual") if any(_is(geom, kind) for geom in geoms)
         )
         for name, geoms in _by_body(model).items()
-        if name != WORLD or geoms
+        if name != WORLD_LINK or geoms
     }
 
 
 def _measured(
     model: MjcfModel, kinds: dict[str, frozenset[str]], geometry: Geometry
 ) -> dict[str, list[MjcfGeom]]:
-    """The geoms of each body that are of the kind that is asked for."""
-    return {
+    """The geoms of each body that are of the kind that is asked for, and planes that collide."""
+    found = {
         name: [geom for geom in geoms if _is(geom, chosen_kind(kinds[name], geometry))]
         for name, geoms in _by_body(model).items()
     }
+    for geom in _planes(model):
+        found[model.bodies[geom.body].name].append(geom)
+    return found
+
+
+def _planes(model: MjcfModel) -> list[MjcfGeom]:
+    return [geom for geom in model.geoms if geom.kind == "plane" and geom.collides]
 
 
 def _is(geom: MjcfGeom, kind: str) -> bool:
@@ -143,9 +142,18 @@ def _notes(
 ) -> list[str]:
     """What was taken for what."""
     notes = []
-    if measured.get(WORLD):
-        n = len(measured[WORLD])
-        notes.append(f"{n} geoms of the world itself stand with the robot, as its link {WORLD!r}")
+    if measured.get(WORLD_LINK):
+        n = len(measured[WORLD_LINK])
+        what = (
+            "1 geom of the world itself stands"
+            if n == 1
+            else f"{n} geoms of the world itself stand"
+        )
+        told = f"{what} with the robot, as its link {WORLD_LINK!r}"
+        notes.append(f"{told}; self_clearance: true measures the other links against it")
+    planes = [repr(geom.name) for geom in _planes(model)]
+    if planes:
+        notes.append(note_on_planes(planes))
     counted = Counter(
         "collide"
         if geom.collides

@@ -21,12 +21,12 @@ from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.mjcf.document import MjcfDocument
 from clearance.load.robot.mjcf.model import MjcfGeom, MjcfMesh, MjcfModel
 from clearance.load.robot.mjcf.mujoco_adapter import MjcfSpec
+from clearance.load.robot.plane_box import PLANE_SIZE, plane_from_box
 from clearance.load.text.notes import grouped
 
 _UNREAD = {
     "hfield": "its surface is a grid of heights",
     "sdf": "its surface is a function",
-    "plane": "it has no thickness and no end",
 }
 """What MuJoCo has besides, and why it is refused."""
 
@@ -40,6 +40,8 @@ def primitive(geom: MjcfGeom) -> tuple[str, dict[str, float | list[float]]]:
     a, b, _ = geom.size.tolist()
     if geom.kind == "box":
         return "box", {"size": (2.0 * geom.size).tolist()}
+    if geom.kind == "plane":
+        return "box", {"size": list(PLANE_SIZE)}
     if geom.kind == "ellipsoid":
         return "ellipsoid", {"radii": geom.size.tolist()}
     if geom.kind == "sphere":
@@ -50,6 +52,11 @@ def primitive(geom: MjcfGeom) -> tuple[str, dict[str, float | list[float]]]:
         f"geom {geom.name!r}: a {geom.kind} is not read: {_UNREAD.get(geom.kind, 'it is unknown')}",
         valid="box, sphere, capsule, cylinder, ellipsoid or mesh",
     )
+
+
+def body_from_shape(geom: MjcfGeom) -> np.ndarray:
+    """(4, 4) [m] the pose in its body of what `primitive` or the mesh makes."""
+    return geom.pose @ plane_from_box() if geom.kind == "plane" else geom.pose
 
 
 class MjcfShapes:
@@ -80,7 +87,7 @@ class MjcfShapes:
             kind, dimensions = primitive(geom)
             with at(f"geom {geom.name!r}"):
                 shape, origin = SHAPES[kind].maker(**dimensions), kind
-        return shape.transformed(geom.pose), origin
+        return shape.transformed(body_from_shape(geom)), origin
 
     def mesh(self, name: str) -> tuple[Polyhedron, str]:
         """A mesh by its name in the model, scaled and moved as it says, and what it was made from."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, at, nearest_name
-from clearance.load.scene.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.scene.sdf.document import numbers_of, text_of
 
 if TYPE_CHECKING:

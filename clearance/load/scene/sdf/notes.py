@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from clearance.load.scene.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.scene.sdf.scope import SdfShape
 from clearance.world.notice import Notice, Severity, listed
 
