@@ -18,6 +18,9 @@ ROTATION = 1e-6
 """[-] How far a given quaternion's norm or a matrix's R^T R may be from unity: YAML files carry six or more
 digits; anything worse is a typing error, not a rounding."""
 
+ROUNDED_ROTATION = 1e-3
+"""[-] How far a quaternion of three digits (0.707) may be from length 1: files of other programs hold such."""
+
 CROSS_CHECK = 1e-9
 """[-] Greatest difference between our clearance and FCL's, relative to the scene's size, that counts as
 agreement: FCL's triangle kernel loses up to 1e-10 in millimetres on slender triangles."""

@@ -1,8 +1,22 @@
-"""Unit quaternions of rotation matrices, without importing scipy for it. Not for: the way back (`pose`)."""
+"""Unit quaternions: of rotation matrices, without importing scipy for it, and of rounded ones.
+
+Not for: the way back (`pose`).
+"""
 
 from __future__ import annotations
 
 import numpy as np
+
+from clearance.tolerance import ROTATION, ROUNDED_ROTATION
+
+
+def of_unit_length(quaternions: np.ndarray) -> tuple[np.ndarray, int]:
+    """(n, 4) the quaternions, of which those rounded to three digits or so are made of length 1; and how many."""
+    with np.errstate(over="ignore"):
+        lengths = np.linalg.norm(quaternions, axis=1)
+    off = np.abs(lengths - 1.0)
+    rounded = (off > ROTATION) & (off <= ROUNDED_ROTATION)
+    return quaternions / np.where(rounded, lengths, 1.0)[:, None], int(rounded.sum())
 
 
 def quaternions_of(rotations: np.ndarray) -> np.ndarray:

@@ -25,8 +25,8 @@ LARGE_BALL = 0.2
 LARGE_SCALE = 100.0
 """[-] Mesh files are in metres or finer units, so that scales are 1 or less: 1000 is mistaken for 0.001."""
 
-ROUND_ANGLE = 0.005
-"""[rad] How near a multiple of pi/4 an angle is that is meant as one, written with two decimals."""
+ROUND_ANGLE = 0.02
+"""[rad] How near a multiple of pi/4 an angle is that is meant as one, written with few digits: 3.15, 4.7, 6.3."""
 
 
 def units(text: str) -> Notice:

@@ -21,6 +21,7 @@ from clearance.load.robot.robot_element import XACRO
 from clearance.load.robot.srdf import read_srdf
 from clearance.load.schema import case as schema
 from clearance.load.schema.joints import states_of
+from clearance.load.text.notes import note_on_rounded
 from clearance.load.timed_files import trajectory_of
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
@@ -77,6 +78,8 @@ class RobotReader:
             motion_limits=limits.motion_limits,
             path_tolerances=limits.path_tolerances,
         )
+        if given.base.is_rounded:
+            self.notes.append(f"{field}.base: {note_on_rounded(1)[0]}")
         if given.base.on is not None:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())

@@ -12,13 +12,10 @@ import numpy as np
 
 from clearance.errors import BadInput, BadPose, BadShape, MissingKey, NotFinite
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.tolerance import ROTATION
+from clearance.geometry.quaternions import of_unit_length
 from clearance.world.names import checked_name
 
 Message = dict[str, Any]
-
-ROUNDED = 1e-3
-"""[-] How far a quaternion of three digits (0.707) may be from length 1."""
 
 
 def message(given: object, key: str) -> Message:
@@ -98,18 +95,16 @@ class Poses:
         """The (4, 4) pose [m] of a Pose or Transform; a quaternion of zeros is no rotation, as in MoveIt.
 
         Raises:
-            BadPose: a quaternion whose length is not 1 within `ROUNDED`.
+            BadPose: a quaternion whose length is not 1 within `tolerance.ROUNDED_ROTATION`.
         """
         xyz = numbers(given[place], "xyz", place) if given.get(place) is not None else [0.0] * 3
         turned = numbers(given[turn], "xyzw", turn) if given.get(turn) is not None else [0.0] * 4
         if not any(turned):
             return pose_from_quaternion(xyz, [0.0, 0.0, 0.0, 1.0])
-        off = abs(math.hypot(*turned) - 1.0)
-        if ROTATION < off <= ROUNDED:
-            self.n_rounded += 1
-            turned = [part / math.hypot(*turned) for part in turned]
+        unit, n_rounded = of_unit_length(np.array([turned]))
+        self.n_rounded += n_rounded
         try:
-            return pose_from_quaternion(xyz, turned)
+            return pose_from_quaternion(xyz, unit[0])
         except BadPose as error:
             raise BadPose(error.problem, where=turn, valid=error.valid) from None
 

@@ -5,12 +5,13 @@ Not for: bags (`rosbag_file`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadTime
+from clearance.errors import BadInput, BadShape, BadTime, NotFinite
 from clearance.load.message.times import NANO
 from clearance.load.motion.recording_gaps import Track, holes_of
 from clearance.load.motion.trajectory_request import ReadTrajectory
@@ -37,10 +38,11 @@ class JointState(NamedTuple):
 
 
 class _Joint(NamedTuple):
-    """Where a joint was at times [ns]."""
+    """Where a joint was at times [ns], and the numbers of the messages, from 1, that say no number of it."""
 
     times: list[int]
     positions: list[float]
+    unknown: list[int]
 
     @property
     def track(self) -> Track:
@@ -71,6 +73,11 @@ def trajectory_of_states(
             f"none of the joints {listed([*joints], 8)} can be moved",
             valid=f"the robot moves {listed([*turns], 8)}",
         )
+    for name in kept:
+        if not joints[name].times:
+            raise NotFinite(
+                f"no message has a finite position of joint {name!r}", valid="one at least"
+            )
     start, end = _known_span({name: joints[name] for name in kept}, ends_hold=gaps == HOLD)
     tracks = {name: joints[name].track for name in kept}
     holes = holes_of(tracks, gaps, (start, end), NANO)
@@ -97,12 +104,15 @@ def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:
                 valid="a position of each joint, each once",
             )
         for name, position in zip(state.names, state.positions, strict=True):
-            one = joints.setdefault(checked_name(name), _Joint([], []))
+            one = joints.setdefault(checked_name(name), _Joint([], [], []))
             if one.times and state.nanoseconds <= one.times[-1]:
                 raise BadTime(
                     f"its time is not after that of the one before that tells of {name!r}",
                     where=where,
                 )
+            if not math.isfinite(position):
+                one.unknown.append(i + 1)
+                continue
             one.times.append(state.nanoseconds)
             one.positions.append(position)
     return joints
@@ -143,6 +153,13 @@ def _notes(
         notes.append(
             f"{n_received} of {len(states)} messages are not stamped: their time is that of their receipt"
         )
+    unknown = [
+        f"{name!r} in message {listed([*map(str, joints[name].unknown)])}"
+        for name in kept
+        if joints[name].unknown
+    ]
+    if unknown:
+        notes.append(f"positions that are NaN or infinite are left out: {listed(unknown, 8)}")
     if any(state.has_velocities for state in states):
         notes.append("recorded velocities are not followed: they are as measured, noise and all")
     if len({tuple(joints[name].times) for name in kept}) > 1:

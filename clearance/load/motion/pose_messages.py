@@ -21,7 +21,12 @@ from clearance.load.message.documents import (
 )
 from clearance.load.message.times import NANO, nanoseconds_in
 from clearance.load.message.values import items, message, numbers, text
-from clearance.load.motion.pose_table_request import PoseRequest, PoseSamples, ReadSamples
+from clearance.load.motion.pose_table_request import (
+    PoseRequest,
+    PoseSamples,
+    ReadSamples,
+    samples_of,
+)
 
 MOST = 1_000_000
 """Poses in a file."""
@@ -144,7 +149,7 @@ def _samples_of(stamped: Sequence[_StampedPose]) -> ReadSamples:
         if first.frame
         else "in no frame"
     )
-    return ReadSamples(
+    return samples_of(
         PoseSamples(times, positions, quaternions, first.frame, first.child, first.nanoseconds),
         (f"{len(stamped)} stamped poses {where}; their times count from the first at 0 s",),
     )

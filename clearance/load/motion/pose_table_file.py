@@ -11,7 +11,12 @@ import io
 import numpy as np
 
 from clearance.errors import BadInput, BadPose, MissingKey, UnknownKey, at, nearest_name
-from clearance.load.motion.pose_table_request import PoseRequest, PoseSamples, ReadSamples
+from clearance.load.motion.pose_table_request import (
+    PoseRequest,
+    PoseSamples,
+    ReadSamples,
+    samples_of,
+)
 from clearance.load.table.column_units import Column, columns_in, in_own_units, note_on_units
 from clearance.load.table.csv_table import (
     TIME,
@@ -24,7 +29,7 @@ from clearance.load.table.csv_table import (
     refuse_standing_time,
     require_time,
 )
-from clearance.tolerance import LARGEST, ROTATION
+from clearance.tolerance import LARGEST, ROUNDED_ROTATION
 from clearance.world.pose_table import PoseTable
 
 _POSITION, _QUATERNION = ("x", "y", "z"), ("qx", "qy", "qz", "qw")
@@ -58,7 +63,7 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     _refuse_far(positions, table)
     _refuse_off_length_one(quaternions, table)
     notes = (*note_on_separators(table), *note_on_units(columns))
-    return ReadSamples(PoseSamples(times[:, 0], positions, quaternions), notes)
+    return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
 
 
 def parse_pose_table(data: bytes, shown: str) -> PoseTable:
@@ -103,11 +108,11 @@ def _refuse_far(positions: np.ndarray, table: TextTable) -> None:
 def _refuse_off_length_one(quaternions: np.ndarray, table: TextTable) -> None:
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(quaternions, axis=1)
-    rows = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROTATION))
+    rows = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROUNDED_ROTATION))
     if len(rows):
         row = int(rows[0])
         raise BadPose(
             f"the quaternion {quaternions[row].tolist()} has length {lengths[row]:.9g}",
             where=f"line {line_of_row(table, row)}",
-            valid=f"qx,qy,qz,qw of length 1 within {ROTATION:g}, the scalar last",
+            valid=f"qx,qy,qz,qw of length 1 within {ROUNDED_ROTATION:g}, the scalar last",
         )

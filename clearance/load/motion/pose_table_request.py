@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.geometry.quaternions import of_unit_length
 from clearance.late_dataclass import dataclass
 from clearance.load.table.csv_table import Opener
+from clearance.load.text.notes import note_on_rounded
 from clearance.world.pose_table import PoseTable
 
 
@@ -66,6 +69,13 @@ class ReadSamples(NamedTuple):
 
     samples: PoseSamples
     notes: tuple[str, ...] = ()
+
+
+def samples_of(written: PoseSamples, notes: tuple[str, ...]) -> ReadSamples:
+    """What a file says, its quaternions of three digits or so made of length one, with a note."""
+    quaternions, n_rounded = of_unit_length(written.quaternions)
+    samples = replace(written, quaternions=quaternions)
+    return ReadSamples(samples, (*notes, *note_on_rounded(n_rounded)))
 
 
 class ReadPoses(NamedTuple):

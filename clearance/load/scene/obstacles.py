@@ -11,7 +11,7 @@ from clearance.geometry.shapes import SHAPES
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.schema import obstacle as obstacle_schema
-from clearance.load.text.notes import grouped
+from clearance.load.text.notes import grouped, note_on_rounded
 from clearance.load.timed_files import pose_table_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.mount import Mount
@@ -41,6 +41,7 @@ def make_obstacles(
         obstacles.append(obstacle)
         notes += [(body.origin, note) for note in body_notes]
         told += pose_notes
+    told += note_on_rounded(sum(item.pose.is_rounded for item in given))
     return tuple(obstacles), [*grouped(notes), *told]
 
 

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from clearance.errors import BadInput
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.geometry.quaternions import of_unit_length
 from clearance.load.motion.trajectory_request import Choice
 from clearance.load.schema.shape import Triple
 from clearance.load.schema.strict_model import Name, StrictModel
@@ -37,6 +38,11 @@ class Pose(StrictModel):
         self.matrix()
         return self
 
+    @property
+    def is_rounded(self) -> bool:
+        """True if its quaternion is rounded to three digits or so, which `matrix` makes of length 1."""
+        return self.quat_xyzw is not None and of_unit_length(np.array([self.quat_xyzw]))[1] > 0
+
     def matrix(self) -> np.ndarray:
         """The (4, 4) pose [m].
 
@@ -44,7 +50,8 @@ class Pose(StrictModel):
             BadPose: the quaternion is not of length one.
         """
         if self.quat_xyzw is not None:
-            return pose_from_quaternion(self.xyz, self.quat_xyzw)
+            unit, _ = of_unit_length(np.array([self.quat_xyzw]))
+            return pose_from_quaternion(self.xyz, unit[0])
         return pose_from_rpy(self.xyz, self.rpy or [0.0, 0.0, 0.0])
 
 

@@ -9,6 +9,14 @@ from pathlib import PurePosixPath
 from clearance.world.notice import listed
 
 
+def note_on_rounded(n_rounded: int) -> list[str]:
+    """A line that says so where quaternions are rounded."""
+    if not n_rounded:
+        return []
+    were = "quaternion is" if n_rounded == 1 else "quaternions are"
+    return [f"{n_rounded} {were} rounded to three digits or so and made of length 1"]
+
+
 def grouped(notes: Iterable[tuple[str, str]]) -> list[str]:
     """One line for each kind of note on a file: `meshes/a.stl: 2 triangles …; likewise b.stl, c.stl and 9 more`.
 

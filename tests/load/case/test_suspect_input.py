@@ -1,8 +1,9 @@
 """Input that is valid but looks wrong: what of a case's files becomes a notice, of which severity and kind."""
 
+import numpy as np
 import pytest
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, BadPose
 from clearance.world.notice import KINDS, Severity
 from clearance.world.plausibility import notices_of
 from tests.load.making import ARM, PATH
@@ -212,3 +213,28 @@ def test_joints_that_follow_out_of_the_world_are_refused(tmp_path, text):
         urdf = mimic(f'<mimic joint="shoulder" {text}/>')
         shape = '<link name="tip"><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
         check(load_small(tmp_path, urdf=urdf.replace('<link name="tip"/>', shape)))
+
+
+@pytest.mark.parametrize("angle", [3.15, -3.15, 3.1, 4.7, 4.72, 6.3, 6.28])
+def test_parts_of_a_turn_of_few_digits_are_no_degrees(tmp_path, angle):
+    assert found(tmp_path, changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], rpy: [0, 0, {angle}]")) == []
+
+
+@pytest.mark.parametrize("angle", [3.2, 4, 4.6, 6.4, 315])
+def test_other_angles_of_few_digits_may_be_degrees(tmp_path, angle):
+    case = changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], rpy: [0, 0, {angle}]")
+    assert f"obstacle 'post' has an angle of {angle:g} rad" in only_suspect(tmp_path, case)
+
+
+def test_quaternions_of_three_digits_stand_in_a_case_with_a_note(tmp_path):
+    quaternion = "quat_xyzw: [0, 0.707, 0, 0.707]"
+    case = changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], {quaternion}",
+                   "arm.urdf", f"arm.urdf, base: {{{quaternion}}}")  # fmt: skip
+    made = load_small(tmp_path, case)
+    upright = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
+    for pose in (made.obstacles[0].world_from_body, made.robots[0].world_from_base):
+        assert np.allclose(pose[:3, :3], upright, atol=1e-15)
+    told = "1 quaternion is rounded to three digits or so and made of length 1"
+    assert [note for note in made.notes if told in note] == [f"robot.base: {told}", told]
+    with pytest.raises(BadPose, match=r"0\.98994"):
+        load_small(tmp_path, case.replace("0.707", "0.7"))

@@ -6,7 +6,7 @@ import pytest
 
 from clearance import check
 from clearance.cli import run
-from clearance.errors import BadInput, BadShape, BadTime, ClearanceError
+from clearance.errors import BadInput, BadShape, BadTime, ClearanceError, NotFinite
 from clearance.load.motion.trajectory_request import Choice
 from clearance.load.timed_files import load_trajectory
 from tests.load.making import write_case
@@ -219,3 +219,24 @@ def test_a_hole_is_suspect_in_a_case_and_refused_by_convert(tmp_path, capsys):
     assert "no message of shoulder, lift from 1 to 3 s" in told and told.strip().count("\n") == 0
     said = changed("path.csv", f"{bag.relative_to(tmp_path)}, gaps: hold")
     assert check(write_case(tmp_path, said, urdf=TWO_JOINTS)).verdict.passed
+
+
+@pytest.mark.parametrize("container", first_fast(CONTAINERS, 2))
+def test_positions_that_are_no_numbers_are_left_out_by_message_and_joint(tmp_path, container):
+    """The lift is not known at 0 s, the shoulder not at 10 s: it goes straight from 9 to 11 s."""
+    states = [[0.1 * i, 0.01 * i] for i in range(21)]
+    states[0][1], states[10][0] = float("nan"), float("inf")
+    messages = [state(i, row) for i, row in enumerate(states)]
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": messages}))
+    assert trajectory.times.tolist() == list(range(20))
+    assert trajectory.positions[0].tolist() == [0.1, 0.01]
+    assert trajectory.positions[9] == pytest.approx([1.0, 0.1], abs=1e-15)
+    told = "positions that are NaN or infinite are left out: 'shoulder' in message 11, 'lift' in message 1"
+    assert any(note.endswith(told) for note in notes)
+
+
+def test_a_joint_without_any_number_is_refused(tmp_path):
+    messages = [state(i, [0.1 * i, float("nan")]) for i in range(3)]
+    path = write_bag(tmp_path, "mcap", {"/joint_states": messages})
+    with pytest.raises(NotFinite, match="no message has a finite position of joint 'lift'"):
+        read(path)

@@ -18,6 +18,7 @@ from clearance.load.scene.moveit.objects import object_rows
 from clearance.load.scene.moveit.shapes import Row, SceneMeshes
 from clearance.load.scene.pose_row import pose_row
 from clearance.load.scene.request import HeldPart, SceneContent, SceneRequest
+from clearance.load.text.notes import note_on_rounded
 from clearance.world.rules import pattern_of
 
 OCTOMAP = "<octomap>"
@@ -56,7 +57,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
     rows = [*obstacles, *attached]
-    notes = [*frames.notes(), *_lost(raw, state), *_on_rounded(poses)]
+    notes = [*frames.notes(), *_lost(raw, state), *note_on_rounded(poses.n_rounded)]
     if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
         notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
@@ -229,9 +230,3 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
 def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
     for where, given in messages(state, "attached_collision_objects"):
         yield where, message(given, "object")
-
-
-def _on_rounded(poses: Poses) -> Iterator[str]:
-    if poses.n_rounded:
-        were = "quaternion is" if poses.n_rounded == 1 else "quaternions are"
-        yield f"{poses.n_rounded} {were} rounded to three digits or so and made of length 1"

@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.geometry.quaternions import of_unit_length
 from clearance.load.text.xml_document import plain_root, with_entities
 from clearance.world.names import checked_name
 
@@ -89,7 +90,7 @@ def pose_of(element: Element) -> np.ndarray:
         raise BadInput(f"rotation_format={kind!r:.60}", valid="euler_rpy or quat_xyzw")
     values = _numbers(pose.text, (6,) if kind == "euler_rpy" else (7,), "pose")
     if kind == "quat_xyzw":
-        return pose_from_quaternion(values[:3], values[3:])
+        return pose_from_quaternion(values[:3], of_unit_length(np.array([values[3:]]))[0][0])
     in_degrees = (pose.get("degrees") or "false").strip() in ("true", "1")
     angles = [math.radians(a) for a in values[3:]] if in_degrees else values[3:]
     return pose_from_rpy(values[:3], angles)
@@ -105,6 +106,18 @@ def angles_of(element: Element) -> list[float]:
         return [float(word) for word in words[3:]]
     except ValueError:  # of an element that is not read, in a plugin or an actor
         return []
+
+
+def n_rounded(document: Element) -> int:
+    """How many poses have a quaternion that is rounded to three digits or so, and made of length 1."""
+    written = [
+        (pose.text or "").split() for pose in document.iter("pose") if pose.get("rotation_format")
+    ]
+    words = [row[3:] for row in written if len(row) == 7]
+    try:
+        return of_unit_length(np.array(words, dtype=np.float64).reshape(-1, 4))[1]
+    except ValueError:  # of an element that is not read, in a plugin or an actor
+        return 0
 
 
 def base_of(element: Element) -> str:

@@ -7,7 +7,10 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.load.scene.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.load.scene.sdf.document import n_rounded
 from clearance.load.scene.sdf.scope import SdfShape
+from clearance.load.text.notes import note_on_rounded
 from clearance.world.notice import Notice, Severity, listed
 
 if TYPE_CHECKING:
@@ -48,6 +51,7 @@ def notes_on(
             f"a plane, which has no end, is a box {PLANE_DEPTH:g} m deep below it, which ends "
             f"{PLANE_SIDE / 2:g} m from its origin"
         )
+    yield from note_on_rounded(sum(map(n_rounded, documents)))
     if missing_suns:
         yield "model://sun is not there: taken for the usual light and left out"
 
