@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
-from clearance.load.scene.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.scene.sdf.document import n_rounded
 from clearance.load.scene.sdf.scope import SdfShape
 from clearance.load.text.notes import note_on_rounded
