@@ -12,7 +12,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
 from clearance.world.joint_speeds import greatest_rates
-from clearance.world.motion_limits import MotionLimit
+from clearance.world.motion_limits import NO_LIMIT
 from clearance.world.notice import listed
 
 ROUNDING = 1e-9
@@ -21,8 +21,6 @@ ROUNDING = 1e-9
 
 SPEED, OWN_SPEED = "speed limit", "speed limit of the robot's own file"
 ACCELERATION = "acceleration limit"
-
-NO_LIMIT = MotionLimit()
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.gains.basis import Basis
-from clearance.gains.joint_ranges import NO_LIMIT
 from clearance.gains.programme import Inequalities
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import joint_courses
+from clearance.world.joint_speeds import motion_limit
 from clearance.world.trajectory import Trajectory
 
 
@@ -57,10 +57,9 @@ def _rows(placed: PlacedRobot, basis: Basis) -> Iterator[tuple[int, np.ndarray, 
     for course in joint_courses(placed):
         if course.i_column is None or course.factor == 0.0:
             continue
-        joint, limit = course.joint, placed.motion_limits.get(course.joint.name, NO_LIMIT)
+        joint, limit = course.joint, motion_limit(placed, course.joint)
         levels = [(places, joint.upper - course.offset, course.offset - joint.lower)]
-        speed = min(limit.velocity, joint.velocity)
-        most = (speed / rate, limit.acceleration / rate**2)
+        most = (limit.velocity / rate, limit.acceleration / rate**2)
         levels += [(one, far, far) for one, far in zip(rates, most, strict=False)]
         for controls, upper, lower in levels:
             for sign, level in ((1.0, upper), (-1.0, lower)):

@@ -12,7 +12,9 @@ import numpy as np
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import cubics_of
 from clearance.world.joint_positions import JointCourse, joint_courses, turns
+from clearance.world.motion_limits import NO_LIMIT, MotionLimit
 from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 
 ROUNDING = 1e-6
@@ -22,16 +24,18 @@ ROUNDING = 1e-6
 def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
     """What is faster, or accelerates more, than it may; one notice.
 
+    Of a speed that both the robot's own file and another limit, the lower limit counts.
+
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
     """
     asked = placed.trajectory
-    if asked is None or asked.n_steps < 2 or not placed.motion_limits:
+    if asked is None or asked.n_steps < 2:
         return []
     told = [
         text
         for course in joint_courses(placed)
-        if course.i_column is not None and course.joint.name in placed.motion_limits
+        if course.i_column is not None
         for text in _excesses(placed, course, asked, before)
     ]
     if not told:
@@ -44,7 +48,9 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
 def _excesses(
     placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str
 ) -> Iterator[str]:
-    limit, rate = placed.motion_limits[course.joint.name], placed.timing.rate
+    limit, rate = motion_limit(placed, course.joint), placed.timing.rate
+    if limit == NO_LIMIT:
+        return
     speed, acceleration = greatest_rates(course, asked)
     unit = "rad" if turns(course.joint) else "m"
     for what, given, most, unit_of in (
@@ -57,6 +63,12 @@ def _excesses(
                 f"joint {before + course.joint.name!r} {what} up to {given.max():.3g} {unit_of}, its limit is "
                 f"{most:g}, in {n_beyond} of {len(given)} intervals"
             )
+
+
+def motion_limit(placed: PlacedRobot, joint: Joint) -> MotionLimit:
+    """How fast a joint may move and accelerate: the lower of what its own file and others say."""
+    given = placed.motion_limits.get(joint.name, NO_LIMIT)
+    return MotionLimit(min(given.velocity, joint.velocity), given.acceleration)
 
 
 def greatest_rates(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray]:

@@ -48,3 +48,6 @@ def _check_above_0(**numbers: float) -> None:
     for name, number in numbers.items():
         if not number > 0.0:
             raise BadDimension(f"{name} {number:g} is given", valid="above 0")
+
+
+NO_LIMIT = MotionLimit()

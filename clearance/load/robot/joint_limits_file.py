@@ -12,7 +12,7 @@ from clearance.errors import BadDimension, BadInput, MissingKey, at
 from clearance.late_dataclass import dataclass
 from clearance.load.message.documents import Fields
 from clearance.load.message.parameter_values import mapping, number, parameters, require_keys, truth
-from clearance.world.motion_limits import MotionLimit
+from clearance.world.motion_limits import NO_LIMIT, MotionLimit
 from clearance.world.names import checked_name
 
 _WRAPPED_IN = ("robot_description_planning", "ros__parameters")
@@ -27,7 +27,6 @@ _UNUSED = (
     "max_deceleration", "min_velocity", "min_acceleration", "angle_wraparound", "has_soft_limits", "k_position",
     "k_velocity", "soft_lower_limit", "soft_upper_limit",
 )  # fmt: skip
-NONE = MotionLimit()
 
 _KEYS = (*_USED, *(key for keys in _USED.values() for key in keys), *_UNUSED)
 
@@ -43,7 +42,7 @@ class FileLimits:
 
     lower: float = -math.inf
     upper: float = math.inf
-    motion: MotionLimit = NONE
+    motion: MotionLimit = NO_LIMIT
     unused: tuple[str, ...] = ()
 
 

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
 from clearance.load.files.input_files import InputFiles, resolved
-from clearance.load.robot.joint_limits_file import NONE, FileLimits, parse_joint_limits
+from clearance.load.robot.joint_limits_file import FileLimits, parse_joint_limits
 from clearance.load.schema import case as schema
 from clearance.world.joint_positions import turns
-from clearance.world.motion_limits import MotionLimit, PathTolerance
+from clearance.world.motion_limits import NO_LIMIT, MotionLimit, PathTolerance
 from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -56,7 +56,7 @@ def limited(
             known = _of_robot(limits, names)
             joints = tuple(_narrowed(joint, known) for joint in robot.joints)
         robot = replace(robot, joints=joints)
-        motion = {name: one.motion for name, one in known.items() if one.motion != NONE}
+        motion = {name: one.motion for name, one in known.items() if one.motion != NO_LIMIT}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
         from clearance.load.robot.controllers_file import parse_controllers

@@ -73,7 +73,7 @@ def test_a_robot_in_milliseconds_unless_its_rate_says_so(tmp_path):
 
 def test_joints_are_told_with_their_robot_even_where_it_stands(tmp_path):
     texts = told(
-        tmp_path, "{shoulder: 0.2}", "{shoulder: 1.2}", trajectory="time,shoulder\n0,0\n1,1.1\n"
+        tmp_path, "{shoulder: 0.2}", "{shoulder: 1.2}", trajectory="time,shoulder\n0,0\n2,1.1\n"
     )
     assert [text.split(" leaves")[0] for text in texts] == [
         "joint 'left/shoulder'",

@@ -33,7 +33,7 @@ def test_a_good_case_has_no_notices(tmp_path):
 
 
 def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
-    path = "time,shoulder\n0,0\n1,1.25\n2,-1.5\n"
+    path = "time,shoulder\n0,0\n2,1.25\n5,-1.5\n"
     assert found(tmp_path, trajectory=path) == [
         (
             Severity.WARNING,
@@ -66,10 +66,10 @@ def test_a_slide_far_beyond_its_range_is_suspect(tmp_path):
 def test_joint_limits_can_be_made_a_violation(tmp_path):
     case = changed("warn: 0.02", "warn: 0.02, joints: fail")
     assert found(tmp_path, case) == []
-    ((severity, kind, text),) = found(tmp_path, case, trajectory="time,shoulder\n0,0\n1,1.25\n")
+    ((severity, kind, text),) = found(tmp_path, case, trajectory="time,shoulder\n0,0\n2,1.25\n")
     assert (severity, kind) == (Severity.VIOLATED, "joint limits")
     assert "by up to 0.25 rad in 1 of 2 steps" in text
-    kinds = [one[:2] for one in found(tmp_path, case, trajectory="time,shoulder\n0,0\n1,9\n")]
+    kinds = [one[:2] for one in found(tmp_path, case, trajectory="time,shoulder\n0,0\n9,9\n")]
     assert kinds == [(Severity.SUSPECT, "limits"), (Severity.VIOLATED, "joint limits")]
     with pytest.raises(BadInput, match=r"limits\.joints: 'ignore' is given"):
         load_small(tmp_path, changed("warn: 0.02", "warn: 0.02, joints: ignore"))
@@ -86,7 +86,7 @@ def test_kinds_of_suspect_input_are_accepted_by_name(tmp_path):
 def test_limits_and_radii_in_millimetres_are_suspect(tmp_path):
     case = changed("fail: 0.005, warn: 0.02", "fail: 5, warn: 20", "box: {size: [0.1, 0.1, 1]}",
                    "cylinder: {radius: 40, length: 1}")  # fmt: skip
-    told = [text for *_, text in found(tmp_path, case, trajectory="time,shoulder\n0,0\n1,45\n")]
+    told = [text for *_, text in found(tmp_path, case, trajectory="time,shoulder\n0,0\n50,45\n")]
     for says in (
         "CHECK UNITS: limits.fail is 5 m and limits.warn is 20 m",
         "CHECK UNITS: obstacle 'post' has a radius of 40 m",
@@ -187,7 +187,7 @@ def test_time_in_milliseconds_is_suspect(tmp_path):
     assert "is this milliseconds" in only_suspect(tmp_path, trajectory=path)
     assert found(tmp_path, trajectory="time,shoulder\n0,0\n50,0.25\n100,0.5\n") == []
     assert found(tmp_path, trajectory="time,shoulder\n0,0.5\n500,0.5\n1000,0.5\n") == []
-    fast_for_once = "time,shoulder\n0,0\n500,0.25\n500.1,0.5\n"
+    fast_for_once = "time,shoulder\n0,0\n500,0.25\n500.25,0.5\n"
     assert found(tmp_path, trajectory=fast_for_once) == []
 
 

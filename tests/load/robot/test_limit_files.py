@@ -39,14 +39,16 @@ arm:
 PATH = "time,shoulder,lift\n0,0,0\n1,0.3,0\n2,0.8,0.05\n"
 
 
-def load(folder, limits=LIMITS, controllers=None, trajectory=PATH, rule="warn", **others):
+def load(
+    folder, limits=LIMITS, controllers=None, trajectory=PATH, rule="warn", urdf=TWO_JOINTS, **others
+):
     keys = "" if limits is None else ", joint_limits: limits.yaml"
     keys += "" if controllers is None else ", controllers: controllers.yaml"
     case = changed(
         "urdf: arm.urdf", f"urdf: arm.urdf{keys}", "warn: 0.02", f"warn: 0.02, joints: {rule}"
     )
     files = {"limits__yaml": limits or "", "controllers__yaml": controllers or ""}
-    return load_small(folder, case, urdf=TWO_JOINTS, trajectory=trajectory, **files, **others)
+    return load_small(folder, case, urdf=urdf, trajectory=trajectory, **files, **others)
 
 
 def texts(case, severity):
@@ -121,6 +123,31 @@ def test_a_follower_has_limits_of_its_own(tmp_path):
     case = load_small(tmp_path, changed("urdf: arm.urdf", keys), urdf=urdf, limits__yaml=limits)
     (text,) = texts(case, Severity.WARNING)
     assert "joint 'lift' moves at up to 1.5 m/s" in text
+
+
+SLOW = TWO_JOINTS.replace('velocity="1"', 'velocity="{}"')
+"""The shoulder's greatest speed is in the robot's own file."""
+
+
+@pytest.mark.parametrize(
+    ("own", "limits", "most"),
+    [
+        ("0.4", None, "0.4"),
+        ("0.4", LIMITS.replace("max_velocity: 0.4", "max_velocity: 0.45"), "0.4"),
+        ("0.45", LIMITS, "0.4"),
+        ("0", None, None),
+        ("0.5", None, None),
+    ],
+)
+def test_a_speed_beyond_the_urdf_is_told_as_one_beyond_the_file(tmp_path, own, limits, most):
+    """The narrower of both counts; 0 is what exporters write for no limit."""
+    assert "{}" in SLOW
+    urdf = SLOW.format(own)
+    case = load(tmp_path, limits, urdf=urdf)
+    says = f"joint 'shoulder' moves at up to 0.5 rad/s, its limit is {most}, in 1 of 2 intervals"
+    assert texts(case, Severity.WARNING) == ([says] if most else [])
+    violated = texts(load(tmp_path, limits, rule="fail", urdf=urdf), Severity.VIOLATED)
+    assert violated == ([says] if most else [])
 
 
 IN_NODE = "/**:\n  ros__parameters:\n    robot_description_planning:\n{}"
