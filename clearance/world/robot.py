@@ -74,6 +74,7 @@ class Robot:
         notices: suspect input and warnings that only loading can find.
         own_matrix: which pairs of links the robot's own file excuses, and why; None where it says nothing of them.
         states: positions of joints [rad] or [m] that its own file names, by the state's name and the joint's.
+        reference: those at which its own file has it, by joint; those that are left out are 0.
     """
 
     name: str
@@ -84,6 +85,7 @@ class Robot:
     notices: tuple[Notice, ...] = ()
     own_matrix: CollisionMatrix | None = None
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    reference: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def moving_joints(self) -> tuple[Joint, ...]:

@@ -111,12 +111,17 @@ class NewRobot:
         """What stands under `joints` for those that a trajectory does not move."""
         states = self.rest[0] if len(self.rest) == 1 else list(self.rest)
         return ({"state": states} if self.rest else {}) | {
-            joint.name: _near_zero(joint) for joint in self._left(trajectory)
+            joint.name: self._rest(joint) for joint in self._left(trajectory)
         }
 
     def remarks(self, trajectory: Trajectory) -> dict[str, str]:
         """Why each key is as it is."""
-        left = {joint.name: "assumed: nothing moves it" for joint in self._left(trajectory)}
+        reference = self.placed.robot.reference
+        left = {
+            joint.name: "assumed: nothing moves it"
+            + (", and so the robot's file has it" if reference.get(joint.name) else "")
+            for joint in self._left(trajectory)
+        }
         return {"base": f"assumed: {self._stands}", **left}
 
     def assumed(self, trajectory: Trajectory, is_alone: bool) -> Iterator[str]:
@@ -129,18 +134,28 @@ class NewRobot:
         if is_alone and "srdf" not in self.keys:
             yield "all pairs of links but neighbours are measured: no SRDF excuses any"
         left = self._left(trajectory)
-        zero = [joint.name for joint in left if _near_zero(joint) == 0.0]
+        at_rest = {joint.name: self._rest(joint) for joint in left}
+        zero = [name for name, position in at_rest.items() if position == 0.0]
         if zero:
             yield f"joints that nothing moves rest at 0: {listed(zero, 8)}"
-        other = [
-            f"{joint.name} {_near_zero(joint):g}" for joint in left if _near_zero(joint) != 0.0
-        ]
+        own = self.placed.robot.reference
+        placed, other = [], []
+        for name, position in at_rest.items():
+            if position != 0.0:
+                (placed if position == own.get(name) else other).append(f"{name} {position:g}")
+        if placed:
+            yield f"joints that nothing moves rest where the robot's file has them: {listed(placed, 8)}"
         if other:
             yield f"joints that cannot be at 0 rest at the limit next to it: {listed(other, 8)}"
 
     @property
     def _stands(self) -> str:
         return f"link {self.root!r} stands at the origin of the world"
+
+    def _rest(self, joint: Joint) -> float:
+        """[rad] or [m] where its own file has it, or 0; else the limit that is nearest to that."""
+        meant = self.placed.robot.reference.get(joint.name, 0.0)
+        return float(min(max(meant, joint.lower), joint.upper)) + 0.0
 
     def _left(self, trajectory: Trajectory) -> list[Joint]:
         """The joints that neither the trajectory nor a state gives a position."""
@@ -193,8 +208,3 @@ def _placed(
     matrix = placed.self_clearance and placed.self_clearance.matrix
     told = (*placed.robot.notes, *reader.notes, *on_motion)
     return placed, [*told, *(matrix.notes if matrix else ())]
-
-
-def _near_zero(joint: Joint) -> float:
-    """[rad] or [m] 0, or the limit that is nearest to it."""
-    return float(min(max(0.0, joint.lower), joint.upper)) + 0.0

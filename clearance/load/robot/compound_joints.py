@@ -86,11 +86,14 @@ def require_placed(robot: Robot, given: Collection[str], field: str) -> None:
     """
     for (kind, name), names in _parts_of(robot.joints).items():
         if not any(part in given for part in names):
+            own = {part: robot.reference.get(part, 0.0) for part in names}
+            own = {part: value for part, value in own.items() if value != 0.0}
+            there = ", ".join(f"{part}: {value!r}" for part, value in own.items())
             raise BadInput(
                 f"{kind} joint {name!r} is given no place",
                 where=field,
-                valid=f"{{{names[0]}: 0}} where it stays at 0, or columns of the trajectory "
-                f"({', '.join(names)})",
+                valid=f"{{{there or f'{names[0]}: 0'}}} where it stays {'as its file has it' if own else 'at 0'}, "
+                f"or columns of the trajectory ({', '.join(names)})",
             )
 
 

@@ -4,8 +4,9 @@ import mujoco
 import numpy as np
 import pytest
 
+from clearance import check, load_case
 from clearance.cli import run
-from clearance.errors import BadSyntax, MissingKey, NotFinite, UnknownState
+from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, UnknownState
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from tests.load.making_case import changed, load_small
@@ -96,3 +97,47 @@ def test_a_new_case_moves_between_keyframes_and_rests_in_one(tmp_path, monkeypat
     assert said in (tmp_path / "out" / "case.yaml").read_text()
     assert run(["new", "out", *words, "--rest", "home"]) == 0
     assert "state: home" in (tmp_path / "out" / "case.yaml").read_text()
+
+
+LOWERED = mjcf(
+    '<body name="a" pos="0.1 0 1" euler="0 0 90"><freejoint name="root"/>'
+    f'<geom size="0.1"/><body name="b" pos="1 0 0"><joint name="j" ref="20"/>{BALL}</body></body>',
+)
+"""A ball 1 m up, a quarter turn about z, and another on a hinge that is at 20 degrees as it is written."""
+ONLY_X = "time,root/x\n0,0.1\n1,0.6\n"
+
+
+def new_of(tmp_path, monkeypatch, text, path):
+    monkeypatch.chdir(tmp_path)
+    write_mjcf(tmp_path, text)
+    (tmp_path / "path.csv").write_text(path)
+    (tmp_path / "scene.yaml").write_text(
+        "obstacles: [{name: post, box: {size: [4, 4, 0.2]}, pose: {xyz: [0, 0, 0.7]}}]\n"
+    )
+    words = ["new", "out", "--robot", "toy.xml", "--scene", "scene.yaml", "--trajectory"]
+    assert run([*words, "path.csv"]) == 0
+    return load_case(tmp_path / "out" / "case.yaml")
+
+
+def test_a_new_case_places_a_free_body_where_the_model_has_it(tmp_path, monkeypatch, capsys):
+    """The ball's centre is 1 m up, so its lowest point is 100 mm above a slab whose top is at 0.8 m."""
+    case = new_of(tmp_path, monkeypatch, LOWERED, ONLY_X)
+    rest = case.robots[0].fixed_positions
+    assert rest["root/z"] == 1.0 and rest["root/yaw"] == pytest.approx(np.pi / 2)
+    assert rest["root/y"] == 0.0 and rest["j"] == pytest.approx(np.radians(20))
+    assert check(case, need="minimum").worst["clearance"] == pytest.approx(0.1, abs=2e-4)
+    said = (
+        "joints that nothing moves rest where the robot's file has them: root/z 1, root/yaw 1.5708"
+    )
+    assert said in capsys.readouterr().out
+    text = (tmp_path / "out" / "case.yaml").read_text()
+    assert "root/z: 1.0  # assumed: nothing moves it, and so the robot's file has it" in text
+
+
+def test_a_free_body_that_is_given_no_place_is_refused_with_the_model_s(tmp_path):
+    with pytest.raises(BadInput, match="floating joint 'root' is given no place") as caught:
+        load_small(
+            tmp_path, changed("urdf: arm.urdf", "urdf: toy.xml"), toy__xml=LOWERED,
+            trajectory="time,j\n0,0\n1,0.5\n",
+        )  # fmt: skip
+    assert "{root/x: 0.1, root/z: 1.0, root/yaw: 1.57079632" in str(caught.value)

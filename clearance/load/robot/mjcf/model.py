@@ -110,6 +110,7 @@ class MjcfModel:
     Attributes:
         excludes: pairs of bodies that do not collide. pairs: of geoms that do, whatever else is said.
         filters_parents: bodies do not collide with their parents.
+        reference: (n,) the positions at which the model is written, as `MjcfKey` has them.
     """
 
     name: str
@@ -121,3 +122,4 @@ class MjcfModel:
     pairs: tuple[tuple[int, int], ...]
     filters_parents: bool
     keys: tuple[MjcfKey, ...]
+    reference: np.ndarray

@@ -182,6 +182,7 @@ class _ModelReader:
                 MjcfKey(compiled.key(i).name or f"key{i}", compiled.key_qpos[i].copy())
                 for i in range(compiled.nkey)
             ),
+            compiled.qpos0.copy(),
         )
 
     def _joint_name(self, i: int) -> str:

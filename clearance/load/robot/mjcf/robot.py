@@ -18,7 +18,7 @@ from clearance.load.robot.mjcf.filters import MjcfFilters
 from clearance.load.robot.mjcf.followers import with_followers
 from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
 from clearance.load.robot.mjcf.shapes import MjcfShapes, compiled
-from clearance.load.robot.mjcf.states import states_of
+from clearance.load.robot.mjcf.states import reference_of, states_of
 from clearance.load.robot.mjcf.tree import joints_of
 from clearance.load.robot.plane_box import note_on_planes
 from clearance.load.robot.request import Geometry, RobotRequest
@@ -66,6 +66,7 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         (),
         (*notices, *_notices(document, model), *unseen(kinds, request.geometry)),
         states=states_of(model),
+        reference=reference_of(model),
     )
     colliding = (n for n, has in kinds.items() if chosen_kind(has, request.geometry) == "collision")
     filters = MjcfFilters(model, frozenset(colliding), neighbours(robot))

@@ -1,4 +1,7 @@
-"""The keyframes of an MJCF model as positions of our joints by name. Not for: what rests in one (`resting`)."""
+"""The keyframes of an MJCF model, and its reference pose, as positions of our joints by name.
+
+Not for: what rests in one (`resting`).
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,11 @@ def states_of(model: MjcfModel) -> dict[str, dict[str, float]]:
     return {
         checked_name(key.name): dict(_positions(model.joints, key.positions)) for key in model.keys
     }
+
+
+def reference_of(model: MjcfModel) -> dict[str, float]:
+    """[rad] or [m] by joint, where the model is as it is written: the place of a free body, `ref` of a hinge."""
+    return dict(_positions(model.joints, model.reference))
 
 
 def _positions(joints: tuple[MjcfJoint, ...], positions: np.ndarray) -> Iterator[tuple[str, float]]:
