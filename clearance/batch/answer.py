@@ -41,7 +41,12 @@ MOST_WORST = 10
 
 
 _Standing = tuple[tuple[float, int], dict[str, Any]]
-"""Clearance and number of a case, and its row."""
+"""Reach and number of a case, and its row."""
+
+
+def reach_of(clearance: float | None, penetration: float | None) -> float | None:
+    """[m] The clearance of a case, less how deep its bodies are in contact, as far as that is known."""
+    return None if clearance is None else clearance - (penetration or 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +114,14 @@ class BatchAnswer:
 
     @property
     def least(self) -> dict[str, Any] | None:
-        """The first case of least clearance, as columns of its row; None where none is measured."""
+        """The first case of least clearance, or deepest in contact, as columns of its row; None where none is
+        measured."""
         return self._summary.least
 
     @property
     def worst(self) -> list[dict[str, Any]]:
         """Some of the cases that do not pass: the first of each status in turn, so that none hides another; the
-        worst status first, then by clearance.
+        worst status first, then by clearance, the deepest contact first.
         """
         return self._summary.listed
 
@@ -133,6 +139,7 @@ class _Summary:
     least: dict[str, Any] | None = None
     worst: dict[str, list[_Standing]] = field(default_factory=dict)
     _n: int = 0
+    _reach: float | None = None
 
     COLUMNS = (
         "case",
@@ -141,6 +148,7 @@ class _Summary:
         "text",
         "basis",
         "clearance",
+        "penetration",
         "time",
         "body_a",
         "body_b",
@@ -160,28 +168,28 @@ class _Summary:
 
     def add(self, part: pa.Table) -> None:
         """Takes some rows in, which come after those before."""
-        columns = {name: part[name].to_pylist() for name in ("exit_code", "clearance")}
+        found = (part[name].to_pylist() for name in ("clearance", "penetration"))
+        reached = [reach_of(*row) for row in zip(*found, strict=True)]
         self.statuses.update(part["status"].to_pylist())
         self.bases.update(basis for basis in part["basis"].to_pylist() if basis)
         self.n_waived += sum(map(bool, part["waived"].to_pylist()))
         self.n_warned += sum(map(bool, part["warnings"].to_pylist()))
-        self._add_least(part, columns["clearance"])
-        self._add_worst(part, **columns)
+        self._add_least(part, reached)
+        self._add_worst(part, part["exit_code"].to_pylist(), reached)
         self._n += part.num_rows
 
-    def _add_least(self, part: pa.Table, clearance: list[float | None]) -> None:
-        known = [one for one in clearance if one is not None]
-        if known and (self.least is None or min(known) < self.least["clearance"]):
-            self.least = _row(part, clearance.index(min(known)))
+    def _add_least(self, part: pa.Table, reached: list[float | None]) -> None:
+        known = [one for one in reached if one is not None]
+        if known and (self._reach is None or min(known) < self._reach):
+            self._reach = min(known)
+            self.least = _row(part, reached.index(self._reach))
 
-    def _add_worst(
-        self, part: pa.Table, exit_code: list[int], clearance: list[float | None]
-    ) -> None:
+    def _add_worst(self, part: pa.Table, exit_code: list[int], reached: list[float | None]) -> None:
         failing = [i for i, code in enumerate(exit_code) if code]
         self.n_failing += len(failing)
         self.exit_code = max([self.exit_code, *(exit_code[i] for i in failing)])
         for status, numbers in _by_status(part, failing).items():
-            standing = [(clearance[i] or 0.0, self._n + i) for i in numbers]
+            standing = [(reached[i] or 0.0, self._n + i) for i in numbers]
             least = heapq.nsmallest(MOST_WORST, standing)
             found = [(one, _row(part, one[1] - self._n)) for one in least]
             before = self.worst.get(status, [])

@@ -102,4 +102,11 @@ class WrittenRows:
         """As `CaseRows.parts`."""
         with pq.ParquetFile(self.path) as file:
             for batch in file.iter_batches(PART, columns=[*columns], use_threads=False):
-                yield pa.Table.from_batches([batch]).select(columns)
+                yield _completed(pa.Table.from_batches([batch]), columns)
+
+
+def _completed(part: pa.Table, columns: Sequence[str]) -> pa.Table:
+    """The columns of some rows; null those that an older version did not write."""
+    for name in set(columns) - set(part.column_names):
+        part = part.append_column(name, pa.nulls(part.num_rows, TABLE.field(name).type))
+    return part.select(columns)

@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from clearance.batch.answer import STATUSES, BatchAnswer
+from clearance.batch.answer import STATUSES, BatchAnswer, reach_of
 from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
 from clearance.findings.finding import NOT_PROVEN
@@ -50,7 +50,7 @@ def page_data(answer: BatchAnswer, place: Path) -> Members:
     yield "statuses", [_json(statuses)]
     yield "names", rows.listed(list, "case")
     yield "status", rows.listed(lambda found: [*map(statuses.index, found)], "status")
-    yield "clearance", rows.listed(_millimetres, "clearance")
+    yield "clearance", rows.listed(_reached, "clearance", "penetration")
     yield "bound", rows.listed(_millimetres, "lower_bound")
     yield "time", rows.listed(_seconds, "time")
     yield "steps", rows.listed(list, "n_steps")
@@ -147,6 +147,13 @@ class _Texts:
 
 def _seconds(values: Sequence[float | None]) -> list[float | None]:
     return [None if value is None else round(value, 3) for value in values]
+
+
+def _reached(
+    clearances: Sequence[float | None], penetrations: Sequence[float | None]
+) -> list[float | None]:
+    """[mm] The clearances, below 0 by how deep bodies in contact are."""
+    return _millimetres([*map(reach_of, clearances, penetrations)])
 
 
 def _millimetres(lengths: Sequence[float | None]) -> list[float | None]:

@@ -11,7 +11,7 @@ from clearance.batch.output import PAGE
 from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
 from clearance.errors import shown
-from clearance.report.wording import count, mm
+from clearance.report.wording import count, depth_mm, mm
 
 _BASES = {"motion": "proven for the motion", "samples": "looked at the samples only"}
 
@@ -75,7 +75,10 @@ def _print_facts(answer: BatchAnswer) -> None:
         click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
     least = answer.least
     if least is not None:
-        near = f"{mm(least['clearance'])} mm, {least['body_a']} - {least['body_b']}"
+        near = f"{mm(least['clearance'])} mm"
+        if least["penetration"] is not None:
+            near = f"contact, at most {depth_mm(least['penetration'])} mm deep"
+        near += f", {least['body_a']} - {least['body_b']}"
         click.echo(shown(f"  least       {least['case']}: {near} at {least['time']:.3f} s"))
 
 

@@ -21,11 +21,12 @@ from clearance.report.actors import carried_of, paddings_of
 from clearance.report.contact import HEADS, contact_of
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.summary import certified_of, notes_of, tessellation_bound
-from clearance.report.verdict import Verdict, moment_line, profile_text
+from clearance.report.verdict import Verdict, contact_line, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
     contact_text,
     count,
+    depth_text,
     limit_mm,
     limits_text,
     mm,
@@ -63,7 +64,8 @@ def _stdout() -> Console:
 
 
 def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[Text]]]:
-    """The lines; those that look into contacts are made when they are printed, after the verdict."""
+    """The lines; the verdict says how deep contacts are, so they are looked into first, with progress."""
+    _work_out_contacts(run.record)
     record, verdict = run.record, run.verdict
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
     lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
@@ -87,10 +89,14 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
 
 
 def _headline(record: Record, verdict: Verdict) -> Text:
-    """Verdict and least clearance; where there are rules, what stands worst against which."""
+    """Verdict and least clearance, or what stands worst against which rule, or who is deepest in contact."""
     text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.status, "bold red"))
     limits = record.case.limits
-    if limits.rules:
+    if record.worst.touches:
+        told = (
+            f"{', ' if ' ' in text.plain else ' '}{contact_line(record.worst)} ({record.case.name})"
+        )
+    elif limits.rules:
         told = f": {moment_line(record, record.worst)} ({record.case.name})"
     else:
         told = f"  {record.case.name}: least clearance {mm(record.worst.clearance)} mm"
@@ -151,8 +157,9 @@ def _rules(record: Record) -> list[Text]:
         elif answer.worst is None:
             told += f"{answer.status}, nothing nearer was asked for"
         else:
-            worst = answer.worst
-            told += f"{answer.status}, {mm(worst.clearance)} mm, {worst.link} - {worst.obstacle}"
+            worst = record.worst_among([answer]) or answer.worst
+            near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
+            told += f"{answer.status}, {near}, {worst.link} - {worst.obstacle}"
             told += f" at {moment_text(worst)}"
         lines.append(_row("rule", told))
     return lines
@@ -215,11 +222,14 @@ def _facets(record: Record) -> list[Text]:
     return [_row("facets", f"{told}too small by that much, never too large")]
 
 
-def _deepest(record: Record) -> list[Text]:
-    """The deepest overlap: where, how deep, which way out of the link; worked out now, with progress."""
-    if len(record.contacts):
+def _work_out_contacts(record: Record) -> None:
+    if record.depths_known:
         with shown_progress(False, ["looking into contacts"]) as progress:
             record.work_out_contacts(progress)
+
+
+def _deepest(record: Record) -> list[Text]:
+    """The deepest overlap: where, how deep, which way out of the link."""
     found = contact_of(record)
     if found is None:
         return []

@@ -26,6 +26,7 @@ from clearance.report.tolerances import budget_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
+    least_text,
     limit_mm,
     limits_text,
     mm,
@@ -34,7 +35,7 @@ from clearance.report.wording import (
     seconds,
 )
 from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.rule_answer import RuleAnswer, worst_of
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.notice import Severity
 from clearance.world.rules import DEFAULT
@@ -82,7 +83,7 @@ def results_of(record: Record, verdict: Verdict) -> Iterator[TestResult]:
 
 def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
     worst = record.worst
-    text = f"{verdict.text()}: least clearance {mm(worst.clearance)} mm at {moment_text(worst)}"
+    text = f"{verdict.text()}: {least_text(worst)} at {moment_text(worst)}"
     waived = [f"waived: {line}" for line in verdict.waived]
     nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
     not_checked = [f"{name} not checked" for name in verdict.not_checked]
@@ -106,7 +107,7 @@ def _of_rules(record: Record, judgement: Judgement) -> Iterator[TestResult]:
             yield TestResult("rule", name, "no pair is judged by it", skipped=True)
             continue
         own, answers = limits.of_rule(i), [one for one in judgement.judging if one.name == name]
-        text, worst = limits_text(own.fail, own.warn), worst_of(answers)
+        text, worst = limits_text(own.fail, own.warn), record.worst_among(answers)
         if worst is not None:
             text = f"{moment_line(record, worst)}; {text}"
         yield TestResult("rule", name, text, LIMIT if any(map(_is_violated, answers)) else "")

@@ -7,7 +7,7 @@ from markupsafe import Markup
 from clearance.report.contact import HEADS
 from clearance.report.markup import element, table
 from clearance.report.verdict import verdict_of
-from clearance.report.wording import limits_text, mm, moment_text
+from clearance.report.wording import depth_text, limits_text, mm, moment_text
 from clearance.simulate.record import PairMinimum, Record
 
 MOST_PAIRS = 5
@@ -48,7 +48,8 @@ def run_html(record: Record) -> str:
 def _worst(record: Record) -> str:
     worst = record.worst
     by = f" (rule {worst.rule!r})" if record.case.limits.rules else ""
-    return f"{mm(worst.clearance)} mm{by}, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
+    near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
+    return f"{near}{by}, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
 
 
 def _row(pair: PairMinimum, *, several: bool) -> Markup:

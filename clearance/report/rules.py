@@ -29,6 +29,7 @@ def told_moment(record: Record, moment: Moment) -> dict[str, Any]:
         "between": moment.between,
         "clearance": moment.clearance,
         "touches": moment.touches,
+        "depth": None if moment.depth is None else moment.depth._asdict(),
         "status": record.status_of(moment),
         "rule": moment.rule,
         "link": moment.link,
@@ -59,7 +60,7 @@ def _told(
 ) -> dict[str, Any]:
     limits = record.case.limits.of_rule(i)
     window = (-math.inf, math.inf) if rule is None else (rule.window.start, rule.window.end)
-    worst = None if answer is None else answer.worst
+    worst = None if answer is None else record.worst_among([answer])
     sample = None if answer is None else answer.worst_sample
     return {
         "name": name,

@@ -32,6 +32,7 @@ from clearance.report.tolerance_section import tolerances
 from clearance.report.verdict import ACCEPTED, STALE, verdict_text
 from clearance.report.wording import (
     count,
+    depth_text,
     joint_value,
     least_proven,
     limits_text,
@@ -39,6 +40,7 @@ from clearance.report.wording import (
     other_time,
     seconds,
 )
+from clearance.simulate.moment import Depth
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
@@ -83,11 +85,19 @@ def header(summary: dict[str, Any]) -> Markup:
 def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, object]]:
     worst = summary["worst"]
     name = "Least clearance" if summary["nearer"] is None else "Worst against its rule"
+    near = element("strong", mm(worst["clearance"])) + " mm"
+    if worst["touches"]:
+        name, near = "Deepest contact", element("strong", depth_of(worst))
     return [
-        (name, element("strong", mm(worst["clearance"])) + " mm"),
+        (name, near),
         ("Between", f"{worst['link']} and {worst['obstacle']}"),
         ("At", moment_of(worst)),
     ]
+
+
+def depth_of(moment: dict[str, Any]) -> str:
+    """How deep bodies are in each other at a moment, given as plain data."""
+    return depth_text(None if moment["depth"] is None else Depth(**moment["depth"]))
 
 
 def _limit_facts(summary: dict[str, Any]) -> list[tuple[str, object]]:
@@ -247,11 +257,12 @@ def worst_moment(summary: dict[str, Any]) -> Markup:
         )
         for body in ("link", "obstacle")
     ]
+    near = depth_of(worst) if worst["touches"] else f"{mm(worst['clearance'])} mm"
     return section(
         "Worst moment",
         element(
             "p",
-            f"{mm(worst['clearance'])} mm between {worst['link']} and {worst['obstacle']} at ",
+            f"{near} between {worst['link']} and {worst['obstacle']} at ",
             moment_link(worst, moment_of(worst)),
             ".",
         ),

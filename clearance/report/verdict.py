@@ -19,6 +19,7 @@ from clearance.report.finding_text import finding_line, waived_lines
 from clearance.report.wording import (
     clock_text,
     count,
+    depth_text,
     gap_text,
     limit_mm,
     mm,
@@ -29,7 +30,7 @@ from clearance.report.wording import (
 )
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.rule_answer import RuleAnswer, worst_of
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
@@ -257,9 +258,9 @@ def _measured(record: Record, judgement: Judgement | None) -> str:
 def moment_line(record: Record, moment: Moment) -> str:
     """How near what comes to what and when, and the limit that it is below, if it is: with its rule."""
     limits = record.rule(moment.rule).limits
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
     if moment.touches:
-        return f"contact{_judged_by(moment)}: {where}"
+        return f"contact {contact_line(moment)}"
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
@@ -269,13 +270,19 @@ def moment_line(record: Record, moment: Moment) -> str:
     return f"{mm(moment.clearance)} mm{_judged_by(moment)}: {where}"
 
 
+def contact_line(moment: Moment) -> str:
+    """How deep which two bodies are in each other and when, and the rule that judges them, if there is one."""
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+    return f"{depth_text(moment.depth)}{_judged_by(moment)}: {where}"
+
+
 def _judged_by(moment: Moment) -> str:
     return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
 
 
 def _occurring(record: Record, judging: Sequence[RuleAnswer]) -> str | None:
     """The moment that stands worst of what decides, if it is below a limit."""
-    worst = record.worst if judging is record.rules else worst_of(judging)
+    worst = record.worst if judging is record.rules else record.worst_among(judging)
     if worst is None or record.status_of(worst) == Status.CLEAR:
         return None
     return moment_line(record, worst)

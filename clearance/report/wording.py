@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
-from clearance.simulate.moment import Moment
+from clearance.simulate.moment import Depth, Moment
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
@@ -66,10 +66,23 @@ def _digits(value: float, n_digits: int, rounding: str) -> str:
 
 def contact_text(contact: dict) -> str:
     """Depth and volume as one phrase; where they are not exact, the range that holds them."""
-    depths = depth_mm(contact["penetration"]), mm(contact["penetration_at_least"])
     volumes = volume_cm3(contact["volume"]), least_cm3(contact["volume_at_least"])
-    depth = _range(*depths, contact["exact"])
-    return f"{depth} mm deep, {_range(*volumes, contact['volume_exact'])} cm³ shared"
+    depth = Depth(contact["penetration"], contact["penetration_at_least"], contact["exact"])
+    return f"{depth_text(depth)}, {_range(*volumes, contact['volume_exact'])} cm³ shared"
+
+
+def depth_text(depth: Depth | None) -> str:
+    """How deep bodies are in contact; where that is not exact, the range that holds it."""
+    if depth is None:
+        return "depth not computed"
+    return f"{_range(depth_mm(depth.penetration), mm(depth.at_least), depth.exact)} mm deep"
+
+
+def least_text(moment: Moment) -> str:
+    """The clearance of the worst moment, or its depth where bodies touch."""
+    if moment.touches:
+        return depth_text(moment.depth)
+    return f"least clearance {mm(moment.clearance)} mm"
 
 
 def _range(greatest: str, least: str, exact: bool) -> str:

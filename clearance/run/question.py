@@ -42,7 +42,7 @@ class Question:
         cross_check: also ask FCL at every step.
         contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
-            The verdict does not depend on it.
+            No status depends on it; the worst moment of bodies in contact is the deepest that is worked out.
         body_gaps: tell which gaps between what moves and what stands are of a width that parts of a person may be
             caught in; no verdict depends on it.
         today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None

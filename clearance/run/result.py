@@ -53,22 +53,31 @@ class Run:
         """The moment that stands worst against its rule, without rules that of least clearance, as a row of
         `steps`; its bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`.
 
-        Where the certificate found a worse one between two steps, `between` is true, and `step` the one before."""
+        Where the certificate found a worse one between two steps, `between` is true, and `step` the one before it.
+        In contact it is the deepest, with its `penetration`, as far as that is known.
+        """
         moment = self.record.worst
-        row = self._row(moment.step)
         if moment is self.record.worst_sample:
-            return row
+            return self.worst_sample
+        return self._of_moment(moment) | {"between": True, "status": self.record.status_of(moment)}
+
+    @property
+    def worst_sample(self) -> dict:
+        """The row of the step that stands worst, with the status of that step by itself: the deepest in contact,
+        else the first."""
+        return self._of_moment(self.record.worst_sample)
+
+    def _of_moment(self, moment: Moment) -> dict:
+        """The row of a moment's step, with what is so at that moment of its pair."""
+        row = self._row(moment.step)
         told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
         for sides in (SIDES, LINK_AND_OBSTACLE):
             told |= _told_of(sides, moment)
         if "time_b" in row:
             told["time_b"] = moment.time_b
-        return row | told | {"between": True, "status": self.record.status_of(moment)}
-
-    @property
-    def worst_sample(self) -> dict:
-        """The row of the first step that stands worst, as `worst` has it, with the status of that step itself."""
-        return self._row(self.record.worst_step)
+        if moment.depth is not None:
+            told["penetration"] = moment.depth.penetration
+        return row | told
 
     def _row(self, step: int) -> dict:
         row = self.record.steps.slice(step, 1).to_pylist()[0]

@@ -19,6 +19,18 @@ from clearance.world.pairs import Pair
 from clearance.world.rules import DEFAULT
 
 
+class Depth(NamedTuple):
+    """How deep two bodies are in each other.
+
+    Attributes:
+        penetration: [m] the shortest way that parts them, or more where it is not `exact`. at_least: [m] or less.
+    """
+
+    penetration: float
+    at_least: float
+    exact: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Moment:
     """One moment of the motion and the clearance that occurs there.
@@ -32,6 +44,7 @@ class Moment:
         share: how much of the interval from the step to the next has passed, 0 to 1.
         rule: what judges the pair. touches: whether the bodies themselves touch, not only their paddings.
         time_b: [s] when the second body is there, if its clock is not tied to that of the first; else None.
+        depth: of bodies in contact, where it is known.
     """
 
     step: int
@@ -47,6 +60,7 @@ class Moment:
     rule: str = DEFAULT
     touches: bool = False
     time_b: float | None = None
+    depth: Depth | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -246,6 +246,11 @@ class Record(Samples):
         return self.contacts.worked_out if isinstance(self.contacts, ContactSequence) else ()
 
     @property
+    def depths_known(self) -> bool:
+        """True if the run works out how deep contacts are, of one of them at least."""
+        return isinstance(self.contacts, ContactSequence) and self.contacts.are_asked
+
+    @property
     def contact_notes(self) -> tuple[str, ...]:
         """What stands for the bodies in contact, where it is not they themselves."""
         return self.contacts.notes if isinstance(self.contacts, ContactSequence) else ()
@@ -266,26 +271,44 @@ class Record(Samples):
 
     @property
     def worst_step(self) -> int:
-        """The first step that stands worst against what judges it."""
+        """The step of `worst_sample`."""
         return self.worst_sample.step
 
     @cached_property
     def worst_sample(self) -> Moment:
-        """The step that stands worst against what judges it; without rules, the first of least clearance."""
+        """The step that stands worst against what judges it; without rules, the first of least clearance.
+
+        In contact it is the deepest, as far as depth is known.
+        """
         worst = standing_worst((rule, rule.worst_sample) for rule in self.rules)
         assert worst is not None
-        return worst
+        return self._deepest_of(self.rules, worst)
 
     @cached_property
     def worst(self) -> Moment:
         """The same of the whole motion, between two steps if a certificate has found a lesser moment there."""
         worst = worst_of(self.rules)
         assert worst is not None
-        return worst
+        return self.worst_sample if worst.touches and self.worst_sample.depth else worst
+
+    def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
+        """`worst` as if there were no other rules than some, or than some of the pairs of these."""
+        worst = worst_of(rules)
+        return None if worst is None else self._deepest_of(rules, worst)
+
+    def _deepest_of(self, rules: Sequence[RuleAnswer], worst: Moment) -> Moment:
+        """The deepest of the moments in contact in place of one of them, where depth is known."""
+        if not worst.touches or not self.depths_known:
+            return worst
+        from clearance.simulate.deepest import deepest_moment
+
+        return deepest_moment(self.worked_out, rules) or worst
 
     @cached_property
     def nearest(self) -> Moment:
         """The moment of least clearance of all pairs, whatever judges it."""
+        if self.worst.touches:
+            return self.worst
         known = [rule.worst for rule in self.rules if rule.worst is not None]
         return min(known, key=lambda moment: (not moment.touches, moment.clearance))
 

@@ -73,6 +73,16 @@ class RulePairs:
         """True if `near` knows only the nearest pair of some steps, since there are too many."""
         return any(len(_near_steps(one, within)) > MOST_NEAR_STEPS for one in self.answers)
 
+    def place_of(self, step: int, names: tuple[str, str]) -> int | None:
+        """The place of a pair among those of the run, if the rule judges it at a step; else None."""
+        for answer in self.answers:
+            section = answer.section
+            if section.steps.start <= step < section.steps.stop:
+                own = list(zip(*pair_names(section.phase.case, section.pairs), strict=True))
+                if names in own:
+                    return int(section.places[own.index(names)])
+        return None
+
     def moment(self, step: int, pair: int) -> Moment:
         """The moment of a step at which a pair is measured: of those of several sections the nearest."""
         found = [moment for answer in self.answers for moment in _moments(answer, step, pair)]

@@ -8,7 +8,6 @@ import json
 import pytest
 
 from clearance.cli import run
-from clearance.simulate.contact.rows import ContactRows
 from tests.cli.test_check_command import URDF
 
 CASE = """name: rail
@@ -88,14 +87,17 @@ def test_the_files_are_the_same_bytes_again(folder):
         assert (folder / "one" / name).read_bytes() == (folder / "two" / name).read_bytes()
 
 
-def test_the_verdict_is_printed_before_contacts_are_looked_into(folder, capsys, monkeypatch):
-    told = []
-    real = ContactRows.work_out
-
-    def work_out(*given):
-        told.append(capsys.readouterr().out)
-        real(*given)
-
-    monkeypatch.setattr(ContactRows, "work_out", work_out)
-    assert run(["check", str(folder / "case.yaml")]) == 1
-    assert told[0].startswith("CONTACT") and "deepest" not in told[0] and "contact " in told[0]
+def test_the_headline_says_how_deep(folder, capsys):
+    """The deepest of two, though the other comes first in time and by name."""
+    scene = "  - {name: a, box: {size: [0.2, 1, 1]}, pose: {xyz: [0.2, 0, 0]}}\n"
+    (folder / "case.yaml").write_text(CASE.replace("obstacles:\n", "obstacles:\n" + scene))
+    (folder / "path.csv").write_text("time,rail\n0,0.395\n1,0.5\n2,0.8125\n3,0.5\n")
+    case = str(folder / "case.yaml")
+    assert run(["check", case]) == 1
+    assert capsys.readouterr().out.startswith(
+        "CONTACT 12.50 mm deep: slider - wall at 2.000 s, step 2 (rail)\n"
+    )
+    assert run(["check", case, "--contact", "none"]) == 1
+    assert capsys.readouterr().out.startswith(
+        "CONTACT depth not computed: slider - a at 0.000 s, step 0 (rail)\n"
+    )

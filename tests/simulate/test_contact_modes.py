@@ -72,11 +72,16 @@ def asked(monkeypatch):
 
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
-def test_the_verdict_works_out_nothing(asked, shape):
-    for how in ("none", "events", "every"):
+@pytest.mark.cold
+def test_the_verdict_works_out_what_is_asked_for_and_no_more(asked, shape):
+    """It says how deep, unless nothing was asked for."""
+    for how, n_asked in (("none", 0), ("events", 2), ("every", 5)):
+        asked.clear()
         run = cl.check(sliding(shape), contact=how)
+        assert asked == []
         assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
-    assert asked == []
+        assert (run.worst["penetration"] is None) == (how == "none")
+        assert len(asked) == n_asked
 
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])

@@ -93,6 +93,11 @@ class ContactsOfPhases(ContactSequence):
         """(k,) the pair of each in the run."""
         return self._order[1]
 
+    @property
+    def are_asked(self) -> bool:
+        """True unless the run asks for the depth of none."""
+        return any(part.rows.are_asked for part in self.parts)
+
     def work_out(self, progress: Progress | None = None) -> None:
         """Works out what the run asks for, once."""
         for part in self.parts:

@@ -44,7 +44,13 @@ _ROW = np.dtype(
 
 
 class ContactFinder(Protocol):
-    """What finds overlaps."""
+    """What finds overlaps.
+
+    Attributes:
+        work_out: of which rows depth, volume and way out are worked out: "none", "events" or "every".
+    """
+
+    work_out: str
 
     def touching(self) -> tuple[np.ndarray, np.ndarray]:
         """(n,) steps and (n,) pairs in contact, steps first."""
@@ -95,6 +101,11 @@ class ContactRows(ContactSequence):
     def pairs(self) -> np.ndarray:
         """(k,) the pair of each, as an index into `names`."""
         return self._touching[1]
+
+    @property
+    def are_asked(self) -> bool:
+        """True unless the run asks for the depth of none."""
+        return self.finder.work_out != "none"
 
     def work_out(self, progress: Progress | None = None) -> None:
         """Works out what the run asks for, once; `progress` is called with how many of how many."""

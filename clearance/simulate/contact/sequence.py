@@ -60,6 +60,11 @@ class ContactSequence(RowsOnDemand[StepContact]):
     def __len__(self) -> int:
         return len(self.steps)
 
+    @property
+    @abstractmethod
+    def are_asked(self) -> bool:
+        """True if the run asks for the depth of any; no more is worked out to say so."""
+
     @abstractmethod
     def work_out(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out what the run asks for, once; `progress` is called with how many of how many."""

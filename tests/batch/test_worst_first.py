@@ -1,0 +1,28 @@
+"""What of a batch stands first: of cases in contact the deepest, in the summary, the table and on the page."""
+
+import json
+
+from pytest import approx
+
+from clearance.batch import engine
+from clearance.batch.page_data import object_of, page_data
+from clearance.batch.store import open_store
+from clearance.cli.batch_verdict import print_answer
+from tests.batch.batches import cases, run_here, write_cell
+
+
+def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, however slow the machine
+    manifest = write_cell(tmp_path / "in", [-0.01, -0.03, 0.5, -0.02])
+    _, found = run_here(manifest, tmp_path / "out")
+    assert [row["case"] for row in found.worst] == ["t001", "t003", "t000"]
+    assert found.least["case"] == "t001"
+    depths = {row["case"]: row["penetration"] for row in cases(tmp_path / "out")}
+    right = {"t000": approx(0.01), "t001": approx(0.03), "t002": None, "t003": approx(0.02)}
+    assert depths == right
+    page = json.loads("".join(object_of(page_data(found, tmp_path / "out"))))
+    assert page["clearance"] == approx([-10.0, -30.0, 400.0, -20.0], abs=0.002)
+    print_answer(found, open_store(tmp_path / "out"), 0, None)
+    told = capsys.readouterr().out
+    assert "least       t001: contact, at most 30.00 mm deep, slider - wall" in told
+    assert "contact     t001: contact 30.00 mm deep: slider - wall" in told
