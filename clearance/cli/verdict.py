@@ -249,17 +249,11 @@ def _interval_text(record: Record, level: str) -> str:
     if not found:
         return "never"
     n_intervals, n_steps = extent(record, level)
-    times = [_span(part) for part in found[:_MOST_INTERVALS]]
+    times = [span_text(part.start, part.end) for part in found[:_MOST_INTERVALS]]
     more = n_intervals - len(times)
     tail = f" and {more} more" if more else ""
     what = count(n_steps, "step") if n_steps else "between the steps"
     return f"{what}: {', '.join(times)}{tail}"
-
-
-def _span(part: Interval) -> str:
-    if part.between and part.first_step == part.last_step:
-        return span_text(part.worst_time, part.worst_time)
-    return span_text(part.start, part.end)
 
 
 def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:

@@ -1,5 +1,7 @@
-"""When a limit was passed and for how long, read from the status of each step. Not for: judging a
-step."""
+"""When a limit was passed and for how long: by the certified motion, else by the status of steps.
+
+Not for: judging a step.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from clearance.late_dataclass import dataclass
+from clearance.report.motion_intervals import MotionLevels, Span, motion_levels, told_moment
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.record import Record
 from clearance.simulate.replay.frames import codes_of
@@ -37,11 +40,11 @@ _TOLD = ("time", "clearance", "link", "obstacle", "rule")
 
 @dataclass(frozen=True)
 class Interval:
-    """A longest run of steps at one level, or of motion between steps that is.
+    """A longest stretch of the motion at one level; of steps where only they are known.
 
     Attributes:
-        first_step, last_step: both inside; the motion from the last one on is too where it ends between steps.
-        start, end: [s] from the first step to the last one, or the next if it ends between them.
+        first_step, last_step: both inside; the one before it where no step is.
+        start, end: [s] before and after, the motion is proven to be above the level; of steps first and last.
         worst_step: the first step that stands worst, or the one before that moment; worst_time [s], clearance
             [m], the two bodies (link, obstacle) and the rule that judges them are of that moment.
         between: that moment is between two steps.
@@ -62,12 +65,12 @@ class Interval:
 
 @dataclass(frozen=True)
 class Event:
-    """A step or a moment between two at which a level was entered, or the first step after it was left.
+    """When a level was entered or left; of steps the first at it, and the first after it.
 
     Attributes:
-        step: the step, or the one before the moment. between: whether it is between steps; then that is the moment
-            of least clearance there.
-        clearance: [m] unknown, and so are the names, where a bound decides. rule: what judges it.
+        step: the step, or the one before the moment. between: whether it is between steps.
+        clearance: [m] of the pair that is nearest then; unknown, and so are the names, where a bound decides.
+        rule: what judges it.
         least: [m] until the level is left again; None where it is left.
     """
 
@@ -85,6 +88,12 @@ class Event:
 def intervals(record: Record) -> dict[str, list[Interval]]:
     """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
     known."""
+    motion = motion_levels(record)
+    if motion is not None:
+        return {
+            level: [_motion_interval(motion, level, span) for span in spans[:MOST_LISTED]]
+            for level, spans in motion.spans.items()
+        }
     seen = _Levels.of(record)
     return {
         level: [seen.interval(int(a), int(b)) for a, b in runs[:MOST_LISTED]]
@@ -95,6 +104,9 @@ def intervals(record: Record) -> dict[str, list[Interval]]:
 def events(record: Record) -> list[Event]:
     """The first `MOST_LISTED` enterings and leavings of a level in order of time; on one step, entering the wider
     level first. None where only the least step is known."""
+    motion = motion_levels(record)
+    if motion is not None:
+        return _motion_events(motion)
     steps, order, what, stops = [], [], [], []
     for level, runs in _level_runs(record).items():
         left = runs[runs[:, 1] < record.steps.num_rows, 1]
@@ -109,18 +121,70 @@ def events(record: Record) -> list[Event]:
     return [seen.event(int(step[i]), int(stop[i]), int(codes[i]), what[i]) for i in first]
 
 
+def _motion_interval(motion: MotionLevels, level: str, span: Span) -> Interval:
+    steps, worst = motion.steps_in(span), motion.worst(level, span)
+    told = told_moment(worst, span[0] if worst is None else worst.time)
+    return Interval(
+        first_step=int(steps[0]),
+        last_step=int(steps[-1]),
+        start=span[0],
+        end=span[1],
+        worst_step=int(steps[0]) if worst is None else worst.step,
+        worst_time=told.pop("time"),
+        between=worst is None or worst.between,
+        **told,
+    )
+
+
+def _motion_events(motion: MotionLevels) -> list[Event]:
+    """The first events, entering the wider level first and leaving the deeper one first."""
+    edges = []
+    for level, spans in motion.spans.items():
+        for span in spans:
+            edges.append((span[0], LEVELS[level], level, span))
+            if span[1] < motion.times[-1]:
+                edges.append((span[1], -LEVELS[level], level, span))
+    found = []
+    for time, order, level, span in sorted(edges, key=lambda edge: edge[:2])[:MOST_LISTED]:
+        leaves = order < 0
+        moment = motion.edge(level, span, last=leaves)
+        worst = None if leaves else motion.worst(level, span)
+        step = int(np.searchsorted(motion.times, time, side="right")) - 1
+        told = told_moment(moment, time)
+        found.append(
+            Event(
+                step=step,
+                between=bool(motion.times[step] != time),
+                what=(_LEFT if leaves else _ENTERED)[level],
+                least=None if worst is None else worst.clearance,
+                **told,
+            )
+        )
+    return found
+
+
 def not_listed(record: Record) -> dict[str, int]:
     """How many intervals of each level and how many events `intervals` and `events` leave out."""
-    runs = _level_runs(record)
-    n_steps = record.steps.num_rows
-    n_events = sum(len(found) + int((found[:, 1] < n_steps).sum()) for found in runs.values())
-    counted = {level: len(found) for level, found in runs.items()} | {"events": n_events}
+    motion = motion_levels(record)
+    if motion is not None:
+        counted = {level: len(spans) for level, spans in motion.spans.items()}
+        ends = [span[1] for spans in motion.spans.values() for span in spans]
+        n_events = len(ends) + sum(end < motion.times[-1] for end in ends)
+    else:
+        runs, n_steps = _level_runs(record), record.steps.num_rows
+        n_events = sum(len(found) + int((found[:, 1] < n_steps).sum()) for found in runs.values())
+        counted = {level: len(found) for level, found in runs.items()}
+    counted["events"] = n_events
     return {name: max(0, number - MOST_LISTED) for name, number in counted.items()}
 
 
 def extent(record: Record, level: str) -> tuple[int, int]:
     """How many intervals of a level there are, and of how many steps, not counting those of which only the motion
     to the next is at that level."""
+    motion = motion_levels(record)
+    if motion is not None:
+        n_steps = int((RowStatus(record).of_samples() >= LEVELS[level]).sum())
+        return len(motion.spans[level]), n_steps
     runs = _level_runs(record)[level]
     seen = _Levels.of(record)
     n_between = int((seen.rows.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())

@@ -33,7 +33,7 @@ from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
-from clearance.world.forest import joined_positions
+from clearance.world.forest import joined_positions, positions_along
 from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
@@ -229,13 +229,39 @@ def _no_counts() -> np.ndarray:
 def path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
     positions = joined_positions(case, motions, steps)
-    cubic = np.zeros(positions.shape[1], dtype=bool)
-    own = np.concatenate([np.full(m.positions.shape[1], m.velocities is not None) for m in motions])
-    cubic[: len(own)] = own  # what obstacles move by is at constant speed
+    cubic = cubic_columns(motions, positions.shape[1])
     rates = np.zeros_like(positions)
     if cubic.any():
-        rates[:, : len(own)] = np.concatenate([_rates(m, steps) for m in motions], 1)
+        own = np.concatenate([_rates(m, steps) for m in motions], 1)
+        rates[:, : own.shape[1]] = own
     return joint_path(links, ascending(motions[0].times[steps]), positions, rates, cubic)
+
+
+def finer_path(what: PairsInMotion, step: int, n_parts: int) -> JointPath:
+    """The motion of the joints from a step to the next, in parts that are equally long.
+
+    Exactness: where parts meet joints are rounded, by far less than what bounds leave for rounding.
+    """
+    motions = what.motions
+    shares = np.arange(n_parts + 1) / n_parts
+    positions = positions_along(what.case, motions, step, shares)
+    cubic = cubic_columns(motions, positions.shape[1])
+    rates = np.zeros_like(positions)
+    if cubic.any():
+        own = [[motion.velocities_after(step, share) for share in shares] for motion in motions]
+        rates[:, : sum(motion.positions.shape[1] for motion in motions)] = np.concatenate(own, 1)
+    start, end = motions[0].times[step : step + 2]
+    return joint_path(
+        what.layout.world.links, start + shares * (end - start), positions, rates, cubic
+    )
+
+
+def cubic_columns(motions: Sequence[Motion], n_columns: int) -> np.ndarray:
+    """(columns,) True for joints on cubics; what obstacles move by is at constant speed."""
+    cubic = np.zeros(n_columns, dtype=bool)
+    own = np.concatenate([np.full(m.positions.shape[1], m.velocities is not None) for m in motions])
+    cubic[: len(own)] = own
+    return cubic
 
 
 def joint_path(

@@ -96,6 +96,17 @@ def positions_between(case: Case, motions: Sequence[Motion], step: int, share: f
     return np.concatenate([*(motion.positions_after(step, share) for motion in motions), *moving])
 
 
+def positions_along(
+    case: Case, motions: Sequence[Motion], step: int, shares: np.ndarray
+) -> np.ndarray:
+    """(k, columns) the same for several shares (k,)."""
+    moving = [o.moves.after(step, shares[:, None]) for o in case.obstacles if o.moves is not None]
+    own = [
+        np.array([motion.positions_after(step, share) for share in shares]) for motion in motions
+    ]
+    return np.concatenate([*own, *moving], axis=1)
+
+
 def resolved_mount(case: Case, mount: Mount) -> Mount:
     """A mount that names what it is on by what moves that: a link, or an obstacle with a motion of its own.
 

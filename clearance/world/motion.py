@@ -6,7 +6,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.world.case import PlacedRobot
-from clearance.world.cubic import cubics_of, position_on
+from clearance.world.cubic import cubics_of, position_on, velocity_on
 from clearance.world.kinematics import link_poses, moving_positions, moving_velocities
 
 
@@ -52,6 +52,14 @@ class Motion:
             return before + share * (after - before)
         cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
         return position_on(cubics, np.array(share))[0]
+
+    def velocities_after(self, step: int, share: float) -> np.ndarray:
+        """(k,) [rad/s] or [m/s] how fast the joints then are on their cubics; zeros where they move linearly."""
+        if self.velocities is None:
+            return np.zeros(self.positions.shape[1])
+        ends = slice(step, step + 2)
+        cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
+        return velocity_on(cubics, np.array(share))[0] / (self.times[step + 1] - self.times[step])
 
 
 def kinematic_motion(placed: PlacedRobot) -> Motion:

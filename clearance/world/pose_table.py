@@ -74,12 +74,15 @@ class PoseTable:
         object.__setattr__(moved, "quaternions", self.quaternions)
         return moved
 
-    def after(self, step: int, share: float) -> np.ndarray:
-        """(7,) the pose when a share (0 to 1) of the interval after a sample has passed; of the last, its own."""
+    def after(self, step: int, share: float | np.ndarray) -> np.ndarray:
+        """(7,) the pose when a share (0 to 1) of the interval after a sample has passed; of the last, its own.
+
+        For shares (k, 1) all poses, (k, 7).
+        """
         ends = slice(step, step + 2)
         start, end = self.columns[ends][[0, -1]]
-        turned = slerp(start[None, 3:], end[None, 3:], np.array([share]))[0]
-        return np.concatenate([start[:3] + share * (end[:3] - start[:3]), turned])
+        turned = slerp(start[3:], end[3:], np.asarray(share)[..., 0] if np.ndim(share) else share)
+        return np.concatenate([start[:3] + share * (end[:3] - start[:3]), turned], axis=-1)
 
 
 def require_samples_to_loop(n_samples: int, timing: Timing) -> None:

@@ -1,0 +1,249 @@
+"""When something is below a level, proven from outside: what is not in a stretch is proven to be above the level.
+
+Intervals that are not proven as a whole are proven in parts of a millisecond, or of a hundredth of the interval if
+that is more; what is not proven then is in the stretch. Not for: whether a level is kept (`certificate`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.kernels.motion.certify import CertificateGoal, CertifiedSteps, IntervalBounds
+from clearance.kernels.motion.certify_pair import FINEST
+from clearance.late_dataclass import dataclass
+from clearance.simulate.certificate import Certificate
+from clearance.simulate.certify import finer_path, prove_path
+from clearance.simulate.moment import Moment, MomentQuery
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.sections import Section
+
+LEVELS = ("below_warn", "below_fail", "contact")
+"""The levels, the widest first."""
+
+FINEST_TIME, FINEST_SHARE = 1e-3, 0.01
+"""[s] and [-] The greater of both is how long a part of an interval is."""
+
+PART_GAP = 1e-3
+"""[m] How far the bound of a part may be below what occurs in it; a thousandth of that at the level."""
+
+MOST_PARTS = 2**10
+"""Parts of a part and pair until its gap is widened."""
+
+MOST_SPLIT = 2000
+"""Intervals of a section in which a level is passed that are proven in parts; more of them are taken whole."""
+
+MOST_LOOKS = 700
+"""Parts of all intervals of a section of which both ends are below the level, if they are proven in parts: it may
+be left there for a while. These are seven long intervals, or 35 of 20 ms; if there are more, samples are many."""
+
+
+class Threshold(NamedTuple):
+    """[m] The distance that is above a level; where `strict`, only more is."""
+
+    distance: float
+    strict: bool
+
+    def above(self, distances: np.ndarray) -> np.ndarray:
+        """True where distances are above the level."""
+        return distances > self.distance if self.strict else distances >= self.distance
+
+
+class Parts(NamedTuple):
+    """Parts of the motion that are not proven to be above a level, and steps that are below it.
+
+    Attributes:
+        start, end: (k,) [s], the same for a step.
+        least: (k,) [m] a clearance that occurs there, infinite where none is known.
+        answer, step, share, pair: (k,) which section's that is, its own step and pair, and the share of the
+            interval that has passed.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    least: np.ndarray
+    answer: np.ndarray
+    step: np.ndarray
+    share: np.ndarray
+    pair: np.ndarray
+
+    def only(self, rows: np.ndarray) -> Parts:
+        """Some of them."""
+        return Parts(*(column[rows] for column in self))
+
+
+@dataclass(frozen=True, eq=False)
+class RuleStretches:
+    """When the pairs of a rule of a certified run are below one of `LEVELS`."""
+
+    rule: RuleAnswer
+    level: str
+
+    @cached_property
+    def parts(self) -> Parts:
+        """All parts and steps, in order of time."""
+        assert self.rule.pairs is not None, "the sections of a rule are known"
+        found = [_parts_of(i, one, self.level) for i, one in enumerate(self.rule.pairs.answers)]
+        joined = Parts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+        return joined.only(np.argsort(joined.start, kind="stable"))
+
+    @cached_property
+    def spans(self) -> np.ndarray:
+        """(k, 2) [s] from when until when; contact only where it is seen."""
+        spans = joined_spans(np.column_stack([self.parts.start, self.parts.end]))
+        if self.level != "contact":
+            return spans
+        known = np.isfinite(self.parts.least)
+        return np.array([one for one in spans if known[self._within(*one)].any()]).reshape(-1, 2)
+
+    def worst(self, start: float, end: float) -> Moment | None:
+        """The moment of the least clearance that was seen from `start` to `end` [s]."""
+        own = self.parts.only(self._within(start, end))
+        known = np.flatnonzero(np.isfinite(own.least))
+        return self._moment(own, int(known[np.argmin(own.least[known])])) if len(known) else None
+
+    def at(self, time: float, start: float, end: float) -> Moment | None:
+        """The pair that was seen soonest before or after a time [s] within a stretch, at that time."""
+        own = self.parts.only(self._within(start, end))
+        known = np.flatnonzero(np.isfinite(own.least))
+        if not len(known):
+            return None
+        away = np.maximum(own.start[known] - time, time - own.end[known])
+        return self._moment(own, int(known[np.argmin(away)]), time)
+
+    def _within(self, start: float, end: float) -> np.ndarray:
+        return np.flatnonzero((self.parts.start >= start) & (self.parts.end <= end))
+
+    def _moment(self, parts: Parts, row: int, time: float | None = None) -> Moment:
+        """The moment that is known of a part, or its pair at another time [s]."""
+        assert self.rule.pairs is not None
+        answer = self.rule.pairs.answers[int(parts.answer[row])]
+        section, step = answer.section, int(parts.step[row])
+        phase = section.phase
+        share = float(parts.share[row])
+        if not section.tied:
+            assert answer.certificate is not None
+            found = answer.certificate.moment_of(step)
+        else:
+            if time is not None:
+                times = phase.motions[0].times
+                step = min(int(np.searchsorted(times, time, side="right")) - 1, len(times) - 2)
+                share = float((time - times[step]) / (times[step + 1] - times[step]))
+            moments = MomentQuery(phase.case, phase.motions, section.pairs)
+            pair = int(parts.pair[row])
+            found = moments.between(step, share, pair) if share > 0.0 else moments.at(step, pair)
+        clearance = found.clearance - section.padding
+        return replace(
+            found, step=found.step + phase.first, clearance=clearance, rule=self.rule.name
+        )
+
+
+def joined_spans(spans: np.ndarray) -> np.ndarray:
+    """(k, 2) the spans (n, 2) of all that overlap or meet, in order of time."""
+    if not len(spans):
+        return np.empty((0, 2))
+    spans = spans[np.argsort(spans[:, 0], kind="stable")]
+    reached = np.maximum.accumulate(spans[:, 1])
+    first = np.flatnonzero(np.append(True, spans[1:, 0] > reached[:-1]))
+    return np.column_stack([spans[first, 0], np.append(reached[first[1:] - 1], reached[-1])])
+
+
+def threshold_of(section: Section, level: str) -> Threshold:
+    """What distances of a section, paddings left out, are held against."""
+    if level == "contact":
+        return Threshold(0.0, strict=True)
+    limits = section.limits
+    held = (limits.fail if level == "below_fail" else limits.warn) - limits.rounding
+    return Threshold(section.padding, True) if held <= section.padding else Threshold(held, False)
+
+
+def _parts_of(i_answer: int, answer: SectionAnswer, level: str) -> Parts:
+    """The parts of a section."""
+    assert answer.certificate is not None, "the run is certified"
+    own = _Intervals(answer, answer.certificate, threshold_of(answer.section, level))
+    below = ~own.threshold.above(own.at_steps)
+    is_open = ~own.threshold.above(own.certificate.lower_bound[:-1])
+    inner = is_open & below[:-1] & below[1:]
+    parted = is_open & (own.most_parts > 1) & answer.section.tied
+    if own.most_parts[inner].sum() > MOST_LOOKS:
+        parted &= ~inner
+    split = np.flatnonzero(parted)[:MOST_SPLIT]
+    is_open[split] = False
+    found = [own.steps(np.flatnonzero(below)), own.whole(np.flatnonzero(is_open))]
+    found += [own.parts(int(i), int(own.most_parts[i])) for i in split]
+    joined = Parts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    return joined._replace(
+        least=joined.least - answer.section.padding,
+        answer=np.full(len(joined.start), i_answer),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Intervals:
+    """The intervals of a section; what is made of them has distances without padding."""
+
+    answer: SectionAnswer
+    certificate: Certificate
+    threshold: Threshold
+
+    @property
+    def times(self) -> np.ndarray:
+        """(n,) [s] of its steps."""
+        return self.answer.section.phase.motions[0].times
+
+    @cached_property
+    def at_steps(self) -> np.ndarray:
+        """(n,) [m] the least distance of each step, infinite where it is not known."""
+        clearance = self.answer.found.clearance
+        return np.where(np.isnan(clearance), np.inf, clearance)
+
+    @cached_property
+    def most_parts(self) -> np.ndarray:
+        """(n - 1,) how many parts of each interval are as long as they should be."""
+        length = np.diff(self.times)
+        part = np.maximum(FINEST_TIME, FINEST_SHARE * length)
+        return np.maximum(1, np.ceil(length / part * (1.0 - 1e-9))).astype(np.int64)
+
+    def steps(self, steps: np.ndarray) -> Parts:
+        """Steps that are below the level."""
+        times, pairs = self.times[steps], self.answer.found.pair[steps]
+        none = np.zeros(len(steps))
+        return Parts(times, times, self.at_steps[steps], pairs, steps, none, pairs)
+
+    def whole(self, steps: np.ndarray) -> Parts:
+        """Whole intervals, with the least that the certificate saw in them."""
+        own, pairs = self.certificate, self.certificate.pair[steps]
+        least = np.where(pairs >= 0, own.upper_bound[steps], np.inf)
+        ends = self.times[steps], self.times[steps + 1]
+        return Parts(*ends, least, pairs, steps, own.share[steps], pairs)
+
+    def parts(self, step: int, n_parts: int) -> Parts:
+        """The parts of an interval that are not proven to be above the level."""
+        bounds = self._proven(step, n_parts)
+        rows = np.flatnonzero(~self.threshold.above(bounds.lower))
+        edges = self.times[step] + np.arange(n_parts + 1) / n_parts * np.diff(self.times)[step]
+        edges[-1] = self.times[step + 1]
+        least = np.where(bounds.pair >= 0, bounds.upper, np.inf)
+        share, pair = (np.arange(n_parts) + bounds.share) / n_parts, bounds.pair
+        seen = self.whole(np.array([step]))  # to within the gap, which parts are not
+        place = min(int(seen.share[0] * n_parts), n_parts - 1)
+        if seen.least[0] < least[place]:
+            least[place], share[place], pair[place] = seen.least[0], seen.share[0], seen.pair[0]
+        steps = np.full(len(rows), step)
+        return Parts(
+            edges[rows], edges[rows + 1], least[rows], steps, steps, share[rows], pair[rows]
+        )
+
+    def _proven(self, step: int, n_parts: int) -> IntervalBounds:
+        what = self.answer.section.in_motion
+        path = finer_path(what, step, n_parts)
+        level = self.threshold.distance
+        asked = np.full(n_parts + 1, level + 2.0 * FINEST * PART_GAP)
+        first = max(self.certificate.pair[step], self.answer.found.pair[step], 0)
+        order = np.full(n_parts, first)
+        aim = CertificateGoal(PART_GAP, level, MOST_PARTS)
+        return prove_path(what.layout, path, CertifiedSteps(0, n_parts, order, asked), aim)[0]

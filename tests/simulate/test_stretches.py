@@ -1,0 +1,144 @@
+"""Stretches below a level hold all that is below it, and little more, however coarse the samples are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.report.intervals import events, intervals
+from clearance.report.motion_intervals import motion_levels
+from clearance.simulate import stretches
+from clearance.simulate.stretches import LEVELS, joined_spans
+from clearance.world.case import Case
+from clearance.world.rules import Rule
+from clearance.world.trajectory import Trajectory
+from tests.simulate.test_between_steps import LIMITS, PAST, THROUGH, sweeping
+
+TWICE = [[-1.0, 0.0], [1.0, 0.0], [-0.3, 0.3], [0.2, -0.4], [-1.1, 0.1], [-1.0, 0.0]]
+"""Over the post or through it five times, twice with a bent elbow."""
+
+
+def spans_of(case: Case) -> dict[str, np.ndarray]:
+    """(k, 2) [s] of each level."""
+    found = motion_levels(cl.check(case).record)
+    assert found is not None
+    return {level: np.array(spans).reshape(-1, 2) for level, spans in found.spans.items()}
+
+
+def finer(case: Case, times: int) -> Case:
+    """The case with so many times the samples, on the same lines."""
+    (placed,) = case.robots
+    asked = placed.trajectory
+    at = np.linspace(asked.times[0], asked.times[-1], (asked.n_steps - 1) * times + 1)
+    columns = [np.interp(at, asked.times, column) for column in asked.positions.T]
+    table = Trajectory(at, asked.joint_names, np.column_stack(columns))
+    return replace(case, robots=(replace(placed, trajectory=table),))
+
+
+def sampled(case: Case, level: str, times: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) [s] many moments, and whether the case is below the level then."""
+    record = cl.check(finer(case, times), certify=False).record
+    limits = case.limits
+    clearances = record.clearances
+    below = {
+        "below_warn": clearances < limits.warn,
+        "below_fail": (clearances < limits.fail) | (clearances <= 0.0),
+        "contact": clearances <= 0.0,
+    }
+    return record.motions[0].times, below[level]
+
+
+def assert_around(spans: np.ndarray, times: np.ndarray, below: np.ndarray, wider: float) -> None:
+    """All that is below lies in the spans, each begins and ends within [s] of it, and no gap is swallowed."""
+    inside = np.zeros(len(times), dtype=bool)
+    for start, end in spans:
+        own = (times >= start) & (times <= end)
+        inside |= own
+        own_times = times[own & below]
+        assert len(own_times), (start, end)
+        assert own_times[0] - start <= wider and end - own_times[-1] <= wider
+    assert not (below & ~inside).any()
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("height", [1.0, PAST, 0.47])
+def test_all_that_is_below_lies_in_them_and_little_more(height, level):
+    case = sweeping(TWICE, height)
+    times, below = sampled(case, level, 1000)
+    assert_around(spans_of(case)[level], times, below, 0.02 + 0.002 + 0.001)
+
+
+@pytest.mark.parametrize("height", [1.0, PAST, 0.47])
+def test_coarse_samples_give_the_stretches_of_a_hundred_times_as_many(height):
+    coarse, fine = (spans_of(finer(sweeping(TWICE, height), n)) for n in (1, 100))
+    for level in LEVELS:
+        assert len(coarse[level]) == len(fine[level])
+        assert np.abs(coarse[level] - fine[level]).max(initial=0.0) <= 0.02 + 0.001
+
+
+def test_what_is_left_between_two_steps_below_is_left():
+    """The arm is in the post at both steps, and turns all the way round in between, through the wall behind it."""
+    found = spans_of(sweeping([[0.0, 0.0], [2.0 * np.pi, 0.0]], 1.0))
+    assert [len(found[level]) for level in LEVELS] == [3, 3, 3]
+    turn = np.arcsin(0.045 / 0.75)  # so far at least the post is met
+    assert found["contact"][0, 0] == 0.0 and found["contact"][2, 1] == 2.0
+    assert turn / np.pi < found["contact"][0, 1] < 0.1
+
+
+def test_many_steps_below_are_taken_whole(monkeypatch):
+    monkeypatch.setattr(stretches, "MOST_LOOKS", 99)
+    found = spans_of(sweeping([[0.0, 0.0], [2.0 * np.pi, 0.0]], 1.0))
+    assert found["contact"].tolist() == [[0.0, 2.0]]
+
+
+def test_cubics_are_followed():
+    velocities = np.array([[0.0, 0.0], [3.0, 0.0]])
+    case = sweeping(THROUGH, PAST, velocities=velocities)
+    (placed,) = case.robots
+    asked = placed.trajectory
+    share = np.linspace(0.0, 1.0, 20001)[:, None]
+    rest, e1 = 1.0 - share, 4.0
+    shoulder = -1.0 + 2.0 * share + share * rest * (rest * -2.0 - share * e1)
+    table = Trajectory(2.0 * share[:, 0], asked.joint_names, np.hstack([shoulder, 0.0 * share]))
+    dense = replace(case, robots=(replace(placed, trajectory=table),))
+    for level in LEVELS:
+        times, below = sampled(dense, level, 1)
+        assert_around(spans_of(case)[level], times, below, 0.02 + 0.002)
+
+
+def test_paddings_and_rules_are_those_of_the_pair():
+    """A post that is padded by 5 mm, for which a rule asks 10 mm: 15 mm between the bodies."""
+    case = sweeping(THROUGH, 0.47)
+    post, wall = case.obstacles
+    limits = replace(LIMITS, rules=(Rule(("fore", "post"), name="post", fail=0.01, warn=0.012),))
+    told = replace(case, obstacles=(replace(post, padding=0.005), wall), limits=limits)
+    plain = replace(case, limits=cl.Limits(0.015, 0.017))
+    assert np.array_equal(spans_of(told)["below_fail"], spans_of(plain)["below_fail"])
+
+
+def test_intervals_and_events_are_of_the_motion():
+    record = cl.check(sweeping(THROUGH, PAST)).record
+    (below,) = intervals(record)["below_fail"]
+    assert below.start < 0.9325 and below.end > 1.0675 and below.end - below.start < 0.18
+    assert below.between and below.clearance == pytest.approx(0.003, abs=1e-4)
+    assert (below.first_step, below.last_step) == (0, 0)
+    told = [(event.what, event.between) for event in events(record)]
+    assert told == [
+        ("warn limit entered", True),
+        ("fail limit entered", True),
+        ("fail limit left", True),
+        ("warn limit left", True),
+    ]
+    entered = events(record)[1]
+    assert (entered.link, entered.obstacle) == ("fore", "post")
+    there = cl.check(sweeping([[entered.time - 1.0, 0.0]], PAST)).worst["clearance"]
+    assert entered.time == below.start and entered.clearance == pytest.approx(there, abs=1e-12)
+
+
+def test_spans_that_overlap_or_meet_are_one():
+    spans = np.array([[3.0, 4.0], [0.0, 1.0], [1.0, 2.0], [3.5, 3.6], [5.0, 5.0]])
+    assert joined_spans(spans).tolist() == [[0.0, 2.0], [3.0, 4.0], [5.0, 5.0]]
+    assert joined_spans(np.empty((0, 2))).shape == (0, 2)
