@@ -107,8 +107,7 @@ def _headline(record: Record, verdict: Verdict) -> Text:
 
 def _beside(verdict: Verdict) -> list[Text]:
     """What a reader must know beside the clearance: right below the headline."""
-    not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
-    lines = [_row("", not_checked)] if not_checked else []
+    lines = [_row("", "; ".join(verdict.scope))] if verdict.scope else []
     lines += [_row("nearest", verdict.nearest)] if verdict.nearest else []
     lines += [_row("waived", text) for text in verdict.waived]
     lines += [_row("waivers", text) for text in verdict.stale]

@@ -73,6 +73,7 @@ def _properties(verdict: Verdict, n_left_out: int) -> dict[str, str]:
         "exit_code": str(verdict.exit_code),
         "not_checked": ", ".join(verdict.not_checked),
     }
+    told |= {"self_clearance": "; ".join(verdict.self_clearance)} if verdict.self_clearance else {}
     told |= {"clocks": verdict.clocks} if verdict.clocks else {}
     return told | ({"cases_left_out": str(n_left_out)} if n_left_out else {})
 

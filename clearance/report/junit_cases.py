@@ -86,8 +86,7 @@ def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
     text = f"{verdict.text()}: {least_text(worst)} at {moment_text(worst)}"
     waived = [f"waived: {line}" for line in verdict.waived]
     nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
-    not_checked = [f"{name} not checked" for name in verdict.not_checked]
-    text = "; ".join([text, *verdict.reasons, *waived, *nearest, *not_checked])
+    text = "; ".join([text, *verdict.reasons, *waived, *nearest, *verdict.scope])
     return TestResult("verdict", "verdict", text, "" if verdict.passed else "NotPassed")
 
 

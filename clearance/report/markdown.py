@@ -70,7 +70,7 @@ def _told(verdict: Verdict) -> list[str]:
         *verdict.with_tolerances,
         *(f"warning: {text}" for text in verdict.warnings),
     ]
-    return told + [f"{name} not checked" for name in verdict.not_checked]
+    return [*told, *verdict.scope]
 
 
 def _table(findings: Sequence[Finding], comparison: Comparison | None) -> list[str]:

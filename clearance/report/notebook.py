@@ -25,7 +25,7 @@ def run_html(record: Record) -> str:
     told = limits_text(limits.fail, limits.warn)
     beside = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
     beside += verdict.with_tolerances
-    beside += [f"{name} not checked" for name in verdict.not_checked]
+    beside += verdict.scope
     beside += [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + list(
         verdict.warnings
     )

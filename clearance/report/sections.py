@@ -152,6 +152,8 @@ def _beside(summary: dict[str, Any]) -> Markup:
     doubts = [text for text in (summary["at_level"], summary["unproven"]) if text]
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
+    measured = [one["text"] for one in summary["self_clearance"]]
+    rows += [element("li", text[0].upper() + text[1:]) for text in measured]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
     return element("ul", *rows, class_="beside") if rows else Markup("")
 

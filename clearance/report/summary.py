@@ -20,6 +20,7 @@ from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.recordings import recordings_of
 from clearance.report.rules import rules_of, told_moment
+from clearance.report.self_clearance import self_clearance_of
 from clearance.report.sensitivity import sensitivity_data
 from clearance.report.tolerances import tolerances_of
 from clearance.report.verdict import Verdict, verdict_of
@@ -74,6 +75,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "not_listed": not_listed(record),
         "pairs": _pairs(record),
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
+        "self_clearance": self_clearance_of(record),
         "contact": contact_of(record),
         "certified": None if certificate is None else certified_of(record, certificate),
         "cross_check": _cross_check(record.cross_check),

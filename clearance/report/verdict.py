@@ -16,6 +16,7 @@ from clearance.findings.finding import NOT_PROVEN, Finding
 from clearance.findings.standing import code_of, why_undecided
 from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import finding_line, waived_lines
+from clearance.report.self_clearance import self_clearance_lines
 from clearance.report.wording import (
     clock_text,
     count,
@@ -68,6 +69,7 @@ class Verdict:
         warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
+        self_clearance: how many pairs of links are measured, and why not the others, one line a robot.
         broken: rules of the case that are broken, beside its limits of clearance.
         nearest: the moment of least clearance of all, in one line, where that is not the one that stands worst.
         clocks: when it holds: how far the actors' clocks may be apart, and which stretches are not measured; empty
@@ -98,6 +100,12 @@ class Verdict:
     tolerances: str = ""
     with_tolerances: tuple[str, ...] = ()
     at_level: str = ""
+    self_clearance: tuple[str, ...] = ()
+
+    @property
+    def scope(self) -> tuple[str, ...]:
+        """Which pairs of links were measured, and what was not looked at, one line each."""
+        return (*self.self_clearance, *(f"{name} not checked" for name in self.not_checked))
 
     @property
     def exit_code(self) -> int:
@@ -194,6 +202,7 @@ def verdict_of(record: Record) -> Verdict:
         warnings=tuple(_warnings(record, notices)),
         disputed_by=None if disputing is None else disputing.peer,
         not_checked=tuple(not_checked(record.case)),
+        self_clearance=self_clearance_lines(record),
         broken=tuple(broken),
         nearest=_nearest(record),
         clocks=_when(record.case),

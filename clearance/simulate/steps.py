@@ -24,6 +24,9 @@ from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
+CUT = "the paper's rules cut every polygon pair at every step"
+"""Why the paper's method says nothing of a pair."""
+
 
 def between_of(steps: pa.Table) -> np.ndarray:
     """(n,) True where the status in a table of steps is that of the motion to the next step."""
@@ -217,5 +220,4 @@ def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> lis
         return []
     links, obstacles = pair_names(case, pairs)
     cut = np.flatnonzero(np.isinf(found.measure_pair_minima(None).clearance))
-    reason = "the paper's rules cut every polygon pair at every step"
-    return [Omission(links[i], obstacles[i], reason) for i in cut]
+    return [Omission(links[i], obstacles[i], CUT) for i in cut]

@@ -71,7 +71,7 @@ def _write_words(figure: Figure, record: Record, verdict: Verdict) -> None:
     limits = record.case.limits
     rest = [
         limits_text(limits.fail, limits.warn),
-        *(f"{one} not checked" for one in verdict.not_checked),
+        *verdict.scope,
     ]
     lines = (
         (

@@ -18,7 +18,7 @@ from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
 from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
 from clearance.world.notice import listed
 
-PARENT = "parent and child in MuJoCo"
+PARENT = "MuJoCo's filter of parent and child"
 EXCLUDE = "<exclude> in the model"
 BITS = "contype and conaffinity"
 """Why MuJoCo asks nothing about two bodies, where one joint alone does not say it."""

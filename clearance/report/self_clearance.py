@@ -1,0 +1,100 @@
+"""How many pairs of links of each robot are measured against one another, and why the others are not.
+
+Not for: which pairs those are (`world.self_pairs`, `world.pairs`), nor each by name (`background.unmeasured`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+from clearance.simulate.record import Record
+from clearance.simulate.sections import section_plan
+from clearance.simulate.steps import CUT
+from clearance.world.case import PlacedRobot
+from clearance.world.collision_matrix import ADJACENT
+from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
+
+NEIGHBOURS = "neighbours"
+
+
+def self_clearance_of(record: Record) -> list[dict[str, Any]]:
+    """For each robot that asks for it: pairs of links, how many of them are measured, at some time or always, how
+    many are left out by reason, and all that as one line."""
+    return [
+        _answer(record, i)
+        for i, placed in enumerate(record.case.robots)
+        if placed.self_clearance is not None
+    ]
+
+
+def self_clearance_lines(record: Record) -> tuple[str, ...]:
+    """The line of each robot that asks for it."""
+    return tuple(answer["text"] for answer in self_clearance_of(record))
+
+
+def _answer(record: Record, i_robot: int) -> dict[str, Any]:
+    case, placed = record.case, record.case.robots[i_robot]
+    asked = placed.self_clearance
+    assert asked is not None
+    measured, not_always = _measured(record, i_robot)
+    pairs = self_pairs(placed.robot, asked.matrix, trust_never=asked.trust_never)
+    left_out = Counter(
+        _reason(placed, pair)
+        for pair in pairs
+        if frozenset((pair.link_a, pair.link_b)) not in measured
+    )
+    whose = "self-clearance" if len(case.robots) == 1 else f"self-clearance of {placed.robot.name}"
+    told = {
+        "robot": placed.robot.name,
+        "n_pairs": len(pairs),
+        "n_measured": len(measured),
+        "n_not_always": len(not_always),
+        "left_out": dict(left_out),
+    }
+    return told | {"text": f"{whose}: {_text(told)}"}
+
+
+def _measured(record: Record, i_robot: int) -> tuple[set[frozenset[str]], set[frozenset[str]]]:
+    """The pairs of links of a robot that are measured at some time, and those of them that are not always."""
+    case = record.case
+    out = {(one.link, one.obstacle): one.reason for one in record.unmeasured}
+    measured, not_always = set(), set()
+    for pair in section_plan(record.timeline).pairs:
+        if pair.a.i_robot != i_robot or pair.b.i_robot != i_robot:
+            continue
+        why = out.get((pair.a.name_in(case), pair.b.name_in(case)))
+        if why != CUT:
+            own = frozenset((pair.a.own_name_in(case), pair.b.own_name_in(case)))
+            measured.add(own)
+            not_always |= {own} if why else set()
+    return measured, not_always
+
+
+def _reason(placed: PlacedRobot, pair: SelfPair) -> str:
+    """Why a pair is not measured at any time, as it is counted."""
+    asked = placed.self_clearance
+    if {pair.link_a, pair.link_b} & {*placed.exclude_links}:
+        return "of links that are excluded"
+    if pair.excused is None:
+        return "allowed"
+    if pair.excused == RIGID:
+        return RIGID
+    if asked is not None and asked.matrix is not None:
+        return f"by the SRDF ({pair.excused})"
+    return NEIGHBOURS if pair.excused == ADJACENT else f"by {pair.excused}"
+
+
+def _text(told: dict[str, Any]) -> str:
+    not_always = told["n_not_always"]
+    text = f"{told['n_measured']} of {told['n_pairs']} pairs measured"
+    text += f" ({not_always} of them not always)" if not_always else ""
+    for reason, n in sorted(told["left_out"].items(), key=_place):
+        text += f", {n} {'neighbour' if reason == NEIGHBOURS and n == 1 else reason}"
+    return text
+
+
+def _place(counted: tuple[str, int]) -> tuple[bool, int, str]:
+    """Neighbours first, then the reasons for most pairs."""
+    reason, n = counted
+    return reason != NEIGHBOURS, -n, reason
