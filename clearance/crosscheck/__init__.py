@@ -6,6 +6,7 @@ and a winding number says what lies inside a closed body. Not for: measuring (ro
 """
 
 from clearance.crosscheck.compare import cross_check
+from clearance.crosscheck.pairs import MOST_POINTS, is_too_large
 from clearance.crosscheck.sections import cross_check_sections
 
-__all__ = ["cross_check", "cross_check_sections"]
+__all__ = ["MOST_POINTS", "cross_check", "cross_check_sections", "is_too_large"]

@@ -51,7 +51,7 @@ def compared(
     """
     run = PeerRun(record, measured)
     answers = run.measure(progress)
-    tolerance = CROSS_CHECK * answers.diagonal
+    tolerance = CROSS_CHECK * answers.diagonal + run.point_size
     differences = np.abs(record.clearances - answers.clearances)
     witnesses = _Witnesses(run)
     errors = witnesses.errors()

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,11 +15,24 @@ from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
+from clearance.geometry.point_cloud import PointCloud
 from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex, Pair, measured_pairs
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
+MOST_POINTS = 2_000_000
+"""Of a cloud that FCL is asked about: it takes 1 GB and 6 s for a million."""
+
+
+def is_too_large(case: Case, pair: Pair) -> bool:
+    """True if a body of a pair is a cloud of more points than FCL is asked about."""
+    shapes = (body.body_in(case).shape for body in pair)
+    return any(isinstance(shape, PointCloud) and shape.n_points > MOST_POINTS for shape in shapes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,10 +44,20 @@ class PeerSide:
     peer: PeerBody
     locator: PointLocator
 
+    @cached_property
+    def tree(self) -> cKDTree:
+        """The vertices, to be asked for those about a point."""
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.soup.vertices)
+
     def distance(self, point: np.ndarray, solid: bool) -> float:
         """The distance [m] of a point (3,) in the body frame from the surface, or from the
-        solid.
+        solid; of a cloud from its balls.
         """
+        if self.soup.radius > 0.0:
+            beyond = self.locator.distance(point) - self.soup.radius
+            return max(0.0, beyond) if solid else abs(beyond)
         if solid and is_inside(self.soup, point[None])[0]:
             return 0.0
         return self.locator.distance(point)
@@ -50,6 +75,11 @@ class PeerPair:
     link: PeerSide
     i_other: int
     other: PeerSide
+
+    @property
+    def radii(self) -> float:
+        """[m] of the balls of both bodies, if they are clouds: what is between their points is more by that."""
+        return self.link.soup.radius + self.other.soup.radius
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 
 _STEPS_AT_ONCE = 512
+_CELL = 2.0 / 3.0**0.5 * (1.0 - 1e-6)  # [-] edge of a cell whose diagonal is just below 2
 _ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
 
 
@@ -51,6 +52,11 @@ class PeerRun:
         self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)
         self._carried = np.zeros(len(self.pairs))  # [m] lower bounds from the step before
         self._n_queries = 0
+
+    @property
+    def point_size(self) -> float:
+        """[m] by how much the points of two clouds can seem nearer to FCL than they are; 0 without clouds."""
+        return 2.0 * max(mover.side.peer.point_size for mover in self.movers)
 
     def measure(self, progress: Callable[[int, int], None] | None = None) -> PeerAnswers:
         """The peer's answers to all steps; `progress(done, total)` is called after each chunk of
@@ -87,6 +93,10 @@ class PeerRun:
         """True if the winding number finds one body of a pair inside the other at one step."""
         pair = self.pairs[i_pair]
         poses = self.poses(step, step + 1)
+        if pair.radii > 0.0:
+            pair.link.peer.place(poses[pair.i_mover][0])
+            pair.other.peer.place(poses[pair.i_other][0])
+            return holds_a_point(pair, poses[pair.i_mover][0], poses[pair.i_other][0])
         return bool(nested_steps(pair, poses[pair.i_mover], poses[pair.i_other])[0])
 
     def _measure_chunk(self, poses: np.ndarray, n_new: int) -> tuple[np.ndarray, np.ndarray]:
@@ -142,7 +152,11 @@ class PeerRun:
             if bounds[i_pair] >= best or best == 0.0:
                 break
             pair = self.pairs[i_pair]
-            self._carried[i_pair] = distance = pair.link.peer.distance(pair.other.peer)
+            distance = pair.link.peer.distance(pair.other.peer)
+            if distance > 0.0 and pair.radii > 0.0:
+                if holds_a_point(pair, poses[pair.i_mover], poses[pair.i_other]):
+                    distance = 0.0
+            self._carried[i_pair] = distance
             self._n_queries += 1
             if distance < best:
                 best, i_best = distance, int(i_pair)
@@ -152,7 +166,12 @@ class PeerRun:
 def nested_steps(
     pair: PeerPair, world_from_link: np.ndarray, world_from_other: np.ndarray
 ) -> np.ndarray:
-    """(n,) True at the poses (n, 4, 4) where a part of one body of the pair is inside the other."""
+    """(n,) True at the poses (n, 4, 4) where a part of one body of the pair is inside the other.
+
+    Clouds are left out: their points are asked one by one where the surfaces are known to be apart.
+    """
+    if pair.radii > 0.0:
+        return np.zeros(len(world_from_link), dtype=bool)
     other_from_link = np.linalg.inv(world_from_other) @ world_from_link
     nested = np.zeros(len(world_from_link), dtype=bool)
     for outer, inner, relative in (
@@ -163,3 +182,29 @@ def nested_steps(
         points = turned + relative[:, None, :3, 3]
         nested |= is_inside(outer, points.reshape(-1, 3)).reshape(points.shape[:2]).any(axis=1)
     return nested
+
+
+def holds_a_point(
+    pair: PeerPair, world_from_link: np.ndarray, world_from_other: np.ndarray
+) -> bool:
+    """True if a point of a cloud is inside the other body, whose surface no ball meets.
+
+    By FCL no point is nearer to the surface than `apart`: so no surface is between two points less than twice that
+    from each other, and one of each cell so small is asked. Both bodies are placed in FCL.
+    """
+    apart = pair.link.peer.distance_of_centres(pair.other.peer)
+    sides = (pair.link, world_from_link), (pair.other, world_from_other)
+    for (cloud, world_from_cloud), (body, world_from_body) in (sides, sides[::-1]):
+        if cloud.soup.radius > 0.0 and body.soup.holds:
+            body_from_cloud = np.linalg.inv(world_from_body) @ world_from_cloud
+            low, high = body.soup.bounds
+            middle = np.linalg.inv(body_from_cloud) @ [*(0.5 * (low + high)), 1.0]
+            near = cloud.tree.query_ball_point(middle[:3], 0.5 * np.linalg.norm(high - low) + 1e-9)
+            points = cloud.soup.vertices[near]
+            if body.soup.encloses:  # else a way leads from in to out through a hole
+                cells = np.floor(points / (apart * _CELL))
+                points = points[np.unique(cells, axis=0, return_index=True)[1]]
+            points = points @ body_from_cloud[:3, :3].T + body_from_cloud[:3, 3]
+            if is_inside(body.soup, points).any():
+                return True
+    return False

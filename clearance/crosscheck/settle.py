@@ -39,8 +39,8 @@ def peer_is_wrong(
         return False
     if peers > ours:
         return True
-    faces = _named_by_the_peer(peer_pair, poses)
-    return faces is not None and _exceeds(_distance_sq(peer_pair, poses, faces), peers + tolerance)
+    faces, least = _named_by_the_peer(peer_pair, poses), peers + peer_pair.radii + tolerance
+    return faces is not None and _exceeds(_distance_sq(peer_pair, poses, faces), least)
 
 
 def off_body(point: np.ndarray, side: PeerSide, pose: np.ndarray) -> float:
@@ -50,7 +50,8 @@ def off_body(point: np.ndarray, side: PeerSide, pose: np.ndarray) -> float:
     """
     triangles = side.locator.near(pose[:3, :3].T @ (point - pose[:3, 3]))
     (x,) = placed(point[None], np.eye(4))
-    return float(point_sq(x, [placed(triangle, pose) for triangle in triangles])) ** 0.5
+    found = float(point_sq(x, [placed(triangle, pose) for triangle in triangles])) ** 0.5
+    return abs(found - side.soup.radius)
 
 
 def _attained(
@@ -62,8 +63,9 @@ def _attained(
         _nearest_triangles(side, pose, x) for (side, pose), x in zip(sides, points, strict=True)
     ]
     least = min(_distance_sq(pair, poses, (i, j)) for i in near[0] for j in near[1])
-    return not _exceeds(least, ours + tolerance) and (
-        ours <= tolerance or _exceeds(least, ours - tolerance)
+    reached = ours + pair.radii
+    return not _exceeds(least, reached + tolerance) and (
+        ours <= tolerance or _exceeds(least, reached - tolerance)
     )
 
 

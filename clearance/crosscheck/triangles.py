@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.closing import closing_of
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.late_dataclass import dataclass
 
@@ -25,12 +26,14 @@ class TriangleSoup:
         turns: (m,) how often each counts in a winding number where the surface has a rim: those of closed
             components once, of components that are closed but for a few faults as `geometry.closing` says.
         caps: (k, 3, 3) [m] the triangles that close the latter.
+        radius: [m] of the balls about the points of a cloud, each of which is a triangle of one corner; else 0.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     turns: np.ndarray
     caps: np.ndarray
+    radius: float = 0.0
 
     @property
     def corners(self) -> np.ndarray:
@@ -39,15 +42,18 @@ class TriangleSoup:
 
     @cached_property
     def bounds(self) -> np.ndarray:
-        """(2, 3) [m] least and greatest coordinates."""
-        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+        """(2, 3) [m] least and greatest coordinates, of balls those of the balls."""
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        return np.array([low - self.radius, high + self.radius])
 
     @cached_property
     def encloses(self) -> bool:
         """True if every edge is walked as often one way as the other: the surface has no rim.
 
-        Just then the winding number of every point off the surface is an integer.
+        Just then the winding number of every point off the surface is an integer. Points hold nothing.
         """
+        if self.radius > 0.0:
+            return False
         tails, heads = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         there = np.sort(tails * len(self.vertices) + heads)
         back = np.sort(heads * len(self.vertices) + tails)
@@ -74,7 +80,11 @@ class TriangleSoup:
 
 
 def triangle_soup(shape: Polyhedron) -> TriangleSoup:
-    """The faces cut into fans, equal vertices made one."""
+    """The faces cut into fans, equal vertices made one; the points of a cloud."""
+    if isinstance(shape, PointCloud):
+        each = np.repeat(np.arange(shape.n_points)[:, None], 3, axis=1)
+        turns = np.zeros(shape.n_points, dtype=np.int64)
+        return TriangleSoup(shape.vertices, each, turns, np.empty((0, 3, 3)), shape.ball_radius)
     vertices, index = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)
     sizes = np.diff(shape.face_starts)
     firsts = np.repeat(shape.face_starts[:-1], sizes - 2)

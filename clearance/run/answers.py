@@ -254,21 +254,23 @@ def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:
 def _peer(
     case: Case, samples: Samples, found: Sequence[SectionAnswer], resources: Resources
 ) -> CrossCheck | None:
-    """The comparison with FCL; None where nothing but clouds of points is measured."""
-    from clearance.crosscheck import cross_check, cross_check_sections
+    """The comparison with FCL; None where nothing is measured but clouds that are too large for it."""
+    from clearance.crosscheck import cross_check, cross_check_sections, is_too_large
 
-    if any(pair.has_cloud(case) for one in found for pair in one.section.pairs):
-        faces = [part for one in found if one.section.tied for part in _without_clouds(case, one)]
-        return cross_check_sections(faces, resources.progress) if faces else None
+    if any(is_too_large(case, pair) for one in found for pair in one.section.pairs):
+        parts = [part for one in found if one.section.tied for part in _for_peer(case, one)]
+        return cross_check_sections(parts, resources.progress) if parts else None
     if len(found) == 1 and found[0].section.padding == 0.0:
         return cross_check(samples, resources.progress)
     return cross_check_sections(found, resources.progress)
 
 
-def _without_clouds(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
-    """A section measured again without its pairs with clouds, if others are left."""
+def _for_peer(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
+    """A section measured again without its pairs with clouds that are too large, if others are left."""
+    from clearance.crosscheck import is_too_large
+
     section = answer.section
-    kept = [i for i, pair in enumerate(section.pairs) if not pair.has_cloud(case)]
+    kept = [i for i, pair in enumerate(section.pairs) if not is_too_large(case, pair)]
     if len(kept) == len(section.pairs):
         yield answer
     elif kept:

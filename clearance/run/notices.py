@@ -62,11 +62,13 @@ def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterato
 
 
 def _not_cross_checked(case: Case, plan: SectionPlan) -> Iterator[Notice]:
-    clouds = {pair for pair in plan.pairs if pair.has_cloud(case)}
-    if clouds:
+    from clearance.crosscheck import MOST_POINTS, is_too_large
+
+    large = {pair for pair in plan.pairs if is_too_large(case, pair)}
+    if large:
         text = (
-            f"{len(clouds)} pairs with clouds of points are not cross-checked: FCL measures faces, and balls "
-            "only by an iteration"
+            f"{len(large)} pairs with clouds of points are not cross-checked: FCL is asked about up to "
+            f"{MOST_POINTS:,} points"
         )
         yield Notice(Severity.WARNING, "cross-check", text)
     untied = {pair for one in plan.sections if not one.tied for pair in one.pairs}

@@ -134,7 +134,20 @@ def test_contact_with_a_cloud_is_said_to_have_no_depth():
 
 
 @pytest.mark.peer
-def test_the_cross_check_is_of_what_fcl_can_measure():
+@pytest.mark.parametrize("gap", [0.4, 0.2, 0.0])
+def test_the_cross_check_asks_fcl_about_the_cloud_too(gap):
+    block = cl.Obstacle(cl.Body("block", cl.box([0.2, 0.2, 0.2])), at(0.3, -0.25))
+    case = case_of(scan(gap=gap), way(15))
+    for one in (case, replace(case, obstacles=(*case.obstacles, block))):
+        record = cl.check(one, cross_check=True).record
+        assert record.cross_check.agrees and record.cross_check.n_steps == 15
+        assert record.cross_check.greatest_difference <= record.cross_check.tolerance < 1e-8
+        assert not [notice for notice in record.notices if notice.kind == "cross-check"]
+
+
+@pytest.mark.peer
+def test_a_cloud_that_is_too_large_for_fcl_is_left_out_and_named(monkeypatch):
+    monkeypatch.setattr("clearance.crosscheck.pairs.MOST_POINTS", 4000)
     case = case_of(scan(), way(15))
     alone = cl.check(case, cross_check=True).record
     assert alone.cross_check is None

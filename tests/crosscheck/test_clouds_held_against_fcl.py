@@ -1,0 +1,74 @@
+"""FCL about clouds of points: what is right agrees, and a point that was overlooked is a disagreement."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from clearance import PointCloud
+from clearance.crosscheck import cross_check
+from clearance.crosscheck.fcl_adapter import PeerBody
+from clearance.crosscheck.triangles import triangle_soup
+from tests.crosscheck.sliding import box, rail_record
+from tests.examples import share_of
+from tests.query.test_clouds_of_all_sizes import GRID, KINDS, answer, scan, solid_of
+
+pytestmark = pytest.mark.peer
+
+
+def record_of(given, near):
+    """A record of one step: the solid on a rail, a cloud beside it, and what was found of them."""
+    cloud = PointCloud(given.points / GRID, given.radius / GRID)
+    row = (near.distance, "cloud", near.point_b, near.point_a)
+    return rail_record(solid_of(given.boxes), {"cloud": (cloud, (0, 0, 0))}, [0.0], [row])
+
+
+@pytest.mark.parametrize("n", [1, 7, 60, 400])
+@pytest.mark.parametrize("kind", KINDS)
+def test_right_answers_agree_and_wrong_ones_do_not(n, kind):
+    """The other way round as well: a distance where a point is inside, contact where none is."""
+    for seed in range(share_of(10)):
+        given = scan(np.random.default_rng(seed), n, kind)
+        true, near = answer(given, np.eye(4))
+        record = record_of(given, near)
+        check = cross_check(record)
+        assert check.agrees and check.n_settled == 0, (seed, check)
+        assert near.distance == pytest.approx(true, abs=1e-12)
+        for wrong in (near.distance + 1e-6, max(0.0, near.distance - 1e-6)):
+            if abs(wrong - true) >= 1e-6:
+                column = record.steps.schema.get_field_index("clearance")
+                steps = record.steps.set_column(column, "clearance", [[wrong]])
+                other = record_of(given, near)
+                object.__setattr__(other, "steps", steps)
+                assert not cross_check(other).agrees, (seed, wrong)
+
+
+def test_a_point_wholly_inside_that_is_called_apart_is_a_disagreement():
+    """FCL alone says 246 mm for a point in the middle of a box of 0.5 m, and is asked what is inside besides."""
+    cloud = PointCloud([[0.002, -1.03, 0.345], [0.0, 0.0, 0.0]], 0.004)
+    row = (0.246, "cloud", (0.0, 0.0, -0.25), (0.0, 0.0, -0.004))
+    record = rail_record(box(0.5, 0.5, 0.5), {"cloud": (cloud, (0, 0, 0))}, [0.0], [row])
+    (found,) = cross_check(record).disagreements
+    assert (found.peer_clearance, found.reason) == (0.0, "the peer says contact")
+
+
+def test_a_point_of_fcl_is_a_point_but_for_a_fraction_of_a_nanometre():
+    random = np.random.default_rng(1)
+    for far in (1.0, 100.0):
+        points = random.uniform(-far, far, (300, 3))
+        cloud, solid = PointCloud(points, 1e-3), box(0.4, 0.6, 0.2)
+        beyond = np.maximum(np.abs(points) - [0.2, 0.3, 0.1], 0.0)
+        true = np.linalg.norm(beyond, axis=1).min()
+        one, other = (PeerBody(triangle_soup(shape)) for shape in (cloud, solid))
+        if true > 0.0:
+            off = true - 1e-3 - one.distance(other)
+            assert 0.0 <= off + 1e-13 * far <= one.point_size + 2e-13 * far
+
+
+@pytest.mark.slow
+def test_two_clouds_like_their_nearest_points():
+    random = np.random.default_rng(2)
+    one, two = random.uniform(-1.0, 1.0, (2, 300, 3)) + [[[0.0, 0.0, 0.0]], [[2.1, 0.0, 0.0]]]
+    gap = np.linalg.norm(one[:, None] - two, axis=2).min()
+    sides = [PeerBody(triangle_soup(PointCloud(points, 0.01))) for points in (one, two)]
+    assert sides[0].distance(sides[1]) == pytest.approx(gap - 0.02, abs=4e-10)
