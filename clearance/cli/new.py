@@ -153,7 +153,7 @@ def new(
     if asked and (states or trajectory is None):
         raise click.UsageError(_only_one(states, [*asked]))
     given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene)
-    made = new_case(given, out_dir)
+    made = _proposing(new_case(given, out_dir))
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)
     command = _command(out_dir)
@@ -170,6 +170,23 @@ def _only_one(states: list[str] | None, keys: list[str]) -> str:
     if "file" in keys:
         return f"both --trajectory and --states {','.join(states or ())}; one of them"
     return f"--{keys[0]} says how a trajectory is read; --trajectory FILE is missing"
+
+
+def _proposing(made: NewCase) -> NewCase:
+    """The case with links that touch at every step as a comment, where links are measured against each other."""
+    from clearance.cli import compile_ahead
+    from clearance.errors import ClearanceError
+    from clearance.run import check
+    from clearance.simulate.standing import touching_throughout
+
+    if not any(placed.self_clearance for placed in made.case.robots):
+        return made
+    compile_ahead.start()
+    try:
+        run = check(made.case, certify=False, contact="none")
+    except ClearanceError:  # the check says so when the case is asked
+        return made
+    return made.proposing(touching_throughout(run.record))
 
 
 def _write(made: NewCase, out_dir: Path, force: bool) -> None:

@@ -84,6 +84,11 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     ]
 
 
+def touching_throughout(record: Record) -> list[tuple[str, str]]:
+    """The pairs of both kinds: what never moves and touches, and what touches at every step."""
+    return list(dict.fromkeys([*standing_contacts(record), *always_in_contact(record)]))
+
+
 def _n_measured(plan: SectionPlan) -> np.ndarray:
     """(p,) at how many steps each pair of a run is measured; a step where two phases meet is one."""
     n_steps = np.zeros(len(plan.pairs), dtype=np.int64)

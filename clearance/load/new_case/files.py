@@ -21,11 +21,12 @@ from clearance.load.motion.trajectory_writer import written
 from clearance.load.new_case.named_motion import PERIOD, motion_between
 from clearance.load.new_case.robot import NewCaseRequest, NewRobot, new_robot
 from clearance.load.new_case.scene import NewScene, new_scene
-from clearance.load.new_case.text import CaseText, text_of
+from clearance.load.new_case.text import TOUCHING, CaseText, text_of
 from clearance.load.robot.srdf_states import NamedStates, names_of, states_known
 from clearance.load.text.notes import counted
 from clearance.world.case import Case, Source
 from clearance.world.names import checked_name
+from clearance.world.notice import listed
 from clearance.world.trajectory import Trajectory
 
 CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
@@ -38,7 +39,7 @@ class NewCase:
     Attributes:
         files: content by name. case: what they say. sources: the files that were read.
         taken, assumed: a line each. notes: on what is read anew with each check. lost: notes that are not, but
-            stand in the files as comments.
+            stand in the files as comments. text: what the case file says.
     """
 
     files: Mapping[str, bytes]
@@ -48,6 +49,19 @@ class NewCase:
     assumed: tuple[str, ...]
     notes: tuple[str, ...]
     lost: tuple[str, ...]
+    text: CaseText
+
+    def proposing(self, touching: Sequence[tuple[str, str]]) -> NewCase:
+        """The same with pairs that touch at every step as a comment in the case file, to be allowed by hand."""
+        if not touching:
+            return self
+        text = replace(self.text, touching=touching)
+        pairs = listed([" - ".join(pair) for pair in touching], 6)
+        lost = (
+            f"{TOUCHING}: {pairs}; where that is meant, {CASE} has the rows of allow in a comment"
+        )
+        files = {**self.files, CASE: text_of(text).encode()}
+        return replace(self, files=files, text=text, lost=(*self.lost, lost))
 
 
 def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
@@ -88,6 +102,7 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
         (*robot.assumed(trajectory, scene.name is None), *_assumed_of_motion(given)),
         tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
         (*motion.notes, *scene.notes),
+        text,
     )
 
 

@@ -14,6 +14,9 @@ from clearance.late_dataclass import dataclass
 from clearance.load.text.yaml_text import flow
 from clearance.world.notice import KINDS
 
+TOUCHING = "these pairs touch at every step"
+"""What is said of pairs that may be meant to touch."""
+
 
 @dataclass(frozen=True)
 class CaseText:
@@ -26,6 +29,7 @@ class CaseText:
         scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
             read.
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
+        touching: pairs that touch at every step, to be allowed where that is meant.
         remarks: why a key is as it is, by key.
     """
 
@@ -41,6 +45,7 @@ class CaseText:
     motion_notes: Sequence[str] = ()
     carry: Sequence[Mapping[str, Any]] = ()
     allow: Sequence[tuple[str, str]] = ()
+    touching: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -105,11 +110,15 @@ def _scene(case: CaseText) -> Iterator[str]:
 
 
 def _allow(case: CaseText) -> Iterator[str]:
-    if not case.allow:
+    if case.allow:
+        yield "allow:  # pairs that are not measured; from the scene's file"
+        yield from (f"- {flow(list(pair))}" for pair in case.allow)
+    elif not case.touching:
         yield f"# allow: [[{flow(case.link)}, table]]  # pairs that are not measured; wildcards in quotes"
-        return
-    yield "allow:  # pairs that are not measured; from the scene's file"
-    yield from (f"- {flow(list(pair))}" for pair in case.allow)
+    if case.touching:
+        yield f"# {TOUCHING.capitalize()}; where that is meant, uncomment:"
+        yield from [] if case.allow else ["# allow:"]
+        yield from (f"# - {flow(list(pair))}" for pair in case.touching)
 
 
 def _remark(case: CaseText, key: str) -> str:
