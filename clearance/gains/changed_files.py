@@ -169,7 +169,7 @@ class _Files:
             old = holder["trajectory"]
             old = {"file": old} if isinstance(old, str) else dict(old)
             if "file" in told:
-                old = {key: value for key, value in old.items() if key in WHEN}
+                old = {key: value for key, value in old.items() if key in (*WHEN, "wrap")}
             made = {**told, **old} if "file" in told else {**old, **told}
             holder["trajectory"] = made["file"] if [*made] == ["file"] else made
 

@@ -20,11 +20,15 @@ from clearance.load.motion.trajectory_file import read_trajectory
 from clearance.load.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.load.schema.pose import PoseFile, TrajectoryFile
 from clearance.load.table.csv_table import Opener
+from clearance.load.text.notes import counted
 from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
+from clearance.world.notice import listed
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
+from clearance.world.trajectory import AS_WRITTEN, SHORTEST
+from clearance.world.wrap import long_steps, meant, wrapping_joints
 
 Table = TypeVar("Table")
 
@@ -49,6 +53,7 @@ def trajectory_of(
     """
 
     kinds = {joint.name: turns(joint) for joint in robot.moving_joints}
+    wrapping = frozenset() if given.wrap == AS_WRITTEN else wrapping_joints(robot)
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
         request = TrajectoryRequest(opened, n_bytes, bool(kinds), given.choice, kinds)
@@ -58,7 +63,7 @@ def trajectory_of(
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
         found = (
-            _of_bag(path, files, given.choice, kinds)
+            _of_bag(path, files, given.choice, kinds, wrapping)
             if is_bag(path)
             else _read(path, files, read, "a trajectory")
         )
@@ -69,7 +74,18 @@ def trajectory_of(
     with at(field), at(files.shown(path)):
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
-    return found
+    wrap = given.wrap or (SHORTEST if recorded or given.gaps else trajectory.wrap)
+    return found if wrap is None else _with_wrap(found, wrap, robot, files.shown(path))
+
+
+def _with_wrap(found: ReadTrajectory, wrap: str, robot: Robot, shown: str) -> ReadTrajectory:
+    """The trajectory whose steps of more than half a turn go one way or the other, and a note on those."""
+    asked = replace(found.trajectory, wrap=wrap)
+    steps = long_steps(robot, asked)
+    told = listed([f"{one.joint!r} in {counted(one.n_steps, 'step')}" for one in steps], 8)
+    way = "the shortest way" if wrap == SHORTEST else "as written"
+    note = f"{shown}: steps of more than half a turn go {way} (wrap: {wrap}): joint {told}"
+    return ReadTrajectory(meant(robot, asked), (*found.notes, note) if steps else found.notes)
 
 
 def load_trajectory(path: Path, choice: Choice, files: InputFiles | None = None) -> ReadTrajectory:
@@ -108,7 +124,11 @@ def load_samples(path: Path, files: InputFiles) -> ReadSamples:
 
 
 def _of_bag(
-    path: Path, files: InputFiles, choice: Choice, kinds: Mapping[str, bool]
+    path: Path,
+    files: InputFiles,
+    choice: Choice,
+    kinds: Mapping[str, bool],
+    wrapping: frozenset[str] | None = None,
 ) -> ReadTrajectory:
     """What is in a bag, whose files are not kept."""
     from clearance.load.motion.rosbag_file import read_bag
@@ -117,7 +137,7 @@ def _of_bag(
     for one in files_of(path):
         files.unread(one)
     with at(shown):
-        trajectory, notes = read_bag(path, choice, kinds)
+        trajectory, notes = read_bag(path, choice, kinds, wrapping)
     return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
 
 

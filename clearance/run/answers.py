@@ -41,8 +41,9 @@ from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, ste
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
-from clearance.world.notice import Notice
+from clearance.world.notice import WRAP, Notice
 from clearance.world.pairs import names_of
+from clearance.world.plausible_wrap import shortest_reading
 from clearance.world.reach import require_within_reach
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
@@ -98,7 +99,28 @@ def answered(question: Question, resources: Resources) -> Record:
     if resources.rows.folder is not None:
         pairs = plan.sections.pairs
         resources.rows.ask(fingerprint(question.case, plan.own, pairs, question.of_rows))
-    return _record(plan, _answers(plan, resources))
+    record = _record(plan, _answers(plan, resources))
+    other = shortest_reading(question.case)
+    return record if other is None else _with_both_readings(record, question, other)
+
+
+def _with_both_readings(record: Record, question: Question, other: Case) -> Record:
+    """The record whose notices on turns that could go either way say what both come to.
+
+    Args:
+        other: the case in which they go the shortest way.
+    """
+    from clearance.report.wording import mm
+
+    asked = replace(question, case=other, cross_check=False, contact="none", body_gaps=False)
+    nearest = [one.nearest for one in (record, answered(asked, DEFAULT_RESOURCES))]
+    told = ["contact" if one.touches else f"{mm(one.clearance)} mm" for one in nearest]
+    text = f"least clearance as written: {told[0]}, the shortest way: {told[1]}"
+    notices = (
+        replace(one, text=f"{one.text}; {text}") if one.kind == WRAP else one
+        for one in record.notices
+    )
+    return replace(record, notices=tuple(notices))
 
 
 def measurement_plan(question: Question) -> MeasurementPlan:

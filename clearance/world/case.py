@@ -43,6 +43,7 @@ from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver
+from clearance.world.wrap import meant
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
@@ -203,9 +204,9 @@ class PlacedRobot:
                 checked_padding(padding)
         if self.trajectory is not None:
             require_samples_to_loop(self.trajectory.n_steps, self.timing)
-        if self.trajectory is not None:
             with at(f"robot {self.robot.name!r}: trajectory"):
                 require_moving_joints(self.robot, self.trajectory.joint_names)
+            object.__setattr__(self, "trajectory", meant(self.robot, self.trajectory))
 
     @property
     def joints_given(self) -> tuple[str, ...]:
@@ -366,13 +367,14 @@ class Case:
         velocities: np.ndarray | None = None,
         joint_names: Sequence[str] | None = None,
         robot: str | None = None,
+        wrap: str | None = None,
     ) -> Case:
         """The same case with another trajectory for one robot.
 
         Args:
             times: (n,) [s]. positions, velocities: (n, k) of `joint_names` [rad] or [m], and per second.
             joint_names: those of the trajectory that it has, else all its moving joints that are not fixed.
-            robot: its name; needed only where there are several.
+            robot: its name; needed only where there are several. wrap: as in `Trajectory`.
 
         Raises:
             BadInput: no such robot or joint, or numbers that are no trajectory.
@@ -380,7 +382,7 @@ class Case:
         i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
-        trajectory = Trajectory(times, names, positions, velocities)
+        trajectory = Trajectory(times, names, positions, velocities, wrap=wrap)
         moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 

@@ -19,6 +19,7 @@ from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_sizes import notices_on_sizes
 from clearance.world.plausible_tables import notices_on_tables
+from clearance.world.plausible_wrap import notices_on_wrap
 
 LARGE_LIMIT = 0.5
 """[m] A clearance limit above half a metre would forbid a robot most of its cell; in millimetres it
@@ -48,6 +49,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
             found += notices_on_motion(placed, before, extents)
             found += notices_on_speed(placed, case.limits.joints, before)
             found += notices_on_holes(placed, before)
+            found += notices_on_wrap(placed, before)
         found += notices_on_joints(placed, case.limits.joints, before, extents)
     return worst_first(found)
 

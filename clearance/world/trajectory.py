@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadShape, DuplicateName, NotFinite
+from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST
 from clearance.world.notice import NOT_MEASURED, listed
@@ -37,6 +37,11 @@ class Hole:
         )
 
 
+SHORTEST, AS_WRITTEN = "shortest", "as_written"
+WRAPS = (SHORTEST, AS_WRITTEN)
+"""What a step of more than half a turn of a continuous joint is meant as."""
+
+
 @dataclass(frozen=True, eq=False)
 class Trajectory:
     """Samples of joint positions, and of velocities if they are known.
@@ -49,10 +54,13 @@ class Trajectory:
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
         holes: stretches of a recording in which it was not known where joints were.
+        wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
+            A `PlacedRobot` takes whole turns off those that are meant the shortest way.
 
     Raises:
         BadShape, NotFinite: not one finite number for each time and joint. BadTime: times that do not increase.
-            BadDimension: a velocity that carries its joint out of all bounds before the next sample.
+            BadDimension: a velocity that carries its joint out of all bounds before the next sample. BadInput: a
+            wrap that is none.
     """
 
     times: np.ndarray
@@ -60,12 +68,15 @@ class Trajectory:
     positions: np.ndarray
     velocities: np.ndarray | None = None
     holes: tuple[Hole, ...] = ()
+    wrap: str | None = None
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
             if getattr(self, name) is not None:
                 object.__setattr__(self, name, _numbers(getattr(self, name), name))
         self._refuse_bad_samples()
+        if self.wrap not in (None, *WRAPS):
+            raise BadInput(f"wrap is {self.wrap!r:.60}", valid=f"one of {', '.join(WRAPS)}")
         if self.velocities is not None:
             self._refuse_bad_velocities(self.velocities)
 

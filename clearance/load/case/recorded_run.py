@@ -9,6 +9,8 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from clearance.errors import BadInput, BadTime, UnknownRobot, at
 from clearance.load.files.input_files import InputFiles
 from clearance.load.schema.pose import TrajectoryFile
@@ -16,11 +18,13 @@ from clearance.load.schema.tolerance import MOST_ANGLE, MOST_OFFSET
 from clearance.load.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance
 from clearance.world.case import Case, PlacedRobot, index_of_robot
+from clearance.world.cubic import positions_along
 from clearance.world.joint_positions import turns
 from clearance.world.notice import GAPS, Notice, Severity
 from clearance.world.recording import Recording, motion_left_out, recording_of
 from clearance.world.timing import AS_GIVEN
 from clearance.world.trajectory import Trajectory
+from clearance.world.wrap import wrapping_joints
 
 MOST = {"rad": MOST_ANGLE, "m": MOST_OFFSET}
 """What a joint may be off, or move where nothing is recorded."""
@@ -55,7 +59,7 @@ def with_recorded(
     given = TrajectoryFile(file=path.name).model_copy(update={"gaps": gaps})
     read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files, recorded=True)
     with at(f"recorded: {shown}"):
-        driven = read.shifted(offset)
+        driven = _near_what_was_asked(read.shifted(offset), placed)
         resting = placed.fixed_positions
         found = recording_of(shown, offset, driven, placed.given_trajectory, placed.timing, resting)
         notices = _of_motion_left_out(placed, found)
@@ -71,6 +75,20 @@ def with_recorded(
         notes=(*case.notes, *notes, *_notes(found)),
         notices=(*case.notices, *notices),
     )
+
+
+def _near_what_was_asked(driven: Trajectory, placed: PlacedRobot) -> Trajectory:
+    """The recording with whole turns on joints that have no limits, so that it begins next to what was asked."""
+    asked, timing = placed.given_trajectory, placed.timing
+    start = np.array([max(driven.times[0], timing.run_times(asked.times)[0])])
+    own = positions_along(asked, (start - timing.start) * timing.rate)[0].tolist()
+    wanted = placed.fixed_positions | dict(zip(asked.joint_names, own, strict=True))
+    was, positions = positions_along(driven, start)[0], driven.positions.copy()
+    for i, name in enumerate(driven.joint_names):
+        if name in wrapping_joints(placed.robot):
+            turns = np.round((wanted.get(name, 0.0) - was[i]) / (2.0 * np.pi))
+            positions[:, i] += 2.0 * np.pi * turns
+    return replace(driven, positions=positions)
 
 
 def _robot_of(case: Case, robot: str | None) -> int:

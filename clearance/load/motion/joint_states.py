@@ -17,7 +17,8 @@ from clearance.load.motion.recording_gaps import Track, holes_of
 from clearance.load.motion.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.notice import HOLD, listed
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import SHORTEST, Trajectory
+from clearance.world.wrap import whole_turns
 
 MOST_LEFT_OUT = 0.1
 """Share of the recording in which some joint may be unknown."""
@@ -50,7 +51,10 @@ class _Joint(NamedTuple):
 
 
 def trajectory_of_states(
-    states: Sequence[JointState], turns: Mapping[str, bool], gaps: str | None = None
+    states: Sequence[JointState],
+    turns: Mapping[str, bool],
+    gaps: str | None = None,
+    wrapping: frozenset[str] | None = None,
 ) -> ReadTrajectory:
     """What the robot did, in seconds from when all of its joints were known.
 
@@ -61,6 +65,7 @@ def trajectory_of_states(
         turns: names the joints that the robot can move; empty where it is not known.
         gaps: what joints do where they are not told of for long, one of `GAPS`; with "hold", after their last
             message too.
+        wrapping: joints of which whole turns may have been taken off; any where it is not known.
 
     Raises:
         BadInput: no joint that can be moved, or joints that are not known at one time. BadShape, BadTime: with the
@@ -85,11 +90,28 @@ def trajectory_of_states(
         tracks = {name: track.held() for name, track in tracks.items()}
     every = np.unique(np.concatenate([track.times for track in tracks.values()]))
     times = every[(every >= start) & (every <= end)]
-    positions = [np.interp(times - start, t.times - start, t.positions) for t in tracks.values()]
+    positions = [
+        _positions_at(track, times, wrapping is None or name in wrapping)
+        for name, track in tracks.items()
+    ]
     trajectory = Trajectory(
-        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes
+        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes, wrap=SHORTEST
     )
     return ReadTrajectory(trajectory, tuple(_notes(states, joints, kept, (start, end))))
+
+
+def _positions_at(track: Track, times: np.ndarray, wraps: bool) -> np.ndarray:
+    """(n,) where a joint is at some times: straight between its own samples, the shortest way where it wraps.
+
+    Whole turns that were taken off stay off: each is in the step to the sample that is without it.
+    """
+    turns = whole_turns(track.positions) if wraps else np.zeros(len(track.times))
+    since = track.times - times[0]
+    found = np.interp(times - times[0], since, track.positions - 2.0 * np.pi * turns)
+    if not turns.any():
+        return found
+    before = np.searchsorted(track.times, times, side="right") - 1
+    return found + 2.0 * np.pi * turns[before]
 
 
 def _joints(states: Sequence[JointState]) -> dict[str, _Joint]:

@@ -49,11 +49,17 @@ MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
 
 
-def read_bag(path: Path, choice: Choice, turns: Mapping[str, bool]) -> ReadTrajectory:
+def read_bag(
+    path: Path,
+    choice: Choice,
+    turns: Mapping[str, bool],
+    wrapping: frozenset[str] | None = None,
+) -> ReadTrajectory:
     """The trajectory of the topic that is meant.
 
     Args:
-        turns: names the joints that the robot can move; empty where it is not known.
+        turns: names the joints that the robot can move; empty where it is not known. wrapping: those of which a
+            recording may have taken whole turns off; None where that is not known.
 
     Raises:
         BadInput: with the topic. Unavailable: rosbags is not installed.
@@ -64,7 +70,7 @@ def read_bag(path: Path, choice: Choice, turns: Mapping[str, bool]) -> ReadTraje
         topic, kind = _topic(reader, choice.topic)
         if kind == _STATES:
             choice.refuse_others({"topic", "gaps"}, "recorded joint states")
-            return trajectory_of_states(_states(reader, topic), turns, choice.gaps)
+            return trajectory_of_states(_states(reader, topic), turns, choice.gaps, wrapping)
         choice.refuse_others({"topic", "which"}, "messages in a bag")
         plain = (_plain(one) for _, one in _messages(reader, topic))
         planned = messages_in([*_goals_once(plain)], sys.maxsize)

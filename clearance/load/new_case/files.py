@@ -27,6 +27,7 @@ from clearance.load.text.notes import counted
 from clearance.world.case import Case, Source
 from clearance.world.names import checked_name
 from clearance.world.notice import listed
+from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.trajectory import Trajectory
 
 CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
@@ -180,10 +181,17 @@ def _text(
         trajectory=TRAJECTORY,
         motion=motion.source,
         motion_notes=motion.notes,
+        motion_keys=_open_keys(robot, motion.trajectory),
         carry=scene.carry,
         allow=scene.allow,
         remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
     )
+
+
+def _open_keys(robot: NewRobot, trajectory: Trajectory) -> list[tuple[str, str]]:
+    """Keys of the trajectory that would answer what is suspect about it, and what that is."""
+    moving = replace(robot.placed, trajectory=trajectory)
+    return [("wrap: shortest", f"or as_written: {one.text}") for one in notices_on_wrap(moving)]
 
 
 def _states(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> NamedStates:

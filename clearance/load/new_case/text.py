@@ -27,7 +27,7 @@ class CaseText:
         robot: its keys and values, in order. link: its first with a shape, for examples.
         resting: what stands under `joints`. states: of which one could stand there.
         scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
-            read.
+            read. motion_keys: keys that the trajectory needs but that only the reader knows, as YAML, and why.
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
         touching: pairs that touch at every step, to be allowed where that is meant.
         remarks: why a key is as it is, by key.
@@ -43,6 +43,7 @@ class CaseText:
     trajectory: str
     motion: str
     motion_notes: Sequence[str] = ()
+    motion_keys: Sequence[tuple[str, str]] = ()
     carry: Sequence[Mapping[str, Any]] = ()
     allow: Sequence[tuple[str, str]] = ()
     touching: Sequence[tuple[str, str]] = ()
@@ -63,6 +64,8 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield from _scene(case)
     yield from (f"# {shown(note)}" for note in case.motion_notes)
     yield f"trajectory: {flow(case.trajectory)}  # {shown(case.motion)}"
+    for key, why in case.motion_keys:
+        yield f"# trajectory: {{file: {flow(case.trajectory)}, {key}}}  # {shown(why)}"
     if case.carry:
         yield "carry:  # from the scene's file, in which links hold them"
         yield from (f"- {flow(one)}" for one in case.carry)

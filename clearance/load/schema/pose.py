@@ -114,11 +114,11 @@ class PoseFile(TimedFile):
 class TrajectoryFile(TimedFile):
     """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
     `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
-    `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go straight (linear), or are
-    not measured.
+    `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go straight (linear), or
+    are not measured. `wrap` says which way round a continuous joint goes in a step of more than half a turn.
     """
 
-    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps"})
+    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps", "wrap"})
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None
@@ -126,6 +126,7 @@ class TrajectoryFile(TimedFile):
     period: Annotated[float | None, Field(gt=0)] = None
     topic: Name | None = None
     gaps: Literal["hold", "linear", "not_measured"] | None = None
+    wrap: Literal["shortest", "as_written"] | None = None
 
     @property
     def choice(self) -> Choice:

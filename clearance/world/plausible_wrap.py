@@ -1,0 +1,55 @@
+"""Turns of continuous joints of which it is not said which way round they go.
+
+Not for: what such a turn is (`wrap`), nor units (`plausible_motion`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.notice import WRAP, Notice, Severity, listed
+from clearance.world.trajectory import SHORTEST
+from clearance.world.wrap import LongStep, long_steps
+
+
+def notices_on_wrap(placed: PlacedRobot, before: str = "") -> list[Notice]:
+    """That joints go by more than half a turn in a step; one notice, of the longest step of each.
+
+    Args:
+        before: what stands before the names of joints.
+    """
+    found = _open_steps(placed)
+    if not found:
+        return []
+    first, others = found[0], listed([repr(before + one.joint) for one in found[1:]])
+    start, end = placed.timing.run_times(np.array([first.start, first.end])).tolist()
+    text = (
+        f"joint {before + first.joint!r} goes from {first.before:.6g} to {first.after:.6g} rad "
+        f"between {start:.6g} s and {end:.6g} s, more than half a turn"
+        f"{f', as in {first.n_steps - 1} steps more' if first.n_steps > 1 else ''}"
+        f"{f' (likewise {others})' if others else ''}: by {first.after - first.before:.3g} rad as written, by "
+        f"{first.shortest:.3g} rad the shortest way; trajectory: {{wrap: as_written}} or {{wrap: shortest}} says "
+        "which is meant"
+    )
+    return [Notice(Severity.SUSPECT, WRAP, text, placed.robot.name)]
+
+
+def shortest_reading(case: Case) -> Case | None:
+    """The case in which these turns go the shortest way; None where there are none, or the case accepts them."""
+    if WRAP in case.accept or not any(map(_open_steps, case.robots)):
+        return None
+    return replace(case, robots=tuple(map(_by_shortest, case.robots)))
+
+
+def _by_shortest(placed: PlacedRobot) -> PlacedRobot:
+    if not _open_steps(placed):
+        return placed
+    return replace(placed, trajectory=replace(placed.given_trajectory, wrap=SHORTEST))
+
+
+def _open_steps(placed: PlacedRobot) -> list[LongStep]:
+    asked = placed.trajectory
+    return [] if asked is None or asked.wrap is not None else long_steps(placed.robot, asked)
