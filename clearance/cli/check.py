@@ -12,7 +12,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
-from clearance.cli.for_ci import CiOutputs, baseline_of, ci_options, comparison_of, with_waivers
+from clearance.cli.for_ci import CiOutputs, baseline_of, ci_options, comparison_of
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import LengthParamType, OutputPath, accept_option
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
@@ -145,7 +145,7 @@ def check(
     from clearance.run import Question
 
     _compile_ahead(quiet)
-    case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
+    case = _case(case_file, fail_mm, warn_mm, accept, waivers)
     case = with_recording(with_tolerances(case, tolerance), *recording)
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
@@ -242,14 +242,17 @@ def _case(
     fail: float | None,
     warn: float | None,
     accept: tuple[str, ...],
+    waivers: tuple[Path, ...],
 ) -> Case:
     """The case with what the command line changes of it."""
     from clearance.load.case.case_file import load_case
+    from clearance.load.case.waiver_file import with_waivers
     from clearance.run.question import with_levels
 
     case = load_case(case_file)
     accepted = tuple(dict.fromkeys([*case.accept, *accept]))
-    return replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
+    case = replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
+    return with_waivers(case, waivers)
 
 
 def _require_extras(cross_check: bool, motion: str) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
     from clearance.findings.findings_file import FindingList
     from clearance.run import Run
-    from clearance.world.case import Case
 
 SUMMARY_VARIABLE, ROOT_VARIABLE = "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"
 """What GitHub Actions calls the file of a step's summary, and the folder of the repository."""
@@ -78,26 +76,6 @@ _OPTIONS = (
 
 
 ci_options = in_order(*_OPTIONS)
-
-
-def with_waivers(case: Case, paths: Sequence[Path]) -> Case:
-    """The case with the waivers of more files, which are then among its inputs.
-
-    Raises:
-        BadInput: with the file and the row.
-    """
-    if not paths:
-        return case
-    from clearance.load.case.waiver_file import waivers_of
-    from clearance.load.files.input_files import InputFiles
-
-    found, sources = list(case.waivers), {source.path: source for source in case.sources}
-    for path in paths:
-        files = InputFiles(path.parent)
-        found += waivers_of(files, path)
-        sources |= {source.path: source for source in files.sources}
-    in_order = tuple(sources[path] for path in sorted(sources))
-    return replace(case, waivers=tuple(found), sources=in_order)
 
 
 def baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | None:

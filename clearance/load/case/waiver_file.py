@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +16,7 @@ from clearance.load.schema.errors import validated
 from clearance.load.schema.limits import TwoPatterns
 from clearance.load.schema.strict_model import Level, Name, StrictModel
 from clearance.load.text.yaml_file import parse_yaml
+from clearance.world.case import Case
 from clearance.world.waiver import Waiver
 
 MOST_WAIVERS = 10_000
@@ -74,6 +77,23 @@ def waivers_of(files: InputFiles, path: Path) -> tuple[Waiver, ...]:
         )
     rows = validated(_Rows, {"waivers": raw}, shown).waivers
     return tuple(_waiver(row, shown, i) for i, row in enumerate(rows))
+
+
+def with_waivers(case: Case, paths: Sequence[Path]) -> Case:
+    """The case with the waivers of more files, which are then among its inputs.
+
+    Raises:
+        BadInput: with the file and the row.
+    """
+    if not paths:
+        return case
+    found, sources = list(case.waivers), {source.path: source for source in case.sources}
+    for path in paths:
+        files = InputFiles(path.parent)
+        found += waivers_of(files, path)
+        sources |= {source.path: source for source in files.sources}
+    in_order = tuple(sources[path] for path in sorted(sources))
+    return replace(case, waivers=tuple(found), sources=in_order)
 
 
 def _waiver(row: _Row, shown: str, place: int) -> Waiver:
