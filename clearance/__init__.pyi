@@ -29,7 +29,8 @@ from .query.intersection import Intersection, intersect
 from .query.pair_query import Query
 from .query.penetration import penetration
 from .query.result import Nearest
-from .receipt.verification import Verification, verify
+from .receipt.verification import Verification
+from .receipt.verifying import verify
 from .receipt.writing import write_receipt
 from .run import Question, Resources, Run, answer, check
 from .simulate.checker import Checker

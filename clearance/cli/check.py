@@ -157,7 +157,7 @@ def check(
     )  # fmt: skip
     require_receipt(receipt, out, question)
     run = _answer(question, before, outputs, jobs, PrintedOutput(as_json, quiet))
-    write_receipt_of(run, receipt, out, case_file, tolerance, quiet=as_json or quiet)
+    write_receipt_of(run, receipt, out, case_file, (tolerance, waivers), quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 

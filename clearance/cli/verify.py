@@ -40,9 +40,9 @@ def require_receipt(receipt: str | None, out: Path | None, question: Question) -
     if out is None or not question.certify:
         lacks = "--out DIR" if out is None else "a certified run: leave out --samples-only"
         raise click.UsageError(f"--receipt needs {lacks}")
-    from clearance.receipt.writing import refuse_uncovered
+    from clearance.receipt.asked import refuse_uncovered
 
-    refuse_uncovered(question.case, question.motion, question.method)
+    refuse_uncovered(question)
 
 
 def write_receipt_of(
@@ -50,23 +50,27 @@ def write_receipt_of(
     receipt: str | None,
     out: Path | None,
     case_file: Path,
-    tolerance_file: Path | None,
+    beside: tuple[Path | None, tuple[Path, ...]],
     *,
     quiet: bool,
 ) -> None:
     """Writes the receipt where one is wanted, and says how long it is, and if tolerances are no part of it.
 
     The report is written before: whoever does not wait for the receipt keeps the answer.
+
+    Args:
+        beside: the file of tolerances and those of waivers that were given beside the case.
     """
     if receipt is None or out is None:
         return
+    tolerance, waivers = beside
     from clearance.cli.progress import shown_progress
     from clearance.receipt.receipt_file import read_receipt
     from clearance.receipt.writing import write_receipt
 
     try:
         with shown_progress(quiet, ["receipt"]) as progress:
-            path = write_receipt(run, out, case_file, receipt, tolerance_file or "", progress)
+            path = write_receipt(run, out, case_file, receipt, tolerance or "", progress, waivers)
     except KeyboardInterrupt:
         click.echo(NO_RECEIPT.format(out), err=True)
         raise
@@ -93,26 +97,40 @@ def write_receipt_of(
     type=click.Path(path_type=Path),
     help="The tolerances that were given beside the case, where they are not where they were.",
 )
+@click.option(
+    "--waivers",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="The waivers that were given beside the case, where they are not where they were.",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
-def verify(folder: Path, case_file: Path | None, tolerance: Path | None, quiet: bool) -> int:
-    """Proves the certified bound of the report in DIR again, from its receipt and the case's files.
+def verify(
+    folder: Path,
+    case_file: Path | None,
+    tolerance: Path | None,
+    waivers: tuple[Path, ...],
+    quiet: bool,
+) -> int:
+    """Proves the certified bound of the report in DIR again, and makes all else of the report again.
 
-    By arithmetic of its own, which shares no code with what measured. Exit code: 0 proven; 1 not
-    proven, with the first pair and interval that are not; 2 bad input: a receipt that is damaged,
-    or of other files, and which.
+    The proof is by arithmetic of its own, which shares no code with what measured. Limits, rules
+    and verdict are those of the case's files; each file of the report is compared with the one
+    that the case gives. The first line names what is not verified. Exit code: 0 proven, and the
+    report is right; 1 it is not, with the first pair and interval, or file and line; 2 bad input:
+    a receipt that is damaged, or of other files, and which.
     """
     from clearance.errors import shown
-    from clearance.receipt.verification import verify as verified
+    from clearance.extras import require
 
-    found = verified(folder, case_file, tolerance)
+    require("report", "verify")
+    from clearance.receipt.verifying import verify as verified
+
+    found = verified(folder, case_file, tolerance, waivers)
     if not quiet:
         click.echo(found.headline)
         for path, digest in found.inputs:
             click.echo(f"  {digest[:16]}  {shown(path)}")
-        for path, digest in found.not_read:
-            click.echo(
-                f"  {digest[:16]}  {shown(path)} (of the run; not read again, no part of the proof)"
-            )
         if found.unmeasured:
             click.echo(
                 f"  {len(found.unmeasured)} links and pairs are left out, as the report lists them:"

@@ -20,21 +20,10 @@ from clearance.receipt.proof.proving import SIZES, BadEvidence
 
 FILE_NAME = "receipt.bin"
 REPORT = ("findings.json", "report.html", "steps.csv", "summary.json")
-"""Files that every report has; a receipt is of their bytes."""
-
-REPORT_FILES = (
-    *REPORT,
-    "budget.csv",
-    "contacts.csv",
-    "pairs.parquet",
-    "replay.npz",
-    "steps.parquet",
-    "worst_moments.yaml",
-)
-"""Files that a report can have; a receipt is of the bytes of those that are there."""
+"""Files that every report has; a receipt is of the bytes of all files of its report."""
 
 FORMAT = b"clearance receipt "
-MAGIC = FORMAT + b"2\n"
+MAGIC = FORMAT + b"3\n"
 
 MOST_ITEMS = 2**23
 """Of a receipt; more would take minutes to go through."""
@@ -54,9 +43,10 @@ class Receipt:
     """A receipt.
 
     Attributes:
-        head: as in the file: kind ("full" or "sampled"), case and tolerance (files; empty for none), name, version
-            (of what wrote it), data (sha256 of the case's numbers), inputs (path and sha256), report (sha256 by
-            file), rules (names), nominal (the run had tolerances, which are not taken off).
+        head: as in the file: kind ("full" or "sampled"), case and tolerance (files; empty for none), waivers
+            (files beside the case), name, maker (`remade_report.maker`), asked (`asked.asked_of`), data (sha256 of
+            the case's numbers), inputs (path and sha256), report (sha256 by file), compared (its page shows a
+            comparison with another run), rules (names), nominal (tolerances of the run are not taken off).
         claims: (rules, intervals) in nanometres, as `proof.motion_data.UNIT` says.
         deeds: (k,) what is done with each item. codes: directions of each size, (n, 2).
     """
@@ -154,25 +144,20 @@ def _arrays(shapes: dict[str, list[int]], body: bytes) -> dict[str, np.ndarray]:
 
 
 def _require_head(head: dict[str, Any], claims: np.ndarray) -> None:
-    texts = [
-        head["kind"],
-        head["case"],
-        head["tolerance"],
-        head["name"],
-        head["version"],
-        head["data"],
-        *head["rules"],
-    ]
+    texts = [head[key] for key in ("kind", "case", "tolerance", "name", "data")]
+    texts += [*head["waivers"], *head["rules"]]
     texts += [one[key] for one in head["inputs"] for key in ("path", "sha256")]
-    texts += [*head["report"], *head["report"].values()]
+    texts += [text for key in ("report", "maker") for pair in head[key].items() for text in pair]
     digests = [head["data"], *(one["sha256"] for one in head["inputs"]), *head["report"].values()]
     if not all(len(digest) == 64 and set(digest) <= HEXADECIMAL for digest in digests):
         raise ValueError("sha256")
-    if not isinstance(head["nominal"], bool):
-        raise ValueError("nominal")
+    if not all(isinstance(head[key], bool) for key in ("nominal", "compared")):
+        raise ValueError("nominal, compared")
+    if not isinstance(head["asked"], dict):
+        raise ValueError("asked")
     if not all(isinstance(text, str) for text in texts) or head["kind"] not in ("full", "sampled"):
         raise ValueError("head")
-    if not {*REPORT} <= {*head["report"]} <= {*REPORT_FILES}:
+    if not {*REPORT} <= {*head["report"]}:
         raise ValueError("report")
     if claims.shape[0] != len(head["rules"]):
         raise ValueError("rules")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -11,22 +11,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from clearance import __version__
-from clearance.errors import BadInput, MissingFile
+from clearance.errors import BadInput
 from clearance.progress import Progress
-from clearance.receipt.case_data import CaseData, case_data, require_covered, with_tolerances
+from clearance.receipt.asked import asked_of, refuse_uncovered
+from clearance.receipt.case_data import CaseData, case_data, with_tolerances
 from clearance.receipt.claims import with_samples_only
 from clearance.receipt.fronts import EvidenceList
 from clearance.receipt.proof.halving import Halves, halves_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
-from clearance.receipt.receipt_file import (
-    FILE_NAME,
-    REPORT,
-    REPORT_FILES,
-    Receipt,
-    receipt_bytes,
-)
-from clearance.receipt.report_told import digest_of
+from clearance.receipt.receipt_file import FILE_NAME, Receipt, receipt_bytes
+from clearance.receipt.remade_report import has_comparison, hashes_of, maker
 from clearance.receipt.search import MOST_ITEMS, EvidenceSearch, TooManyProofs
 from clearance.report.folder import write_file
 
@@ -53,7 +47,6 @@ MICROMETRES = round(2e-6 / UNIT)
 if TYPE_CHECKING:
     from clearance.run import Run
     from clearance.simulate.record import Record
-    from clearance.world.case import Case
 
 
 def write_receipt(
@@ -63,6 +56,7 @@ def write_receipt(
     kind: str = "full",
     tolerance_file: str | PathLike[str] = "",
     progress: Progress | None = None,
+    waiver_files: Sequence[str | PathLike[str]] = (),
 ) -> Path:
     """Writes `receipt.bin` into the folder of a run's report; returns its path.
 
@@ -72,27 +66,33 @@ def write_receipt(
         kind: "full" for a proof of all intervals, "sampled" for one in 16 and the least of each rule.
         tolerance_file: of the tolerances that were given in place of the case's.
         progress: told while evidence is looked for.
+        waiver_files: of the waivers that were given beside the case's.
 
     Raises:
-        BadInput: a run that no receipt can be written of. MissingFile: no report in `folder`. Unwritable: it
-            cannot be written.
+        BadInput: a run that no receipt can be written of, or the report of another one. MissingFile: no report in
+            `folder`. Unwritable: it cannot be written.
     """
     if kind not in ("full", "sampled"):
         raise BadInput(f"the kind is {kind!r:.60}", valid="full or sampled")
     record, place = run.record, Path(folder)
-    require_certified(record)
-    report = _hashes(place)
+    if run.question is None:
+        raise BadInput("no receipt of a record that answers no question", valid="a run of check()")
+    refuse_uncovered(run.question)
+    report, compared = hashes_of(place), has_comparison(record, place)
     proven = _proven(record, kind, progress)
     data = proven.data
     head = {
         "kind": kind,
         "case": _way(place, case_file),
         "tolerance": _way(place, tolerance_file),
+        "waivers": [_way(place, path) for path in waiver_files],
         "name": data.name,
-        "version": __version__,
+        "maker": maker(),
+        "asked": asked_of(run.question),
         "data": data.digest,
         "inputs": [{"path": s.path, "sha256": s.sha256} for s in record.case.sources],
         "report": report,
+        "compared": compared,
         "rules": list(data.rules),
         "nominal": record.case.tolerance is not None and not data.has_errors,
     }
@@ -216,32 +216,6 @@ def _lowered(claims: np.ndarray, n_rules: int, share: float) -> np.ndarray:
     return np.concatenate([nominal, np.where(left == NOT_CLAIMED, left, less)])
 
 
-def require_certified(record: Record) -> None:
-    """Nothing, if a run's bounds can be proven again.
-
-    Raises:
-        BadInput: why they cannot.
-    """
-    if record.certificate is None:
-        raise BadInput("no receipt of a run that is not certified", valid="certify=True")
-    refuse_uncovered(record.case, record.motion_kind, record.method)
-
-
-def refuse_uncovered(case: Case, motion: str, method: str) -> None:
-    """Refuses what no receipt can be written of.
-
-    Raises:
-        BadInput: why not.
-    """
-    if motion != "kinematic":
-        raise BadInput(
-            f"no receipt for {motion} motion: it follows from no input", valid="kinematic motion"
-        )
-    if method != "exact":
-        raise BadInput(f"no receipt for the method {method}", valid="exact")
-    require_covered(case)
-
-
 def claims_of(record: Record, data: CaseData) -> np.ndarray:
     """(rules, intervals) what the run has certified, rounded down by one to two `UNIT`s."""
     claims = np.full((len(data.rules), data.n_intervals), NOT_CLAIMED)
@@ -260,16 +234,6 @@ def _claimed(lower: np.ndarray, data: CaseData) -> np.ndarray:
     known = np.isfinite(lower)
     row = np.floor(np.where(known, lower, 0.0) / UNIT).astype(np.int64) - 1
     return np.where(known, row, NOT_CLAIMED)
-
-
-def _hashes(folder: Path) -> dict[str, str]:
-    found = {name: digest_of(folder / name) for name in REPORT_FILES}
-    for name in REPORT:
-        if found[name] is None:
-            raise MissingFile(
-                "there is none", where=str(folder / name), valid="run.save(folder) first"
-            )
-    return {name: digest for name, digest in found.items() if digest is not None}
 
 
 def _way(folder: Path, case_file: str | PathLike[str]) -> str:

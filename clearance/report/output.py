@@ -31,7 +31,7 @@ from clearance.simulate.record import Record
 from clearance.simulate.replay.replay import FILE_NAME, replay_of
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
-OWN = (
+CONTENT = (
     "steps.parquet",
     "steps.csv",
     "pairs.parquet",
@@ -41,10 +41,11 @@ OWN = (
     FILE_NAME,
     findings_file.FILE_NAME,
     "report.html",
-    "receipt.bin",
-    OLDER_SUMMARY,
     LAST,
 )
+"""What a report can consist of."""
+
+OWN = (*CONTENT, "receipt.bin", OLDER_SUMMARY)
 """All files that a report can have; a receipt, which is of one report, goes with it."""
 
 

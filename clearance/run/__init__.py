@@ -92,7 +92,7 @@ def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
     Raises:
         NothingToMeasure: no pair is left.
     """
-    return Run(answered(question, resources), resources.rows)
+    return Run(answered(question, resources), resources.rows, question)
 
 
 def _with_recorded(

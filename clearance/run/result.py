@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from clearance.findings.finding import Finding
     from clearance.report.intervals import Event
     from clearance.report.verdict import Verdict
+    from clearance.run.question import Question
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +33,12 @@ class Run:
 
     Attributes:
         rows: where what the record shows of its rows is kept; the report is written by way of it.
+        question: what was asked; None for a record that was made by hand.
     """
 
     record: Record
     rows: MeasuredRows = IN_MEMORY
+    question: Question | None = None
 
     @property
     def steps(self) -> pa.Table:

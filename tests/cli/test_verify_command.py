@@ -34,6 +34,7 @@ def test_the_receipt_of_a_run_is_proven(home, capsys):
     assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
     told = capsys.readouterr().out
     assert told.startswith("PROVEN: at least 34.884 mm (default) between all 1 pairs over 300 ")
+    assert "; verdict clear, every byte of the report is as made again; 3 inputs" in told
     assert "trajectory.csv" in told and "are left out" in told
 
 
@@ -96,6 +97,33 @@ def test_a_receipt_of_what_is_not_proven_is_refused_before_anything_is_measured(
     assert not (home.parent / "out").exists()
 
 
+WAIVER = """- {between: ["*", block], at_least: 0.03, reason: a, by: b, until: 2900-01-01}
+"""
+
+
+@pytest.mark.slow
+def test_what_was_asked_beside_the_case_is_asked_again_and_said(home, capsys):
+    waivers, out = home / "more.yaml", home / "asked"
+    waivers.write_text(WAIVER)
+    case = str(home / "scenes" / "box_box" / "case.yaml")
+    asked = (
+        "--fail-mm 40 --today 2027-03-31 --need pairs --certify-mm 0.5 --contact none --body-gaps"
+    )
+    asked = [*asked.split(), "--accept", "units", "--waivers", str(waivers)]
+    assert run(["check", case, *asked, "--out", str(out), "--receipt", "--quiet"]) == ExitCode.CLEAR
+    capsys.readouterr()
+    assert run(["verify", str(out)]) == ExitCode.CLEAR
+    line = capsys.readouterr().out.partition("\n")[0]
+    assert "BELOW ITS LIMIT of 40 mm" in line and "every byte of the report" in line
+    assert "with 1 waiver (fail 40 mm, not the case's " in line
+    assert (
+        "; units accepted beside the case; ../more.yaml beside the case; waivers as of 2027" in line
+    )
+    waivers.rename(home / "moved.yaml")
+    assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
+    assert "--waivers FILE" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys):
     tolerances, out = home / "tol.yaml", home / "again"
@@ -110,7 +138,7 @@ def test_what_was_given_beside_the_case_is_not_said_to_be_unchanged(home, capsys
     tolerances.write_text("joints: {all: 0.0001}\n")
     assert run(["verify", str(out)]) == ExitCode.CLEAR
     told = capsys.readouterr().out
-    assert "(default), at least 34.78" in told and "(default, with tolerances)" in told
+    assert "(default), at least 34.78" in told and "(default, with tolerances; NOT VERIFIED" in told
     tolerances.rename(home / "moved.yaml")
     assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
     assert "--tolerance FILE" in capsys.readouterr().err

@@ -89,12 +89,27 @@ def test_less_than_the_report_tells_of_is_not_proven(folder):
     claims = read_receipt(folder / FILE_NAME).claims.copy()
     claims[1] -= round(0.01 / UNIT)
     rewritten(folder, claims=claims)
-    assert "summary.json tells of" in cl.verify(folder, loose()).failure
+    found = cl.verify(folder, loose())
+    assert 0.01 < found.beyond["default, with tolerances"] < 0.011
+    assert "with tolerances; NOT VERIFIED: up to 10." in found.headline.partition("\n")[0]
     claims[1] = NOT_CLAIMED
     rewritten(folder, claims=claims)
     assert (
         "nothing is claimed of rule default, with tolerances" in cl.verify(folder, loose()).failure
     )
+
+
+def test_a_limit_that_is_kept_with_tolerances_must_be_proven(folder):
+    """The report has 44 mm left, of 10 mm that are needed; a receipt of 9.999 mm does not bear that out."""
+    receipt = read_receipt(folder / FILE_NAME)
+    for least, failure in (
+        (0.010, ""),
+        (0.009999, "the case comes to clear with tolerances, the receipt proves 9.999000 mm"),
+    ):
+        claims = receipt.claims.copy()
+        claims[1] = np.minimum(claims[1], round(least / UNIT))
+        rewritten(folder, claims=claims)
+        assert cl.verify(folder, loose()).failure.startswith(failure or "none") == bool(failure)
 
 
 def test_tolerances_cannot_be_made_smaller_or_left_out(folder):

@@ -1,0 +1,108 @@
+"""What was asked of a case beside its files, as a receipt holds it, and the question as it is asked again.
+
+Whoever wrote the receipt chose it; so `told_beside` says in words all that is judged otherwise than by the case's
+files. Not for: answering (`run`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+from datetime import date
+from typing import Any
+
+from clearance.errors import BadInput, BadSyntax, shown
+from clearance.receipt.case_data import require_covered
+from clearance.receipt.receipt_file import DAMAGED, REMEDY
+from clearance.run.question import Question, with_levels
+from clearance.world.case import Case
+
+OF_THE_CASE = ("levels", "accept", "unproven_ok")
+"""What a command line changes of a case, beside the files that it gives."""
+
+NOT_TOLD = ("case", "inside")
+
+
+def asked_of(question: Question) -> dict[str, Any]:
+    """What was asked, as JSON holds it."""
+    case = question.case
+    options = {one.name: getattr(question, one.name) for one in fields(question)}
+    told = {name: value for name, value in options.items() if name not in NOT_TOLD}
+    told["today"] = None if question.today is None else question.today.isoformat()
+    levels = [case.limits.fail, case.limits.warn]
+    return told | dict(
+        zip(OF_THE_CASE, (levels, list(case.accept), _unproven_ok(case)), strict=True)
+    )
+
+
+def question_of(case: Case, asked: dict[str, Any]) -> Question:
+    """The question of a case that `asked_of` has told.
+
+    Raises:
+        BadInput: it is none, or of what no receipt is written.
+    """
+    options = {name: value for name, value in asked.items() if name not in OF_THE_CASE}
+    try:
+        fail, warn = asked["levels"]
+        accept, today = tuple(asked["accept"]), options["today"]
+        case = replace(case, limits=with_levels(case.limits, fail, warn), accept=accept)
+        if case.tolerance is not None:
+            lenient = replace(case.tolerance, unproven_ok=asked["unproven_ok"])
+            case = replace(case, tolerance=lenient)
+        options["today"] = None if today is None else date.fromisoformat(today)
+        question = Question(case, **options)
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise BadSyntax(DAMAGED, valid=REMEDY) from None
+    refuse_uncovered(question)
+    return question
+
+
+def refuse_uncovered(question: Question) -> None:
+    """Refuses what no receipt can be written of.
+
+    Raises:
+        BadInput: why not.
+    """
+    for given, needed, what in (
+        (question.method, "exact", f"of the method {question.method}"),
+        (question.certify, True, "of a run that is not certified"),
+        (question.inside, True, "of a run that does not look for bodies inside others"),
+    ):
+        if given != needed:
+            raise BadInput(f"no receipt {what}", valid=f"{needed}")
+    if question.motion != "kinematic":
+        raise BadInput(
+            f"no receipt of {question.motion} motion: it follows from no input",
+            valid="kinematic motion",
+        )
+    require_covered(question.case)
+
+
+def told_beside(case: Case, question: Question, files: tuple[str, ...]) -> tuple[str, ...]:
+    """What the verdict rests on beside the case's own files, in words.
+
+    Args:
+        case: as its file has it. files: that were given beside it.
+    """
+    return tuple(_beside(case, question, files))
+
+
+def _beside(case: Case, question: Question, files: tuple[str, ...]) -> Iterator[str]:
+    own, limits = case.limits, question.case.limits
+    for level in ("fail", "warn"):
+        here, there = getattr(limits, level), getattr(own, level)
+        if here != there:
+            yield f"{level} {here * 1e3:g} mm, not the case's {there * 1e3:g} mm"
+    accepted = [kind for kind in question.case.accept if kind not in case.accept]
+    if accepted:
+        yield f"{shown(', '.join(accepted))} accepted beside the case"
+    if _unproven_ok(question.case) and not _unproven_ok(case):
+        yield "limits that are not proven with tolerances may pass"
+    if files:
+        yield f"{', '.join(map(shown, files))} beside the case"
+    if question.today is not None:
+        yield f"waivers as of {question.today}"
+
+
+def _unproven_ok(case: Case) -> bool:
+    return case.tolerance is not None and case.tolerance.unproven_ok

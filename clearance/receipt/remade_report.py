@@ -1,0 +1,166 @@
+"""The report beside a receipt: whether it is as it was, and whether the case gives it again, byte for byte.
+
+It is made again by what measures, from the case's files. Not for: proving bounds (`verification`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+import tempfile
+from itertools import zip_longest
+from pathlib import Path
+
+from clearance.compile.machine import processor
+from clearance.errors import BadInput, BadSyntax, MissingFile, shown
+from clearance.import_closure import PACKAGE
+from clearance.receipt.receipt_file import REPORT, Receipt
+from clearance.report.output import CONTENT, write
+from clearance.report.provenance import versions
+from clearance.report.withdrawn import OLDER_SUMMARY
+from clearance.simulate.record import Record
+from clearance.source_digests import closure_digest
+
+PAGE = "report.html"
+
+MOST_TOLD, MOST_LETTERS = 3, 80
+"""Differences between two programs that are told, and letters of each."""
+
+SHOWN = 48
+"""Letters of a line that differs which are told."""
+
+
+def maker() -> dict[str, str]:
+    """Which program on which machine makes a report: where all of it is the same, so are the bytes."""
+    sources = closure_digest([PACKAGE / "run" / "__init__.py", PACKAGE / "report" / "output.py"])
+    machine = repr((platform.machine(), processor()))
+    digest = hashlib.sha256(machine.encode()).hexdigest()[:8]
+    own = {"sources": sources[:16], "processor": f"{processor()[1]} {digest}"}
+    return versions() | own
+
+
+def other_maker(receipt: Receipt) -> str:
+    """What made the report where that is not this program on this machine; else empty."""
+    told, own = receipt.head["maker"], maker()
+    others = [
+        f"{name} {told.get(name, 'unknown')}, here {own.get(name, 'unknown')}"
+        for name in [*own, *sorted({*told} - {*own})]
+        if told.get(name) != own.get(name)
+    ]
+    more = [f"and {len(others) - MOST_TOLD} more"] if len(others) > MOST_TOLD else []
+    return ", ".join([*(shown(text[:MOST_LETTERS]) for text in others[:MOST_TOLD]), *more])
+
+
+def differences(record: Record, place: Path) -> dict[str, str]:
+    """What differs, by file, between the report in a folder and the one that a record gives.
+
+    A file that is not in the folder is left out: it says nothing. The summary comes first, then the page.
+    """
+    with tempfile.TemporaryDirectory() as made:
+        write(record, made)
+        pairs = {
+            name: (_content(place / name), _content(Path(made) / name))
+            for name in reversed(CONTENT)
+        }
+    return {
+        name: _first_difference(told, own)
+        for name, (told, own) in pairs.items()
+        if told is not None and told != own
+    }
+
+
+def _first_difference(told: bytes, own: bytes | None) -> str:
+    if own is None:
+        return "this case gives none"
+    if b"\0" not in told:
+        rows = zip_longest(told.split(b"\n"), own.split(b"\n"), fillvalue=b"")
+        for number, (there, here) in enumerate(rows, 1):
+            if there != here:
+                return f"line {number} is {_part(there, here)}, not {_part(here, there)}"
+    return "its bytes are others"
+
+
+def _part(line: bytes, other: bytes) -> str:
+    """What a line has from a little before it differs from another one."""
+    same = next((i for i, (a, b) in enumerate(zip(line, other, strict=False)) if a != b), 0)
+    start = max(0, same - SHOWN // 2)
+    text = line.strip() if len(line) <= SHOWN else line[start : start + SHOWN]
+    return repr(shown(text.decode("utf-8", "replace")))
+
+
+def hashes_of(folder: Path) -> dict[str, str]:
+    """sha256 of each file of the report in a folder.
+
+    Raises:
+        MissingFile: there is none.
+    """
+    found = {name: _digest(folder / name) for name in CONTENT}
+    for name in REPORT:
+        if found[name] is None:
+            raise _missing(folder, folder / name)
+    return {name: digest for name, digest in found.items() if digest is not None}
+
+
+def has_comparison(record: Record, folder: Path) -> bool:
+    """Whether the page in a folder shows more than its run.
+
+    Raises:
+        BadInput: the report is that of another run.
+    """
+    for name, what in differences(record, folder).items():
+        if name != PAGE:
+            raise BadInput(
+                f"not the report of this run: {what}",
+                where=str(folder / name),
+                valid="run.save(folder) first",
+            )
+        return True
+    return False
+
+
+def require_report(place: Path, receipt: Receipt) -> None:
+    """Nothing, if the report beside the receipt is the one that it was written with.
+
+    Raises:
+        BadSyntax: the first file that is not. MissingFile: one that no report is without.
+    """
+    found, known = hashes_of(place), receipt.head["report"]
+    for name, digest in found.items():
+        if digest != known.get(name):
+            problem = "is not as it was" if name in known else "was not there"
+            raise BadSyntax(
+                f"it {problem} when the receipt was written",
+                where=str(place / name),
+                valid="the report of the same run",
+            )
+
+
+def _content(path: Path) -> bytes | None:
+    """A file's bytes; None where there is none.
+
+    Raises:
+        MissingFile: it cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise MissingFile(
+            f"cannot be read: {error.strerror or error}", where=str(path), valid="the report"
+        ) from None
+
+
+def _digest(path: Path) -> str | None:
+    content = _content(path)
+    return None if content is None else hashlib.sha256(content).hexdigest()
+
+
+def _missing(place: Path, path: Path) -> MissingFile:
+    if (place / OLDER_SUMMARY).is_file():
+        return MissingFile(
+            "a later run into this folder has not come to its end: its report is an older one",
+            where=str(path),
+            valid="a run that came to its end",
+        )
+    return MissingFile("there is none", where=str(path), valid="the report, saved with the receipt")

@@ -1,0 +1,223 @@
+"""Says whether a report with a receipt is what its case comes to: the bound proven again, all else made again.
+
+What is judged, by which limits and rules, follows from the case's files; nothing is taken from the report.
+Not for: the proof (`verification`), nor the comparison of files (`remade_report`).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
+from clearance.receipt.asked import question_of, told_beside
+from clearance.receipt.case_data import CaseData, case_data
+from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
+from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, Receipt, read_receipt
+from clearance.receipt.remade_report import PAGE, differences, other_maker, require_report
+from clearance.receipt.verification import (
+    ROUNDED,
+    Verification,
+    limits_of,
+    n_without_errors,
+    proven,
+)
+from clearance.receipt.writing import claims_of
+from clearance.report.folder import LAST
+from clearance.report.verdict import KEPT, Verdict
+from clearance.run import Run, answer
+from clearance.simulate.status import Status
+from clearance.world.case import Case
+
+PASSING = {Status.CLEAR: "warn", Status.NEAR: "fail"}
+"""What says that limits are kept, and which."""
+
+Paths = Sequence[str | PathLike[str]]
+
+
+def verify(
+    folder: str | PathLike[str],
+    case: Case | str | PathLike[str] | None = None,
+    tolerance: str | PathLike[str] | None = None,
+    waivers: Paths = (),
+) -> Verification:
+    """Whether the report in a folder is what its case comes to, and its certified bound proven by its receipt.
+
+    The bound is proven by arithmetic that shares no code with what measured. The case is answered again, and every
+    file of the report is compared with the one that is made then.
+
+    Args:
+        folder: of a report with `receipt.bin`.
+        case: the case or its file, where it is not where it was when the receipt was written.
+        tolerance, waivers: the same of files that were given beside the case.
+
+    Raises:
+        BadInput: no receipt, a damaged one, or one of other inputs or another report: which.
+    """
+    place = Path(folder)
+    receipt = read_receipt(place / FILE_NAME)
+    require_report(place, receipt)
+    own, given = _cases(place, receipt, case, tolerance, waivers)
+    _require_inputs(given, receipt)
+    with at(str(place / FILE_NAME)):
+        question = question_of(given, receipt.head["asked"])
+    data = case_data(replace(given, tolerance=None) if receipt.head["nominal"] else given)
+    _require_data(data, receipt)
+    found = proven(question.case, data, receipt)
+    if found.failure:
+        return found
+    files = tuple(name for name in (receipt.head["tolerance"], *receipt.head["waivers"]) if name)
+    run = answer(question)
+    asked = told_beside(own, question, files)
+    found = replace(found, asked=asked, verdict=run.verdict.text())
+    return _held_against(found, run, data, receipt, place)
+
+
+def _held_against(
+    found: Verification, run: Run, data: CaseData, receipt: Receipt, place: Path
+) -> Verification:
+    """What is proven, less what the report beside it does not bear out."""
+    different = differences(run.record, place)
+    made_by = other_maker(receipt) if different else ""
+    unproven = next(_not_borne(run, data, receipt), "")
+    if made_by:
+        told = f"{', '.join(sorted(different))} (made by {made_by}: not compared)"
+        return replace(
+            found, failure=_other_verdict(run.verdict, place) or unproven, not_verified=told
+        )
+    page = different.pop(PAGE, "") if receipt.head["compared"] else ""
+    for name, what in different.items():
+        return replace(found, failure=f"{name} is not what the case comes to: {what}")
+    not_verified = f"{PAGE} (it shows a comparison with another run)" if page else ""
+    beyond = _beyond(run, data, receipt)
+    for rule in data.rules[: n_without_errors(data)]:
+        if rule in beyond:
+            unproven = f"the report tells of up to {beyond[rule] * 1e3:.6f} mm more ({shown(rule)})"
+    return replace(found, failure=unproven, beyond=beyond, not_verified=not_verified)
+
+
+def _not_borne(run: Run, data: CaseData, receipt: Receipt) -> Iterator[str]:
+    """The limits that the verdict calls kept, with tolerances or without, and that the receipt does not prove.
+
+    A verdict with waivers says that it rests on them.
+    """
+    verdict, n_nominal = run.verdict, n_without_errors(data)
+    if verdict.measured not in PASSING or verdict.n_waivers:
+        return
+    levels = [PASSING[Status(verdict.measured)]] * n_nominal
+    levels += ["fail" if verdict.tolerances == KEPT else ""] * (len(data.rules) - n_nominal)
+    limits = limits_of(run.record.case, data)
+    for rule, level, claims in zip(data.rules, levels, receipt.claims, strict=True):
+        claimed = claims[claims != NOT_CLAIMED]
+        limit = getattr(limits[rule], level) if level else 0.0
+        if level and len(claimed) and (claimed.min() + ROUNDED) * UNIT < limit:
+            yield (
+                f"the case comes to {verdict.text()}, the receipt proves {claimed.min() * UNIT * 1e3:.6f} mm "
+                f"({shown(rule)}), below the {level} limit of {limit * 1e3:g} mm"
+            )
+
+
+def _beyond(run: Run, data: CaseData, receipt: Receipt) -> dict[str, float]:
+    """[m] by how much more is certified in some interval than is claimed there, of each rule, if it is."""
+    certified = claims_of(run.record, data)
+    compared = (certified > 0) & (receipt.claims != NOT_CLAIMED)
+    more = np.where(compared, certified - receipt.claims, 0).max(axis=1)
+    return {
+        rule: n * UNIT for rule, n in zip(data.rules, more.tolist(), strict=True) if n > ROUNDED
+    }
+
+
+def _other_verdict(verdict: Verdict, place: Path) -> str:
+    """That the summary in a folder has another verdict; empty if it has not."""
+    try:
+        told = json.loads((place / LAST).read_bytes())["verdict"]
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+        told = "nothing"
+    if told == verdict.status:
+        return ""
+    return f"{LAST} says {shown(repr(told))[:60]}, the case comes to {verdict.status}"
+
+
+def _cases(
+    place: Path,
+    receipt: Receipt,
+    case: Case | str | PathLike[str] | None,
+    tolerance: str | PathLike[str] | None,
+    waivers: Paths,
+) -> tuple[Case, Case]:
+    """The case as it is in its own file, and with the files that were given beside it."""
+    from clearance.load.case.case_file import load_case
+    from clearance.load.case.waiver_file import with_waivers
+    from clearance.load.tolerance.tolerance_file import with_tolerance
+
+    head = receipt.head
+    if isinstance(case, Case):
+        own = case
+    elif case is None and not head["case"]:
+        raise BadInput("the receipt is of a case without a file", valid="give the case")
+    else:
+        own = load_case(_path(place, head["case"], case, "--case CASE.yaml"))
+    beside: list[str | PathLike[str] | None] = [*waivers] or [None] * len(head["waivers"])
+    if len(beside) != len(head["waivers"]):
+        told = f"{len(beside)} files of waivers, and the run had {len(head['waivers'])}"
+        raise BadInput(told, valid="--waivers FILE for each")
+    pairs = zip(head["waivers"], beside, strict=True)
+    given = with_waivers(own, [_path(place, way, one, "--waivers FILE") for way, one in pairs])
+    if tolerance is None and not head["tolerance"]:
+        return own, given
+    path = _path(place, head["tolerance"], tolerance, "--tolerance FILE")
+    return own, with_tolerance(given, path)
+
+
+def _path(place: Path, way: str, given: str | PathLike[str] | None, valid: str) -> Path:
+    """The file that is given, or the one that a receipt names.
+
+    Raises:
+        MissingFile: there is none.
+    """
+    path = place / way if given is None else Path(given)
+    if not os.path.isfile(path):
+        told = shown(way if given is None else str(path))
+        raise MissingFile(f"there is no {told}", where=str(place / FILE_NAME), valid=valid)
+    return path
+
+
+def _require_inputs(case: Case, receipt: Receipt) -> None:
+    """Nothing, if the files that the case is read from are those of the run, as they were.
+
+    Raises:
+        BadSyntax: the first that is not.
+    """
+    known = {one["path"]: one["sha256"] for one in receipt.head["inputs"]}
+    read = {source.path: source.sha256 for source in case.sources}
+    for path in [*read, *known]:
+        if known.get(path) != read.get(path):
+            problem = "has changed"
+            if path not in known or path not in read:
+                problem = f"was {'no' if path in read else 'an'} input of the run"
+            raise BadSyntax(
+                f"it {problem}", where=shown(path), valid="the files that the receipt was made of"
+            )
+
+
+def _require_data(data: CaseData, receipt: Receipt) -> None:
+    """Nothing, if the numbers of the case are those of the receipt.
+
+    Raises:
+        BadSyntax: they are not.
+    """
+    with at(FILE_NAME):
+        if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
+            other = other_maker(receipt)
+            raise BadSyntax(
+                f"it is of other numbers than those of case {data.name!r}{other and '; made by '}{other}",
+                valid="the case that the receipt was made of, with its tolerances",
+            )
+        if receipt.claims.shape != (len(data.rules), data.n_intervals):
+            raise BadSyntax(DAMAGED, valid="claims of every rule and interval")

@@ -1,0 +1,379 @@
+"""Reports that somebody has changed, hashes and all, are not what the case comes to, or not called verified."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.findings.comparison import compared
+from clearance.findings.findings_file import finding_list_of
+from clearance.receipt import remade_report, verifying
+from clearance.receipt.receipt_file import FILE_NAME, read_receipt
+from clearance.report.output import write
+from clearance.world.waiver import Waiver
+from tests.receipt.receipts import rewritten, saved, turning_arm
+from tests.receipt.test_forged import loose
+
+OTHER = {"numpy": "1.0"}
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("told")
+    saved(turning_arm(), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def report_with_tolerances(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("loose")
+    saved(loose(), folder)
+    return folder
+
+
+@pytest.fixture
+def answered_once(monkeypatch, tmp_path):
+    """A case is answered, proven and reported once, however often one asks: it is the same each time."""
+    made = tmp_path / "made"
+
+    def again(record, place):
+        if not made.exists():
+            write(record, made)
+        shutil.copytree(made, place, dirs_exist_ok=True, copy_function=os.symlink)
+
+    monkeypatch.setattr(remade_report, "write", again)
+    monkeypatch.setattr(remade_report, "maker", once(remade_report.maker))
+    for name in ("answer", "proven", "case_data"):
+        monkeypatch.setattr(verifying, name, once(getattr(verifying, name)))
+
+
+def once(function):
+    """A function that is called once, and gives the same ever after."""
+    answers = []
+
+    def same(*args):
+        if not answers:
+            answers.append(function(*args))
+        return answers[0]
+
+    return same
+
+
+def hashed(folder: Path, *names: str, **head) -> None:
+    """Writes the hashes of files of the report into its receipt, and what else of the head is given."""
+    own = read_receipt(folder / FILE_NAME).head
+    new = {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
+    rewritten(folder, head=own | {"report": own["report"] | new} | head)
+
+
+def with_summary(folder: Path, change) -> None:
+    """Changes the summary, and writes its hash into the receipt."""
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text())
+    change(summary)
+    path.write_text(json.dumps(summary, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
+    hashed(folder, path.name)
+
+
+def first_line(folder: Path, case=None) -> str:
+    """What a reader sees first, be it refused or not."""
+    try:
+        return cl.verify(folder, case or turning_arm()).headline
+    except BadInput as error:
+        return f"refused: {error}"
+
+
+def forged(value):
+    """A value that could stand in the place of another one."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int | float):
+        return value + (1 if isinstance(value, int) else 0.05)
+    if isinstance(value, str):
+        return {"clear": "near", "near": "clear"}.get(value, f"{value}1")
+    return 0.5 if value is None else ["1"] if value == [] else {"one": 1}
+
+
+def leaves(told, way=()) -> Iterator[tuple]:
+    """The ways to all values in a summary, and to what is empty."""
+    if not isinstance(told, dict | list) or not told:
+        yield way
+        return
+    for key, value in told.items() if isinstance(told, dict) else enumerate(told):
+        yield from leaves(value, (*way, key))
+
+
+def forgeries(summary) -> Iterator[tuple[tuple, dict]]:
+    """The summary with each of its values changed once, and with each key of it left out."""
+    for way in leaves(summary):
+        made = copy.deepcopy(summary)
+        place = made
+        for key in way[:-1]:
+            place = place[key]
+        place[way[-1]] = forged(place[way[-1]])
+        yield way, made
+    for key in summary:
+        yield ("without", key), {name: value for name, value in summary.items() if name != key}
+
+
+def test_the_report_as_it_is_passes(folder):
+    with_summary(folder, lambda summary: None)
+    found = cl.verify(folder, turning_arm())
+    assert found.proven and not found.not_verified and found.verdict == "clear"
+    assert "verdict clear, every byte of the report is as made again" in found.headline
+
+
+@pytest.mark.slow
+def test_no_value_of_the_summary_can_be_changed(report_with_tolerances, tmp_path, answered_once):
+    folder = Path(shutil.copytree(report_with_tolerances, tmp_path / "report"))
+    path = folder / "summary.json"
+    told, n = path.read_text(), 0
+    for way, summary in forgeries(json.loads(told)):
+        path.write_text(json.dumps(summary, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
+        hashed(folder, path.name)
+        line = first_line(folder, loose())
+        assert line.startswith("NOT PROVEN: summary.json is not what the case comes to"), way
+        n += 1
+    assert n > 500
+    path.write_text(told)
+    hashed(folder, path.name)
+    assert first_line(folder, loose()).startswith("PROVEN: at least 48.")
+
+
+@pytest.mark.slow
+def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answered_once):
+    """Who calls another program the maker has the files named, in the first line, as not verified."""
+    folder = Path(shutil.copytree(report, tmp_path / "report"))
+    path = folder / "summary.json"
+    maker = read_receipt(folder / FILE_NAME).head["maker"] | OTHER
+    told, seen = json.loads(path.read_text()), set()
+    for way, summary in forgeries(told):
+        keys = tuple(key for key in way if isinstance(key, str))
+        if keys in seen:  # of each list its first
+            continue
+        seen.add(keys)
+        path.write_text(json.dumps(summary, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
+        hashed(folder, path.name, maker=maker)
+        line = first_line(folder)
+        assert line.startswith("PROVEN, NOT VERIFIED: summary.json (made by numpy 1.0, here") or (
+            line.startswith("NOT PROVEN: summary.json says") and way[-1] == "verdict"
+        ), way
+
+
+TABLES = ("steps.csv", "contacts.csv", "budget.csv", "findings.json", "worst_moments.yaml")
+
+
+@pytest.mark.parametrize("name", [*TABLES, "report.html"])
+def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tolerances, tmp_path):
+    folder = Path(shutil.copytree(report_with_tolerances, tmp_path / "report"))
+    path = folder / name
+    text = path.read_text(encoding="utf-8")
+    last = list(re.finditer(r"[0-8]|[a-y](?=,)", text))[-1]
+    other = chr(ord(last.group()) + 1)
+    path.write_text(text[: last.start()] + other + text[last.end() :], encoding="utf-8")
+    hashed(folder, name)
+    assert re.match(rf"NOT PROVEN: {name} is .*: line \d+ is ", first_line(folder, loose()))
+
+
+@pytest.mark.parametrize("name", ["replay.npz", "steps.parquet"])
+def test_data_that_is_not_that_of_the_case_is_found(name, folder):
+    content = bytearray((folder / name).read_bytes())
+    content[len(content) // 2] ^= 1
+    (folder / name).write_bytes(content)
+    hashed(folder, name)
+    assert first_line(folder).startswith(f"NOT PROVEN: {name} is not what the case comes to: its")
+
+
+def test_a_page_of_its_own_is_found(folder):
+    (folder / "report.html").write_text("<h1>CLEAR: 500 mm</h1>\n")
+    hashed(folder, "report.html")
+    assert first_line(folder).startswith("NOT PROVEN: report.html is not what the case comes to")
+    hashed(folder, compared=True)
+    assert first_line(folder).startswith(
+        "PROVEN, NOT VERIFIED: report.html (it shows a comparison with another run): at least"
+    )
+
+
+def test_a_table_that_no_run_of_the_case_writes_is_found(folder):
+    (folder / "budget.csv").write_text("proven\n0.1\n")
+    with pytest.raises(BadSyntax, match=r"budget.csv: it was not there"):
+        cl.verify(folder, turning_arm())
+    hashed(folder, "budget.csv")
+    told = "NOT PROVEN: budget.csv is not what the case comes to: this case gives none"
+    assert first_line(folder) == told
+
+
+@pytest.mark.parametrize(
+    "name", ["replay.npz", "steps.parquet", "contacts.csv", "worst_moments.yaml"]
+)
+def test_every_file_of_the_report_is_held_against_the_receipt(folder, name):
+    path = folder / name
+    path.write_bytes(path.read_bytes() + b"\n")
+    with pytest.raises(BadSyntax, match=f"{name}: it is not as it was"):
+        cl.verify(folder, turning_arm())
+    path.unlink()
+    assert cl.verify(folder, turning_arm()).proven  # what is not there tells nothing
+
+
+def violated() -> cl.Case:
+    return replace(turning_arm(), limits=cl.Limits(0.2, 0.3))
+
+
+def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
+    saved(violated(), tmp_path)
+
+    def lowered(summary):
+        summary["limits"] |= {"fail": 0.001, "warn": 0.002}
+        summary["rules"][0] |= {"fail": 0.001, "warn": 0.002, "status": "clear"}
+        summary |= {"verdict": "clear", "verdict_text": "clear", "measured": "clear"}
+        summary |= {"passed": True, "exit_code": 0}
+
+    with_summary(tmp_path, lowered)
+    assert first_line(tmp_path, violated()).startswith("NOT PROVEN: summary.json is not what")
+    hashed(tmp_path, maker=read_receipt(tmp_path / FILE_NAME).head["maker"] | OTHER)
+    told = "NOT PROVEN: summary.json says 'clear', the case comes to violated"
+    assert first_line(tmp_path, violated()) == told
+
+
+def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(tmp_path):
+    saved(violated(), tmp_path)
+    found = cl.verify(tmp_path, violated())
+    assert found.proven and found.verdict == "violated" and found.below == {"default": 0.2}
+    assert "(default, BELOW ITS LIMIT of 200 mm)" in found.headline
+    assert "; verdict violated, every byte" in found.headline
+
+
+def test_limits_that_are_not_those_of_the_case_are_told(tmp_path):
+    """A run that was asked with lower limits is right, and its first line says what was asked."""
+    asked = replace(violated(), limits=cl.Limits(0.001, 0.002))
+    saved(asked, tmp_path)
+    found = cl.verify(tmp_path, violated())
+    told = "verdict clear (fail 1 mm, not the case's 200 mm; warn 2 mm, not the case's 300 mm)"
+    assert found.proven and told in found.headline
+    assert "not the case's" not in cl.verify(tmp_path, asked).headline
+
+
+def waived() -> cl.Case:
+    waiver = Waiver(
+        ("bar", "block"), at_least=0.04, reason="by eye", by="A. Bee", until=date(2900, 1, 1)
+    )
+    return replace(violated(), waivers=(waiver,))
+
+
+def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(tmp_path):
+    saved(violated(), tmp_path)
+
+    def one_waiver(summary):
+        summary |= {"verdict": "clear", "n_waivers": 1}
+
+    with_summary(tmp_path, one_waiver)
+    assert first_line(tmp_path, violated()).startswith("NOT PROVEN: summary.json is not what")
+
+
+def test_a_verdict_that_rests_on_waivers_says_so_and_of_which_day(tmp_path):
+    saved(waived(), tmp_path)
+    asked = read_receipt(tmp_path / FILE_NAME).head["asked"]
+    line = first_line(tmp_path, waived())
+    assert "BELOW ITS LIMIT of 200 mm" in line
+    assert f"with 1 waiver (waivers as of {asked['today']})" in line
+    hashed(tmp_path, asked=asked | {"today": "2900-01-02"})
+    assert first_line(tmp_path, waived()).startswith("NOT PROVEN: summary.json is not what")
+
+
+def test_a_page_that_shows_a_comparison_is_not_called_verified(tmp_path):
+    run = cl.check(turning_arm())
+    findings = finding_list_of(run.record)
+    run.save(tmp_path, compared(findings, findings))
+    cl.write_receipt(run, tmp_path)
+    found = cl.verify(tmp_path, turning_arm())
+    assert found.proven and found.headline.startswith("PROVEN, NOT VERIFIED: report.html (it ")
+
+
+def test_no_receipt_is_written_beside_the_report_of_another_run(tmp_path):
+    cl.check(violated()).save(tmp_path)
+    with pytest.raises(BadInput, match=r"not the report of this run: line \d+ is .*run.save"):
+        cl.write_receipt(cl.check(turning_arm()), tmp_path)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"need": "most"},
+        {"today": 5},
+        {"levels": [0.02]},
+        {"levels": [0.02, 0.01]},
+        {"accept": None},
+        {"certify": False},
+        {"inside": False},
+        {"method": "paper"},
+        {"motion": "simulated"},
+        {"certify_gap": "0"},
+    ],
+)
+def test_a_question_that_is_none_or_proves_nothing_is_refused(folder, change):
+    head = read_receipt(folder / FILE_NAME).head
+    rewritten(folder, head=head | {"asked": head["asked"] | change})
+    with pytest.raises(BadInput) as told:
+        cl.verify(folder, turning_arm())
+    assert str(told.value).isprintable()
+
+
+def test_another_question_has_another_report(folder):
+    head = read_receipt(folder / FILE_NAME).head
+    rewritten(folder, head=head | {"asked": head["asked"] | {"need": "limit"}})
+    assert first_line(folder).startswith("NOT PROVEN: summary.json is not what")
+
+
+def test_inputs_of_which_the_case_knows_nothing_are_refused(folder):
+    head = read_receipt(folder / FILE_NAME).head
+    forged = {"path": "x)\n\x1b[2KPROVEN: at least 99.000 mm", "sha256": "0" * 64}
+    rewritten(folder, head=head | {"inputs": [*head["inputs"], forged]})
+    with pytest.raises(BadSyntax, match="was an input of the run") as told:
+        cl.verify(folder, turning_arm())
+    assert str(told.value).isprintable() and "\\n\\x1b[2KPROVEN" in str(told.value)
+
+
+@pytest.mark.parametrize("word", ["x\n\x1b[2KPROVEN: at least 99.000 mm", "9" * 5000])
+def test_names_in_a_receipt_cannot_write_a_line_of_their_own(folder, word):
+    path = folder / "summary.json"
+    path.write_text(path.read_text() + " ")
+    hashed(
+        folder,
+        path.name,
+        maker=read_receipt(folder / FILE_NAME).head["maker"] | {"numpy": word, word: word},
+    )
+    line = first_line(folder)
+    assert line.startswith("PROVEN, NOT VERIFIED: summary.json") and line.isprintable()
+    assert len(line) < 1000
+
+
+def test_a_receipt_of_another_version_says_so_where_numbers_differ(folder):
+    head = read_receipt(folder / FILE_NAME).head
+    maker = head["maker"] | {"clearance": "0.0.1"}
+    rewritten(folder, head=head | {"maker": maker})
+    assert cl.verify(folder, turning_arm()).proven
+    rewritten(folder, head=head | {"maker": maker, "data": "0" * 64})
+    with pytest.raises(BadSyntax, match=r"clearance 0.0.1, here"):
+        cl.verify(folder, turning_arm())
+
+
+@pytest.mark.parametrize("key", ["case", "tolerance", "waivers"])
+@pytest.mark.parametrize("way", ["a" * 5000, "\x00", "x\ny.yaml"])
+def test_a_way_that_leads_nowhere_is_told_in_one_line(folder, key, way):
+    head = read_receipt(folder / FILE_NAME).head
+    rewritten(folder, head=head | {key: [way] if key == "waivers" else way})
+    with pytest.raises(MissingFile, match="there is no") as told:
+        cl.verify(folder, None if key == "case" else turning_arm())
+    assert str(told.value).isprintable()
