@@ -87,7 +87,7 @@ def swept_bodies(
     """The links with all that they carry, then the obstacles: body by body, and of each phase by phase.
 
     Args:
-        links: patterns of links, as in tables or without their robot's name; None for all.
+        links: patterns of links, as in tables or without their robot's name; None for all but floors of their own.
         obstacles: patterns of obstacles, which are swept wherever they are.
 
     Raises:
@@ -147,7 +147,8 @@ def _chosen_links(run: CaseOverTime, links: Sequence[str] | None) -> Collection[
             if holder is not None:
                 known.setdefault(holder, tuple(dict.fromkeys((holder, holder.split("/", 1)[-1]))))
     if links is None:
-        return frozenset(known)
+        floors = {body.name_in(case) for body in bodies if body.is_floor_in(case)}
+        return frozenset(known) - floors
     found: set[str] = set()
     for pattern in links:
         fitting = [n for n, names in known.items() if any(matches(own, pattern) for own in names)]

@@ -14,6 +14,7 @@ from markupsafe import escape
 from clearance.geometry.polytope import Polytope
 from clearance.report.wording import litres
 from clearance.simulate.workspace.workspace import Workspace
+from clearance.world.extents import own_floor
 
 WIDTH, HEIGHT, MARGIN = 1000.0, 720.0, 40.0
 COLOURS = ((92, 115, 144), (199, 125, 10), (43, 122, 75), (120, 80, 150))
@@ -77,6 +78,7 @@ def _robot_faces(workspace: Workspace) -> Iterator[tuple[np.ndarray, tuple[int, 
         hulls = {
             body.name: Polytope(body.shape.vertices[np.unique(body.shape.face_vertices)])
             for body in robot.bodies
+            if body.name != own_floor(one.placed)
         }
         for paler, step in enumerate(sorted({0, one.n_steps // 2, one.n_steps - 1})):
             poses = one.poses(step)

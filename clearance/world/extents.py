@@ -1,4 +1,5 @@
-"""How long bodies are, how far robots reach, and lengths as they are told: what sizes and places are held against.
+"""How long bodies are, how far robots reach, and lengths as they are told: what sizes and places are held against;
+and what a robot's own file has beside the robot.
 
 Not for: what is odd about them (`plausible_sizes`, `plausible_places`).
 """
@@ -11,7 +12,7 @@ import numpy as np
 
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
-from clearance.world.robot import JointKind, Robot
+from clearance.world.robot import WORLD_LINK, JointKind, Robot
 
 
 def reach_of(placed: PlacedRobot) -> float:
@@ -24,6 +25,11 @@ def own_bodies(robot: Robot) -> list[Body]:
     """Its links that have a shape, but for what holds the floor and walls of its own file."""
     first = 1 if robot.brings_surroundings else 0
     return [*robot.bodies[first:]]
+
+
+def own_floor(placed: PlacedRobot) -> str | None:
+    """The link that holds floor and walls of the robot's own file, if there are some and they stand."""
+    return WORLD_LINK if placed.robot.brings_surroundings and placed.mount is None else None
 
 
 def chain_of(placed: PlacedRobot) -> float:

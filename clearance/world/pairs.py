@@ -17,9 +17,9 @@ from clearance.world.body import Body
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Omission, SelfClearance
 from clearance.world.cell import once_a_cell
+from clearance.world.extents import own_floor
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.phase import Phase
-from clearance.world.robot import WORLD_LINK
 from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
 
@@ -84,10 +84,9 @@ class BodyIndex(NamedTuple):
 
     def is_floor_in(self, case: Case) -> bool:
         """True for the link that holds floor and walls of a robot's own file, where that stands in the world."""
-        if self.is_obstacle or case.robots[self.i_robot].mount is not None:
+        if self.is_obstacle:
             return False
-        robot = case.robots[self.i_robot].robot
-        return robot.brings_surroundings and self.own_name_in(case) == WORLD_LINK
+        return self.own_name_in(case) == own_floor(case.robots[self.i_robot])
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""

@@ -24,6 +24,7 @@ from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import path_of
 from clearance.simulate.holders import holding_link
 from clearance.world.cubic import cubics_of, extremes_between
+from clearance.world.extents import own_floor
 from clearance.world.forest import carried_by, forest_of, link_poses_at
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
@@ -98,7 +99,7 @@ def _held_bodies(phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
     """The measured links of a robot, then what it has in hand."""
     placed, forest = phase.case.robots[i_robot], forest_of(phase.case)
     for body in placed.robot.bodies:
-        if body.name not in placed.exclude_links:
+        if body.name not in (*placed.exclude_links, own_floor(placed)):
             link = forest.robot_starts[i_robot] + placed.robot.link_names.index(body.name)
             yield _HeldBody(body.name, body.shape, link)
     for i, obstacle in enumerate(phase.case.obstacles):

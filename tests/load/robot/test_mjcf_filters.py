@@ -8,6 +8,8 @@ import pytest
 
 import clearance as cl
 from clearance.load.robot.mjcf.filters import BITS, EXCLUDE, PARENT
+from clearance.profiles.swept_bodies import swept_bodies
+from clearance.simulate.workspace.swept_pieces import swept_pieces
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.self_pairs import RIGID, self_pairs
 from tests.load.making_mjcf import BALL, load_mjcf, mjcf
@@ -184,3 +186,10 @@ def test_the_models_own_floor_is_told_where_it_is_not_measured(tmp_path):
         why_not = {(one.link, one.obstacle): one.reason for one in run.record.unmeasured}
         assert why_not["world", "table"] == "both stand in the world"
         assert (run.verdict.status, run.verdict.reasons) == ("clear", ())
+
+
+def test_the_models_own_floor_is_swept_by_nothing(tmp_path):
+    run = run_of(load_mjcf(tmp_path, mjcf(FLOOR + DROP)), end=-0.5)
+    assert {one.label for one in swept_bodies(run.record, None, [])} == {"moved"}
+    assert {one.label for one in swept_bodies(run.record, ["world"], [])} == {"world"}
+    assert {piece.link for piece in swept_pieces(run.record.timeline, 0, 0.01)} == {"moved"}
