@@ -12,7 +12,6 @@ from clearance.world.notice import GAPS, HOLD, LINEAR, NOT_MEASURED, Notice, Sev
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Hole
 
-
 _MEANING = {
     None: (
         "a hole in the recording{whose}, bridged by a straight line: {holes}; "

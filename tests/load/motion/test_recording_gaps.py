@@ -9,9 +9,9 @@ from clearance.load.case.case_file import load_case
 from clearance.load.case.recorded_run import with_recorded
 from clearance.load.motion.joint_states import JointState, trajectory_of_states
 from clearance.load.motion.recording_gaps import Track
-from clearance.world.plausibility import notices_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import selected_pairs
+from clearance.world.plausibility import notices_of
 from clearance.world.timeline import timeline_of
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed
