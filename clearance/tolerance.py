@@ -34,6 +34,10 @@ six-digit file, whose polygons are cut into triangles instead."""
 CERTIFY_GAP = 1e-4
 """[m] How far a certified bound may stay below a distance that occurs, by default: as fine as the facets."""
 
+PATH_ERROR = 1e-8
+"""[rad or m] How far the cubics by which a quintic is followed may be off it: some 0.1 um at the tool of an arm,
+which clearances are lessened by, for 5 to 20 samples in a tenth of a second of an arm's motion."""
+
 FINEST_CERTIFY_GAP = 2.0**-32
 """[-] The least such gap, relative to how far the bodies of a case reach from the origin: 2^21 roundings. Near a
 limit a thousandth of it is asked for, twice what rounding of poses and bounds takes; below that nothing is proven

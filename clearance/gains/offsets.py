@@ -145,8 +145,9 @@ class JointOffsets:
         if velocities is not None:
             rates = self.basis.at(asked.times, 1)
             velocities = velocities + rates @ x.reshape(self.n_joints, -1).T
-        changed = replace(asked, positions=asked.positions + self.offsets(x), velocities=velocities)
-        return replace(self.placed, trajectory=changed)
+        positions = asked.positions + self.offsets(x)
+        changed = replace(asked, positions=positions, velocities=velocities, path_error=0.0)
+        return replace(self.placed, trajectory=changed)  # which is what a table of its samples says
 
     def moves(self, case: Case, pair: Pair) -> bool:
         by_joint = moves_apart(case, pair, self.columns)
@@ -282,11 +283,10 @@ def joint_offsets(
         tool_keeps, tool: as of `JointOffsets`.
 
     Raises:
-        BadInput: it has no table, or one that it goes through again and again.
+        BadInput: it has no table, one that it goes through again and again, or one with holes.
     """
     placed = case.robots[i_robot]
-    if placed.trajectory is None or placed.trajectory.n_steps < 2:
-        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+    require_path(placed)
     if placed.timing.after == "loop":
         raise BadInput(
             f"robot {placed.robot.name!r} goes through its path again and again",
@@ -295,6 +295,21 @@ def joint_offsets(
     return JointOffsets(
         case, i_robot, Basis(placed.given_trajectory.times, n_intervals, kept), tool_keeps, tool
     )
+
+
+def require_path(placed: PlacedRobot) -> None:
+    """Nothing, if a robot has a path that can be written otherwise.
+
+    Raises:
+        BadInput: it has none, or a recording with holes, which no table can say.
+    """
+    if placed.trajectory is None or placed.trajectory.n_steps < 2:
+        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+    if placed.trajectory.holes:
+        raise BadInput(
+            f"the recording of robot {placed.robot.name!r} has holes",
+            valid="a path that is known everywhere",
+        )
 
 
 def columns_of(case: Case, i_robot: int) -> list[int]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gains.between_samples import values_between
-from clearance.gains.offsets import columns_of
+from clearance.gains.offsets import columns_of, require_path
 from clearance.gains.programme import Box
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import Rows
@@ -116,7 +116,7 @@ class ToolPathKept:
         if not np.array_equal(base, self.placed.world_from_base):
             at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
             rates_kept = asked.velocities
-            asked = replace(asked, positions=at)
+            asked = replace(asked, positions=at, path_error=0.0)
         poses, rates = self.tool.poses_and_rates(asked.positions)
         rates = _seen_from_world(rates, base)
         if rates_kept is not None:
@@ -221,12 +221,11 @@ def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept
     """The shift of a base with the path of a tool kept.
 
     Raises:
-        BadInput: the robot has no path, or joints that cannot make up for any change of its base. UnknownLink: no
-            such tool, with the nearest name.
+        BadInput: the robot has no path, one with holes, or joints that cannot make up for any change of its base.
+            UnknownLink: no such tool, with the nearest name.
     """
     placed = shift.case.robots[i_robot]
-    if placed.trajectory is None or placed.trajectory.n_steps < 2:
-        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+    require_path(placed)
     found = ToolPathKept(shift, i_robot, tool_of(placed, name))
     free = found.box.low < found.box.high
     barred = _same_poses(found.solved(placed.world_from_base)).gradients

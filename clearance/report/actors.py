@@ -13,6 +13,7 @@ from clearance.simulate.record import Record
 from clearance.world.case import PlacedRobot
 from clearance.world.mount import Mount
 from clearance.world.timing import Timing
+from clearance.world.trajectory import Trajectory
 
 STRAIGHT = "straight, turning about one axis at constant speed"
 """How what follows a table of poses moves between its samples."""
@@ -39,15 +40,20 @@ def actors_of(record: Record) -> list[dict[str, Any]]:
 
 def _robot(placed: PlacedRobot) -> dict[str, Any]:
     trajectory = placed.trajectory
-    cubic = trajectory is not None and trajectory.velocities is not None
     return {
         "name": placed.robot.name,
         "kind": "robot",
         "on": _on(placed.mount),
         "self_clearance": placed.self_clearance is not None,
-        "between_samples": None if trajectory is None else "cubic" if cubic else "linear",
+        "between_samples": None if trajectory is None else _law(trajectory),
         "timing": None if trajectory is None else _timing(placed.timing),
     }
+
+
+def _law(trajectory: Trajectory) -> str:
+    if trajectory.path_error:
+        return "quintic"
+    return "linear" if trajectory.velocities is None else "cubic"
 
 
 def _on(mount: Mount | None) -> str | None:

@@ -14,20 +14,20 @@ from clearance.world.case import Limits
 
 @dataclass(frozen=True)
 class PairJudge:
-    """The limits of each rule, and the paddings [m] of the bodies that have one, by name."""
+    """The limits of each rule, the paddings [m] of the bodies that have one, by name, and what paths are off."""
 
     limits: dict[str, Limits]
     paddings: dict[str, float]
+    path_error: float
 
     @staticmethod
     def of(record: Record) -> PairJudge:
         """That of a record."""
-        return PairJudge(
-            {answer.name: answer.limits for answer in record.rules}, paddings_of(record)
-        )
+        limits = {answer.name: answer.limits for answer in record.rules}
+        return PairJudge(limits, paddings_of(record), record.timeline.path_error)
 
     def status_of(self, minimum: PairMinimum) -> str:
         """The status; what padding alone brings to 0 or below is violated, no contact."""
         padding = sum(self.paddings.get(name, 0.0) for name in (minimum.link, minimum.obstacle))
-        touches = minimum.clearance + padding <= 0.0
+        touches = minimum.clearance + padding + self.path_error <= 0.0
         return status_of(minimum.clearance, self.limits[minimum.rule], touches)

@@ -195,7 +195,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     times = record.steps["time"].to_numpy()
     cubic = any(motion.velocities is not None for motion in record.motions)
     return {
-        "joints": "cubic" if cubic else "linear",
+        "joints": "quintic" if record.timeline.path_error else "cubic" if cubic else "linear",
         "lower_bound": float(certificate.lower_bound[step]),
         "upper_bound": record.steps["upper_bound"][step].as_py(),
         "step": step,

@@ -177,9 +177,11 @@ def least_proven(certified: dict) -> str:
 
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
-    way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[
-        certified["joints"]
-    ]
+    way = {
+        "linear": "linearly",
+        "cubic": "on cubics through the given velocities",
+        "quintic": "on quintics through the given velocities and accelerations",
+    }[certified["joints"]]
     proven = f"{least_proven(certified)}, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven

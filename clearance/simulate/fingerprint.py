@@ -56,7 +56,9 @@ def fingerprint(
         _add(digest, *arrays, motion.tracking_error)
         _add(digest, np.empty(0) if motion.velocities is None else motion.velocities)
         digest.update(repr((robot.link_names, robot.joints, motion.placed.timing)).encode())
-        digest.update(repr(sorted(motion.placed.padding.items())).encode())
+        asked = motion.placed.trajectory
+        off = 0.0 if asked is None else asked.path_error
+        digest.update(repr((sorted(motion.placed.padding.items()), off)).encode())
         _add_mount(digest, motion.placed.mount)
     for obstacle in case.obstacles:
         digest.update(obstacle.name.encode())

@@ -299,6 +299,7 @@ class Case:
         waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.
+        path_error: [m] by how much less clearances may be since paths are off their samples' motion; in phases.
     """
 
     name: str
@@ -317,6 +318,7 @@ class Case:
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
     tolerance: Budget | None = None
+    path_error: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.robots:
@@ -332,7 +334,7 @@ class Case:
     def cell(self) -> Cell:
         """What of it no trajectory changes, as a key."""
         held: list[object] = [*self.obstacles]
-        told: list[Hashable] = [self.allow, self.limits, self.carries, self.clock]
+        told: list[Hashable] = [self.allow, self.limits, self.carries, self.clock, self.path_error]
         for placed in self.robots:
             held += [placed.robot, placed.mount, placed.self_clearance]
             told += [placed.world_from_base.tobytes(), placed.exclude_links]

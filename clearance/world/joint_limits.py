@@ -86,8 +86,9 @@ def _all_within(extents: Sequence[JointExtent], asked: Trajectory | None) -> boo
 
 def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> list[_Excess]:
     joint, name = course.joint, before + course.joint.name
+    rounding = ROUNDING + (0.0 if asked is None else abs(course.factor) * asked.path_error)
     at_samples = _beyond(joint, course.at_samples, course.at_samples)
-    n_beyond = int((at_samples > ROUNDING).sum())
+    n_beyond = int((at_samples > rounding).sum())
     told = []
     if n_beyond:
         where = (
@@ -101,7 +102,7 @@ def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> lis
         return told
     ends = np.maximum(0.0, np.maximum(at_samples[:-1], at_samples[1:]))
     between = _beyond(joint, *reached)
-    farther = between > ends + ROUNDING
+    farther = between > ends + rounding
     if farther.any():
         where = (
             "between two samples, on the cubic that its velocities make, "

@@ -116,7 +116,8 @@ class Selection:
 
     Attributes:
         pairs: links and obstacles robot by robot, then links of one robot, then of two, then obstacles.
-        rules: of each pair what judges it, as `Limits.rule_names` counts. paddings: [m] of both of its bodies.
+        rules: of each pair what judges it, as `Limits.rule_names` counts. paddings: [m] of both of its
+            bodies, and what paths may be off.
         unmeasured: links and pairs that are left out, and why.
     """
 
@@ -253,7 +254,8 @@ class _Selector:
                 continue
             self.found.pairs.append(Pair(one, other))
             self.found.rules.append(self._rule_of(one, other))
-            self.found.paddings.append(one.padding_in(self.case) + other.padding_in(self.case))
+            paddings = one.padding_in(self.case) + other.padding_in(self.case)
+            self.found.paddings.append(paddings + self.case.path_error)
 
     def _why_not(self, one: BodyIndex, other: BodyIndex) -> str | None:
         """Why a pair is not measured, or None."""

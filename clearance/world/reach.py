@@ -165,6 +165,12 @@ def _require_offset(joint: Joint, offset: float) -> None:
         )
 
 
+def length_of_robot(motion: Motion) -> float:
+    """[m] No point of a robot is farther from any of its joints during a motion."""
+    corners = (_reach(body) for body in motion.placed.robot.bodies)
+    return _slide(motion) + ROOT_3 * max(corners, default=0.0)
+
+
 def _slide(motion: Motion) -> float:
     """[m] how far the sliding joints go, and the frames of the joints are apart, in sum."""
     robot = motion.placed.robot

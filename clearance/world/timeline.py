@@ -24,6 +24,7 @@ from clearance.world.hands import with_parts
 from clearance.world.knots import Knots, knots_of, looped
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
+from clearance.world.path_error import path_error_of
 from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
@@ -48,6 +49,11 @@ class Timeline:
     def times(self) -> np.ndarray:
         """(n,) [s] of the steps."""
         return self.motions[0].times
+
+    @property
+    def path_error(self) -> float:
+        """[m] By how much clearances are lessened since paths are off their samples' motion."""
+        return self.phases[0].case.path_error
 
     def phase_of(self, step: int) -> Phase:
         """The phase that a step begins or is in; of the last step the last."""
@@ -91,6 +97,9 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
             absent. UnknownObstacle, UnknownLink: a part, or what carries it, that is not there.
     """
     _require_parts(case)
+    error = path_error_of(case, own)
+    if error:
+        case = replace(case, path_error=error)
     robots = [_of_robot(motion) for motion in own]
     obstacles = {i: _of_obstacle(o) for i, o in enumerate(case.obstacles) if o.moves is not None}
     start, end = _span(case, [*robots, *obstacles.values()])

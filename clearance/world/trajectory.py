@@ -53,6 +53,7 @@ class Trajectory:
         joint_names: (k,) of the robot's moving joints, in column order.
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
+        path_error: [rad or m] how far joints may be off between samples, and at those that the file does not have.
         holes: stretches of a recording in which it was not known where joints were.
         wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
             A `PlacedRobot` takes whole turns off those that are meant the shortest way.
@@ -69,6 +70,7 @@ class Trajectory:
     velocities: np.ndarray | None = None
     holes: tuple[Hole, ...] = ()
     wrap: str | None = None
+    path_error: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):

@@ -202,7 +202,7 @@ def _is_seen(
     a, b = (bodies[i] for i in pair)
     shapes = a.shape_in(case), b.shape_in(case)
     reached = distance(*shapes, pose_a=poses[pair[0]], pose_b=poses[pair[1]]).distance
-    padding = a.padding_in(case) + b.padding_in(case)
+    padding = a.padding_in(case) + b.padding_in(case) + record.timeline.path_error
     return abs(reached - padding - frame.clearance) < SAME_PLACE
 
 

@@ -3,6 +3,7 @@
 import json
 from io import BytesIO
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,6 +24,7 @@ from clearance.errors import (
 )
 from clearance.load.motion.trajectory_file import parse_trajectory, read_trajectory
 from clearance.load.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.world.cubic import positions_along
 from tests.examples import examples, some_slow
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small
@@ -324,10 +326,7 @@ def test_what_is_left_out_is_told(tmp_path):
     points = [{**point, "accelerations": [0, 1], "effort": [1, 2]} for point in POINTS]
     points[0]["time_from_start"] = 0.25
     notes = as_case(tmp_path, dumped(with_points(*points))).notes
-    assert (
-        "path.yaml: accelerations are not followed: between two points joints move on cubics"
-        in str(notes)
-    )
+    assert "path.yaml: joints move on the quintics through positions, velocities and" in str(notes)
     assert "path.yaml: effort is not read" in notes
     assert (
         "path.yaml: the first point is at 0.25 s; how the robot gets there is not in the file"
@@ -367,3 +366,24 @@ def test_the_command_line_says_it_in_one_line(tmp_path, capsys, given, says):
     assert run(["check", str(path)]) == 2
     told = capsys.readouterr().err.strip()
     assert says in told and told.count("\n") == 0
+
+
+def test_accelerations_without_velocities_are_refused():
+    points = [
+        {key: value for key, value in point.items() if key != "velocities"}
+        | {"accelerations": [0, 1]}
+        for point in POINTS
+    ]
+    with pytest.raises(MissingKey, match="points: accelerations without velocities; velocities in"):
+        parse_trajectory(dumped(with_points(*points)).encode(), "path.json")
+
+
+def test_accelerations_of_zero_are_followed_and_not_left_out():
+    """From 0 to 1 in 1 s, at rest and unaccelerated at both ends: 10 s^3 - 15 s^4 + 6 s^5."""
+    rest = {"velocities": [0, 0], "accelerations": [0, 0]}
+    points = [{"positions": [i, 0], "time_from_start": i, **rest} for i in range(2)]
+    found = parse_trajectory(dumped(with_points(*points)).encode(), "path.json")
+    s = np.array([0.1, 0.25, 0.5, 0.9])
+    right = 10 * s**3 - 15 * s**4 + 6 * s**5
+    assert positions_along(found, s)[:, 0] == pytest.approx(right, abs=1e-8)
+    assert 0.0 < found.path_error <= 1.01e-8

@@ -1,0 +1,55 @@
+"""What joints off their path do to clearances. Not for: how far they are off (`quintic`), or tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.world.case import Case
+from clearance.world.joint_positions import turns
+from clearance.world.mimics import followers
+from clearance.world.motion import Motion
+from clearance.world.reach import farthest_reach, length_of_robot
+
+ROOT_3 = 3.0**0.5
+
+
+def path_error_of(case: Case, motions: Sequence[Motion]) -> float:
+    """[m] By how much less the clearance of any pair may be than along the cubics of the motions.
+
+    A joint that is off by an angle moves what is below it, against all else, by no more than the angle times its
+    distance. A part in hand has the joints' errors of when it is taken, of now, or of when it is laid down.
+
+    Exactness: an upper bound: no point is farther from a joint than its robot is long or, where robots carry
+        others, than the cell is wide, and a part than that from each that has carried it.
+    """
+    if not any(_error(motion) for motion in motions):
+        return 0.0
+    times_held = 1 + 2 * len(case.carries)
+    mounts = [placed.mount for placed in case.robots] + [one.mount for one in case.obstacles]
+    if case.carries or any(mount is not None for mount in mounts):
+        longest = [2.0 * ROOT_3 * farthest_reach(case, motions) * times_held] * len(motions)
+    else:
+        longest = [length_of_robot(motion) for motion in motions]
+    moved = sum(map(_moved, motions, longest))
+    return float(
+        moved * times_held * (1.0 + 1e-3)
+    )  # the path itself is within a thousandth of these lengths
+
+
+def _error(motion: Motion) -> float:
+    """[rad or m] Simulated motion is no path of a table."""
+    asked = motion.placed.trajectory
+    return 0.0 if asked is None or motion.velocities is None else asked.path_error
+
+
+def _moved(motion: Motion, longest: float) -> float:
+    """[m] How far all joints of a robot together move any point that is no farther than the longest from them."""
+    named = () if motion.placed.trajectory is None else motion.placed.trajectory.joint_names
+    ways = (
+        abs(one.factor) * (longest if turns(one.joint) else 1.0)
+        for one in followers(motion.placed.robot)
+        if one.master in named
+    )
+    return _error(motion) * float(np.sum([*ways]))

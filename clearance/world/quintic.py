@@ -1,0 +1,128 @@
+"""Joint motion through samples with accelerations: the quintics that ROS's joint trajectory controller follows, as
+cubics between more samples, and a bound of how far these are off.
+
+In units of the interval a quintic is q0 + v0 s + a0 s^2 / 2 + c3 s^3 + c4 s^4 + c5 s^5. A cubic that has its
+positions and velocities at both ends of a part of length h is off by d4(x) h^4 t^2 (1 - t)^2 / 24 at the share t
+of it, so by h^4 max |d4| / 384 at most; the fourth derivative d4 is linear. Source: the error of Hermite
+interpolation, e.g. Stoer and Bulirsch 1980, 2.1.5. Not for: what that does to a clearance (`path_error`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadShape, BadTime
+from clearance.tolerance import LARGEST, PATH_ERROR
+from clearance.world.trajectory import Trajectory
+
+MOST_SAMPLES = 1_000_000
+"""Samples that a trajectory may come to: an acceleration in the wrong unit asks for more."""
+
+ROUNDING = 2.0**-42
+"""What rounding of a sample's position and velocity does to the path, relative to the sum of a quintic's terms:
+each coefficient is at most 15 of it and right to 5 roundings, Horner's rule takes 10 more: some 1,300 in sum."""
+
+
+class Quintics(NamedTuple):
+    """(n - 1, k) each: the coefficients by powers of the share of an interval [rad or m]."""
+
+    c0: np.ndarray
+    c1: np.ndarray
+    c2: np.ndarray
+    c3: np.ndarray
+    c4: np.ndarray
+    c5: np.ndarray
+
+    @property
+    def fourth(self) -> np.ndarray:
+        """(n - 1, k) the greatest fourth derivative by the share."""
+        return np.maximum(np.abs(24.0 * self.c4), np.abs(24.0 * self.c4 + 120.0 * self.c5))
+
+
+def quintics_of(
+    times: np.ndarray, positions: np.ndarray, velocities: np.ndarray, accelerations: np.ndarray
+) -> Quintics:
+    """The quintics between n samples; shapes (n,) [s], and (n, k) each."""
+    length = np.diff(times)[:, None]
+    v0, v1 = length * velocities[:-1], length * velocities[1:]
+    a0, a1 = length**2 * accelerations[:-1], length**2 * accelerations[1:]
+    e, f, g = np.diff(positions, axis=0) - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+    return Quintics(
+        positions[:-1], v0, 0.5 * a0,
+        10.0 * e - 4.0 * f + 0.5 * g, 7.0 * f - 15.0 * e - g, 6.0 * e - 3.0 * f + 0.5 * g,
+    )  # fmt: skip
+
+
+def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajectory:
+    """A trajectory with samples so near to each other that its cubics are within `PATH_ERROR` of the quintics.
+
+    Args:
+        asked: with velocities; its samples stay. accelerations: (n, k) [rad/s^2] or [m/s^2].
+
+    Exactness: `path_error` is proven, rounding of samples included.
+    Raises:
+        BadShape: more than `MOST_SAMPLES`. BadDimension: an acceleration that takes its joint out of all bounds.
+            BadTime: doubles cannot hold the samples apart.
+    """
+    assert asked.velocities is not None
+    _refuse_large(asked, accelerations)
+    if asked.n_steps < 2:
+        return asked
+    quintics = quintics_of(asked.times, asked.positions, asked.velocities, accelerations)
+    fourth, size = quintics.fourth.max(axis=1, initial=0.0), _size(asked, accelerations)
+    n_parts = np.maximum(np.ceil((fourth / (384.0 * PATH_ERROR)) ** 0.25), 1.0)
+    if n_parts.sum() >= MOST_SAMPLES:
+        raise BadShape(
+            f"its quintics take {n_parts.sum():.3g} samples to follow",
+            valid=f"{MOST_SAMPLES:,} or fewer; accelerations are in rad/s² and m/s²",
+        )
+    before = np.repeat(np.arange(len(n_parts)), n_parts.astype(np.int64))
+    nth = np.arange(len(before)) - np.concatenate([[0.0], np.cumsum(n_parts)])[before]
+    length = np.diff(asked.times)
+    times = asked.times[before] + nth / n_parts[before] * length[before]
+    times = np.append(times, asked.times[-1])
+    if not (np.diff(times) > 0.0).all():
+        raise BadTime("samples are too near in time to follow their quintics")
+    share = (times[:-1] - asked.times[before]) / length[before]
+    positions, velocities = _at(quintics, before, share[:, None], length[before, None])
+    reached = (np.diff(times) / length[before]) ** 4 * fourth[before] / 384.0
+    return Trajectory(
+        times,
+        asked.joint_names,
+        np.vstack([positions, asked.positions[-1]]),
+        np.vstack([velocities, asked.velocities[-1]]),
+        path_error=float((reached * (1.0 + 1e-9)).max() + ROUNDING * size),
+    )
+
+
+def _at(
+    quintics: Quintics, interval: np.ndarray, s: np.ndarray, length: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(m, k) positions and velocities at shares of intervals."""
+    c0, c1, c2, c3, c4, c5 = (part[interval] for part in quintics)
+    positions = c0 + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5))))
+    slopes = c1 + s * (2.0 * c2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
+    return positions, slopes / length
+
+
+def _size(asked: Trajectory, accelerations: np.ndarray) -> float:
+    """[rad or m] The greatest sum of the terms that a quintic is made of."""
+    length = np.diff(asked.times)[:, None]
+    parts = asked.positions, asked.velocities, accelerations
+    ends = [np.abs(part) for part in parts if part is not None]
+    sums = [(part[:-1] + part[1:]) * length**i for i, part in enumerate(ends)]
+    return float(sum(sums).max(initial=0.0))
+
+
+def _refuse_large(asked: Trajectory, accelerations: np.ndarray) -> None:
+    longest = np.diff(asked.times).max(initial=0.0)
+    with np.errstate(over="ignore"):
+        farthest = np.abs(accelerations).max(axis=0, initial=0.0) * max(1.0, longest) ** 2
+    if not (farthest <= LARGEST).all():
+        raise BadDimension(
+            f"joint {asked.joint_names[int(np.argmax(farthest))]!r} has an acceleration that takes it "
+            f"{farthest.max():g} rad or m before the next sample",
+            valid=f"{LARGEST:g} or less",
+        )

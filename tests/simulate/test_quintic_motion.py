@@ -1,0 +1,188 @@
+"""Verdicts on messages with accelerations: of the quintics that a controller follows, held against formulas by
+hand and against dense samples of the exact motion, for what a robot carries too.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.load.case.case_file import load_case
+from clearance.simulate.checker import Checker
+from clearance.tolerance import CERTIFY_GAP, PATH_ERROR
+from clearance.world.pairs import selected_pairs
+from clearance.world.path_error import path_error_of
+from clearance.world.plausibility import notices_of
+from clearance.world.quintic import quintics_of
+from tests.cart import URDF
+from tests.examples import first_fast
+
+CART = """name: cart
+robot: {urdf: cart.urdf}
+scene: {obstacles: [{name: wall, box: {size: [0.1, 1, 1]}, pose: {xyz: [0.45, 0, 0]}}]}
+trajectory: path.json
+limits: {fail: 0.21}
+"""
+ARM = """<robot name="arm"><link name="ground"/>
+  <link name="lower"><collision><origin xyz="0.3 0 0"/><geometry><box size="0.6 0.1 0.1"/></geometry></collision>
+  </link><link name="upper"><collision><origin xyz="0.25 0 0"/><geometry><box size="0.5 0.08 0.08"/></geometry>
+  </collision></link>
+  <joint name="a" type="revolute"><parent link="ground"/><child link="lower"/><axis xyz="0 0 1"/>
+    <limit lower="-9" upper="9" effort="9" velocity="99"/></joint>
+  <joint name="b" type="revolute"><parent link="lower"/><child link="upper"/><origin xyz="0.6 0 0"/>
+    <axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="9" velocity="99"/></joint></robot>"""
+POST = "name: post, box: {size: [0.1, 0.1, 0.1]}, pose: {xyz: [0.5, 1.3, 0.3]}"
+SCENE = f"""name: arm
+robot: {{urdf: arm.urdf}}
+scene: {{obstacles: [{{{POST}}}]}}
+trajectory: path.json
+"""
+CARRYING = f"""name: arm
+robot: {{urdf: arm.urdf}}
+scene: {{obstacles: [{{{POST}}}, {{name: part, box: {{size: [0.1, 0.1, 0.1]}}, pose: {{xyz: [1.2, 0, 0.1]}}}}]}}
+trajectory: path.json
+carry: [{{part: part, by: upper, from: 0.3, until: 1.7, touch: [upper]}}]
+limits: {{rules: [{{between: [part, post], fail: 0}}]}}
+"""
+
+
+def message(names, times, *columns):
+    keys = ("positions", "velocities", "accelerations")
+    points = [
+        {key: column[i].tolist() for key, column in zip(keys, columns, strict=False)} | {"time_from_start": t}
+        for i, t in enumerate(np.asarray(times).tolist())
+    ]  # fmt: skip
+    return json.dumps({"joint_names": list(names), "points": points})
+
+
+def case(folder, text, urdf, path):
+    (folder / "case.yaml").write_text(text)
+    (folder / f"{text.split(chr(10))[0].split()[1]}.urdf").write_text(urdf)
+    (folder / "path.json").write_text(path)
+    return load_case(folder / "case.yaml")
+
+
+def there_and_back(folder):
+    """1.6 s^2 (1 - s)^2: 0.1 m towards the wall, 0.3 m away, though both points are where it stands."""
+    rest = np.zeros((2, 1))
+    return case(folder, CART, URDF, message(["rail"], [0.0, 1.0], rest, rest, np.full((2, 1), 3.2)))
+
+
+def test_a_cart_that_its_accelerations_take_to_the_wall_and_back(tmp_path):
+    """0.2 m are left, where the points have 0.3 m."""
+    run = cl.check(there_and_back(tmp_path))
+    assert run.verdict.status == "violated"
+    bound = run.record.certificate.lower_bound.min()
+    assert 0.2 - CERTIFY_GAP <= bound <= 0.2
+    assert run.worst["clearance"] == pytest.approx(0.2, abs=1e-7) and run.worst["clearance"] <= 0.2
+    (note,) = [text for text in run.record.case.notes if "quintics" in text]
+    assert "2 points are followed by cubics through" in note
+    assert run.summary["certified"]["joints"] == "quintic"
+    assert run.summary["actors"][0]["between_samples"] == "quintic"
+
+
+def test_clearances_are_lessened_by_what_the_path_may_be_off(tmp_path):
+    found = there_and_back(tmp_path)
+    run = cl.check(found)
+    error = run.record.timeline.path_error
+    assert error == pytest.approx(found.robots[0].given_trajectory.path_error, rel=2e-3)
+    assert 0.0 < error <= 1.01 * PATH_ERROR
+    first = run.record.steps["clearance"][0].as_py()
+    assert first == pytest.approx(0.3 - error, abs=1e-15)
+
+
+def random_path(seed):
+    rng = np.random.default_rng(seed)
+    times = np.concatenate([[0.0], np.cumsum(rng.uniform(0.3, 1.0, 3))])
+    times *= 2.0 / times[-1]
+    return times, *(rng.normal(size=(4, 2)) * [[0.8], [1.0], [4.0]][i] for i in range(3))
+
+
+def exact(times, columns, at):
+    """(m, k) the quintics at some times."""
+    quintics = quintics_of(times, *columns)
+    k = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
+    s = ((at - times[k]) / np.diff(times)[k])[:, None]
+    return sum(part[k] * s**i for i, part in enumerate(quintics))
+
+
+@pytest.mark.parametrize("seed", first_fast(range(12), 3))
+def test_what_is_proven_is_below_dense_samples_of_the_quintics(tmp_path, seed):
+    times, *columns = random_path(seed)
+    found = case(tmp_path, SCENE, ARM, message("ab", times, *columns))
+    run = cl.check(found)
+    checker = Checker(found, accept=["units", "limits"])
+    dense = exact(times, columns, np.linspace(0.0, 2.0, 4001))
+    least = min(checker.distance(row).distance for row in dense)
+    bound = run.record.certificate.lower_bound.min()
+    assert bound <= least <= bound + 2.0 * CERTIFY_GAP or least == 0.0 >= bound
+
+
+def corners(pose, half=0.05):
+    signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T * half
+    return pose[:3, 3] + signs @ pose[:3, :3].T
+
+
+def hand(q):
+    """(4, 4) of the upper link."""
+    (ca, cb), (sa, sb) = np.cos(q), np.sin(q)
+    turn = np.array([[ca, -sa, 0.0], [sa, ca, 0.0], [0.0, 0.0, 1.0]])
+    pose = np.eye(4)
+    pose[:3, :3] = turn @ np.array([[cb, 0.0, sb], [0.0, 1.0, 0.0], [-sb, 0.0, cb]])
+    pose[:3, 3] = turn @ [0.6, 0.0, 0.0]
+    return pose
+
+
+@pytest.mark.parametrize("seed", first_fast(range(12), 2))
+def test_a_part_is_no_farther_from_where_it_is_told_than_the_path_error(tmp_path, seed):
+    """Taken at 0.3 s and laid down at 1.7 s, neither a sample of the table: all its corners, at every step."""
+    times, *columns = random_path(seed)
+    found = case(tmp_path, CARRYING, ARM, message("ab", times, *columns))
+    line = cl.check(found).record.timeline
+    lie = np.eye(4)
+    lie[:3, 3] = 1.2, 0.0, 0.1
+    taken, laid = (hand(exact(times, columns, np.array([t]))[0]) for t in (0.3, 1.7))
+    grasp = np.linalg.inv(taken) @ lie
+    far = 0.0
+    for phase in line.phases:
+        assert all(padding == phase.case.path_error for padding in selected_pairs(phase).paddings)
+        for i in range(phase.n_steps):
+            held = hand(exact(times, columns, phase.times[i : i + 1])[0])
+            after = laid if phase.span[0] >= 1.7 else held
+            right = lie if phase.span[1] <= 0.3 else after @ grasp
+            told = pose_in(phase, i, "part")
+            far = max(far, np.linalg.norm(corners(told) - corners(right), axis=1).max())
+    assert far <= line.path_error
+    assert line.path_error == path_error_of(found, line.motions)
+    assert line.path_error < 2e-6
+
+
+def pose_in(phase, step, name):
+    from clearance.world.forest import link_poses_at
+    from clearance.world.pairs import OBSTACLE, BodyIndex
+
+    names = [obstacle.name for obstacle in phase.case.obstacles]
+    poses = link_poses_at(phase.case, phase.motions, slice(step, step + 1))
+    return BodyIndex(OBSTACLE, names.index(name)).poses_in(phase.case, poses)[0]
+
+
+def test_a_receipt_proves_it_again(tmp_path):
+    found = there_and_back(tmp_path)
+    run = cl.check(found)
+    folder = run.save(tmp_path / "out")
+    cl.write_receipt(run, folder, kind="full")
+    assert cl.verify(folder, found).proven
+
+
+def test_joints_at_their_limits_are_not_beyond_them_for_the_way_they_are_followed(tmp_path):
+    """The cart goes to 0.1 m exactly, at 0.308 m/s and 3.2 m/s^2 at most."""
+    fastest = 1.6 * 2.0 / 3.0**1.5 * 0.5  # of s^2 (1 - s)^2, at s = (1 - 1 / sqrt(3)) / 2
+    limit = URDF.replace('upper="5"', 'upper="0.1"').replace(
+        'velocity="9"', f'velocity="{fastest!r}"'
+    )
+    rest = np.zeros((2, 1))
+    path = message(["rail"], [0.0, 1.0], rest, rest, np.full((2, 1), 3.2))
+    assert not [
+        one for one in notices_of(case(tmp_path, CART, limit, path)) if one.kind == "limits"
+    ]
