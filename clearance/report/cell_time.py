@@ -67,7 +67,10 @@ def _hands(summary: dict[str, Any], part: str) -> list[Markup]:
 
 def _absences(summary: dict[str, Any], actor: dict[str, Any]) -> list[Markup]:
     """The bars of an actor while it is not in the cell, or not measured."""
-    return [_bar(summary, *span, "absent", _why(summary, *span)) for span in actor["absent"]]
+    return [
+        _bar(summary, start, end, "absent", _why(summary, start, end))
+        for start, end in actor["absent"]
+    ]
 
 
 def _why(summary: dict[str, Any], start: float, end: float) -> str:

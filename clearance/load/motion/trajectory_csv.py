@@ -61,7 +61,8 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
         with np.errstate(over="ignore"):
             times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
     refuse_standing_time(times[:, 0], table)
-    trajectory = Trajectory(times[:, 0], joints, *moving)
+    velocities = moving[1] if len(moving) > 1 else None
+    trajectory = Trajectory(times[:, 0], joints, moving[0], velocities)
     return ReadTrajectory(trajectory, (*_notes(table, choice), *note_on_units(columns)))
 
 
