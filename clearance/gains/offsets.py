@@ -146,8 +146,10 @@ class JointOffsets:
             rates = self.basis.at(asked.times, 1)
             velocities = velocities + rates @ x.reshape(self.n_joints, -1).T
         positions = asked.positions + self.offsets(x)
-        changed = replace(asked, positions=positions, velocities=velocities, path_error=0.0)
-        return replace(self.placed, trajectory=changed)  # which is what a table of its samples says
+        changed = replace(
+            asked, positions=positions, velocities=velocities, path_error=0.0, points=None
+        )  # which is what a table of its samples says
+        return replace(self.placed, trajectory=changed)
 
     def moves(self, case: Case, pair: Pair) -> bool:
         by_joint = moves_apart(case, pair, self.columns)

@@ -116,7 +116,7 @@ class ToolPathKept:
         if not np.array_equal(base, self.placed.world_from_base):
             at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
             rates_kept = asked.velocities
-            asked = replace(asked, positions=at, path_error=0.0)
+            asked = replace(asked, positions=at, path_error=0.0, points=None)
         poses, rates = self.tool.poses_and_rates(asked.positions)
         rates = _seen_from_world(rates, base)
         if rates_kept is not None:

@@ -9,13 +9,14 @@ interpolation, e.g. Stoer and Bulirsch 1980, 2.1.5. Not for: what that does to a
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadTime
 from clearance.tolerance import LARGEST, PATH_ERROR
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import Points, Trajectory
 
 MOST_SAMPLES = 1_000_000
 """Samples that a trajectory may come to: an acceleration in the wrong unit asks for more."""
@@ -71,30 +72,41 @@ def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajecto
     if asked.n_steps < 2:
         return asked
     quintics = quintics_of(asked.times, asked.positions, asked.velocities, accelerations)
-    fourth, size = quintics.fourth.max(axis=1, initial=0.0), _size(asked, accelerations)
-    n_parts = np.maximum(np.ceil((fourth / (384.0 * PATH_ERROR)) ** 0.25), 1.0)
+    fourth = quintics.fourth.max(axis=1, initial=0.0)
+    times, interval = _parted(asked.times, np.ceil((fourth / (384.0 * PATH_ERROR)) ** 0.25))
+    length = np.diff(asked.times)[interval]
+    share = (times[:-1] - asked.times[interval]) / length
+    positions, velocities = _at(quintics, interval, share[:, None], length[:, None])
+    off = (np.diff(times) / length) ** 4 * fourth[interval] / 384.0
+    return replace(
+        asked,
+        times=times,
+        positions=np.vstack([positions, asked.positions[-1:]]),
+        velocities=np.vstack([velocities, asked.velocities[-1:]]),
+        path_error=float(off.max() * (1.0 + 1e-9) + ROUNDING * _size(asked, accelerations)),
+        points=Points(asked.times, asked.positions, asked.velocities, accelerations),
+    )
+
+
+def _parted(times: np.ndarray, n_parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) [s] the times with each interval in so many parts, one or more, and (m - 1,) the interval of each part.
+
+    Raises:
+        BadShape, BadTime: as `with_accelerations`.
+    """
+    n_parts = np.maximum(n_parts, 1.0)
     if n_parts.sum() >= MOST_SAMPLES:
         raise BadShape(
             f"its quintics take {n_parts.sum():.3g} samples to follow",
             valid=f"{MOST_SAMPLES:,} or fewer; accelerations are in rad/s² and m/s²",
         )
-    before = np.repeat(np.arange(len(n_parts)), n_parts.astype(np.int64))
-    nth = np.arange(len(before)) - np.concatenate([[0.0], np.cumsum(n_parts)])[before]
-    length = np.diff(asked.times)
-    times = asked.times[before] + nth / n_parts[before] * length[before]
-    times = np.append(times, asked.times[-1])
-    if not (np.diff(times) > 0.0).all():
+    interval = np.repeat(np.arange(len(n_parts)), n_parts.astype(np.int64))
+    nth = np.arange(len(interval)) - np.concatenate([[0.0], np.cumsum(n_parts)])[interval]
+    starts = times[interval] + nth / n_parts[interval] * np.diff(times)[interval]
+    found = np.append(starts, times[-1])
+    if not (np.diff(found) > 0.0).all():
         raise BadTime("samples are too near in time to follow their quintics")
-    share = (times[:-1] - asked.times[before]) / length[before]
-    positions, velocities = _at(quintics, before, share[:, None], length[before, None])
-    reached = (np.diff(times) / length[before]) ** 4 * fourth[before] / 384.0
-    return Trajectory(
-        times,
-        asked.joint_names,
-        np.vstack([positions, asked.positions[-1]]),
-        np.vstack([velocities, asked.velocities[-1]]),
-        path_error=float((reached * (1.0 + 1e-9)).max() + ROUNDING * size),
-    )
+    return found, interval
 
 
 def _at(

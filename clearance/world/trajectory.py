@@ -43,6 +43,20 @@ WRAPS = (SHORTEST, AS_WRITTEN)
 
 
 @dataclass(frozen=True, eq=False)
+class Points:
+    """The samples of a file with accelerations, where a trajectory has more between them.
+
+    Attributes:
+        times: (m,) [s]. positions, velocities, accelerations: (m, k) [rad] or [m], and per second and its square.
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    accelerations: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class Trajectory:
     """Samples of joint positions, and of velocities if they are known.
 
@@ -54,6 +68,7 @@ class Trajectory:
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
         path_error: [rad or m] how far joints may be off between samples, and at those that the file does not have.
+        points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
         wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
             A `PlacedRobot` takes whole turns off those that are meant the shortest way.
@@ -71,6 +86,7 @@ class Trajectory:
     holes: tuple[Hole, ...] = ()
     wrap: str | None = None
     path_error: float = 0.0
+    points: Points | None = None
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
@@ -88,6 +104,11 @@ class Trajectory:
         return len(self.times)
 
     @property
+    def written(self) -> Points | Trajectory:
+        """The samples that its file has."""
+        return self if self.points is None else self.points
+
+    @property
     def not_measured(self) -> tuple[Window, ...]:
         """The stretches of its time [s] that are left out."""
         return tuple(Window(one.start, one.end) for one in self.holes if one.means == NOT_MEASURED)
@@ -98,11 +119,14 @@ class Trajectory:
         Raises:
             BadTime: doubles cannot hold its times apart.
         """
-        times = Timing(start=seconds).run_times(self.times)
+        timing, own = Timing(start=seconds), self.points
+        times = timing.run_times(self.times)
+        if own is not None:
+            own = replace(own, times=timing.run_times(own.times))
         holes = (
             replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.holes
         )
-        return replace(self, times=times, holes=tuple(holes))
+        return replace(self, times=times, holes=tuple(holes), points=own)
 
     def _refuse_bad_samples(self) -> None:
         wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))

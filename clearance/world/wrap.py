@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.world.quintic import with_accelerations
 from clearance.world.robot import JointKind, Robot
 from clearance.world.trajectory import SHORTEST, Trajectory
 
@@ -65,12 +66,16 @@ def meant(robot: Robot, asked: Trajectory) -> Trajectory:
     """
     if asked.wrap != SHORTEST:
         return asked
-    positions = asked.positions.copy()
+    own = asked.written
+    positions = own.positions.copy()
     for i, _ in _columns(robot, asked):
-        positions[:, i] -= 2.0 * np.pi * whole_turns(asked.positions[:, i])
-    return (
-        asked if np.array_equal(positions, asked.positions) else replace(asked, positions=positions)
-    )
+        positions[:, i] -= 2.0 * np.pi * whole_turns(own.positions[:, i])
+    if np.array_equal(positions, own.positions):
+        return asked
+    if isinstance(own, Trajectory):
+        return replace(asked, positions=positions)
+    plain = replace(asked, times=own.times, positions=positions, velocities=own.velocities)
+    return with_accelerations(plain, own.accelerations)
 
 
 def _columns(robot: Robot, asked: Trajectory) -> Iterator[tuple[int, np.ndarray]]:
@@ -78,7 +83,7 @@ def _columns(robot: Robot, asked: Trajectory) -> Iterator[tuple[int, np.ndarray]
     turning = wrapping_joints(robot)
     for i, name in enumerate(asked.joint_names):
         if name in turning:
-            steps = np.flatnonzero(_whole_turns(np.diff(asked.positions[:, i])))
+            steps = np.flatnonzero(_whole_turns(np.diff(asked.written.positions[:, i])))
             if len(steps):
                 yield i, steps
 
@@ -90,8 +95,8 @@ def _whole_turns(steps: np.ndarray) -> np.ndarray:
 
 
 def _longest(asked: Trajectory, i: int, steps: np.ndarray) -> LongStep:
-    own = asked.positions[:, i]
+    own = asked.written.positions[:, i]
     worst = int(steps[np.argmax(np.abs(np.diff(own))[steps])])
     ends = slice(worst, worst + 2)
-    start, end = asked.times[ends].tolist()
+    start, end = asked.written.times[ends].tolist()
     return LongStep(asked.joint_names[i], start, end, *own[ends].tolist(), len(steps))

@@ -11,6 +11,7 @@ import clearance as cl
 from clearance.load.case.case_file import load_case
 from clearance.simulate.checker import Checker
 from clearance.tolerance import CERTIFY_GAP, PATH_ERROR
+from clearance.world.cubic import positions_along
 from clearance.world.pairs import selected_pairs
 from clearance.world.path_error import path_error_of
 from clearance.world.plausibility import notices_of
@@ -186,3 +187,27 @@ def test_joints_at_their_limits_are_not_beyond_them_for_the_way_they_are_followe
     assert not [
         one for one in notices_of(case(tmp_path, CART, limit, path)) if one.kind == "limits"
     ]
+
+
+@pytest.mark.parametrize(
+    ("wrap", "turned"),
+    [("", None), (", wrap: shortest", 2.0 * np.pi - 5.8), (", wrap: as_written", -5.8)],
+)
+def test_more_than_half_a_turn_from_point_to_point_is_not_hidden_by_the_samples_between(
+    tmp_path, wrap, turned
+):
+    """From 2.9 to -2.9 rad at rest: 5.8 rad back as written, 0.483 rad on the shortest way."""
+    rest = np.zeros((2, 1))
+    path = message(["a"], [0.0, 1.0], np.array([[2.9], [-2.9]]), rest, rest)
+    free = ARM.replace('name="a" type="revolute"', 'name="a" type="continuous"')
+    found = case(tmp_path, SCENE.replace("path.json", f"{{file: path.json{wrap}}}"), free, path)
+    kinds = [one.kind for one in notices_of(found) if one.severity == "suspect"]
+    asked = found.robots[0].given_trajectory
+    if turned is None:
+        assert "wrap" in kinds
+        return
+    assert "wrap" not in kinds
+    assert asked.positions[-1, 0] - 2.9 == pytest.approx(turned)
+    assert positions_along(asked, np.array([0.5]))[0, 0] == pytest.approx(
+        2.9 + 0.5 * turned, abs=1e-8
+    )

@@ -73,10 +73,10 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
     Raises:
         BadInput: joints that are to hold, and velocities by which they go on.
     """
-    given = read.trajectory
-    columns = zip(given.joint_names, given.positions.T, strict=True)
-    tracks = {name: Track(given.times, positions) for name, positions in columns}
-    first, last = float(given.times[0]), float(given.times[-1])
+    given, own = read.trajectory, read.trajectory.written
+    columns = zip(given.joint_names, own.positions.T, strict=True)
+    tracks = {name: Track(own.times, positions) for name, positions in columns}
+    first, last = float(own.times[0]), float(own.times[-1])
     holes = tuple(
         replace(hole, start=hole.start + first, end=hole.end + first)
         for hole in holes_of(tracks, gaps, (first, last))
