@@ -78,6 +78,16 @@ def test_bits_that_do_not_meet_and_excluded_bodies_are_told(tmp_path):
     assert sum("self_clearance without srdf leaves out" in note for note in loaded.notes) == 2
 
 
+def test_bits_of_the_floor_count_and_bodies_without_a_shape_are_not_told(tmp_path):
+    seen = body("seen", geom='<geom size="0.1" contype="0" conaffinity="0"/>')
+    high = body("high", geom='<geom size="0.1" contype="2" conaffinity="2"/>')
+    floor = '<geom type="plane" size="1 1 1"/>'
+    loaded = load_mjcf(tmp_path, mjcf(floor + seen + high + body("low")))
+    assert why(loaded) == {"world high": BITS, "world low": None, "high low": BITS}
+    (note,) = (one for one in loaded.notes if "leaves out" in one)
+    assert note.endswith(f"({BITS}): world - high, high - low")
+
+
 def test_bits_say_nothing_of_shapes_that_are_only_seen(tmp_path):
     seen = '<geom size="0.1" contype="0" conaffinity="0"/>'
     loaded = load_mjcf(tmp_path, mjcf(body("a", geom=seen) + body("b", geom=seen)), "visual")

@@ -29,17 +29,19 @@ class MjcfFilters:
     """What keeps the bodies of a model from colliding.
 
     Args:
-        colliding: bodies that are measured by the geoms that collide; of others the bits say nothing.
+        measured: bodies with a shape.
+        colliding: those of them whose shape is the geoms that collide; of others the bits say nothing.
         neighbours: pairs of bodies that one joint joins.
     """
 
     model: MjcfModel
+    measured: frozenset[str]
     colliding: frozenset[str]
     neighbours: frozenset[frozenset[str]]
 
     @cached_property
     def rows(self) -> tuple[tuple[str, str, str], ...]:
-        """Pairs of bodies with geoms, and why MuJoCo asks nothing about them."""
+        """Pairs of bodies with a shape, and why MuJoCo asks nothing about them."""
         bodies = self.model.bodies
         return tuple(
             (bodies[a].name, bodies[b].name, reason)
@@ -65,10 +67,11 @@ class MjcfFilters:
 
     @cached_property
     def _geoms(self) -> dict[int, list[MjcfGeom]]:
-        """The geoms of each body that has any."""
+        """The geoms of each body that has a shape."""
         found: dict[int, list[MjcfGeom]] = {}
         for geom in self.model.geoms:
-            found.setdefault(geom.body, []).append(geom)
+            if self.model.bodies[geom.body].name in self.measured:
+                found.setdefault(geom.body, []).append(geom)
         return dict(sorted(found.items()))
 
     @cached_property

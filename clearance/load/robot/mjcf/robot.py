@@ -68,10 +68,20 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         states=states_of(model),
         reference=reference_of(model),
     )
-    colliding = (n for n, has in kinds.items() if chosen_kind(has, request.geometry) == "collision")
-    filters = MjcfFilters(model, frozenset(colliding), neighbours(robot))
+    filters = _filters(model, kinds, request.geometry, robot)
     told = [f"{request.path.name}: {note}" for note in (*told, *filters.notes())]
     return replace(robot, notes=(*shapes.notes(), *told), own_matrix=filters.matrix)
+
+
+def _filters(
+    model: MjcfModel, kinds: dict[str, frozenset[str]], geometry: Geometry, robot: Robot
+) -> MjcfFilters:
+    """What keeps bodies from colliding; one that has planes alone is among those that collide."""
+    names = [body.name for body in robot.bodies]
+    plane = frozenset({"collision"})
+    chosen = {name: chosen_kind(kinds.get(name) or plane, geometry) for name in names}
+    colliding = frozenset(name for name in names if chosen[name] == "collision")
+    return MjcfFilters(model, frozenset(names), colliding, neighbours(robot))
 
 
 def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
