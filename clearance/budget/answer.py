@@ -63,7 +63,12 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
     late = [name for name, own in budget.robots.items() if own.timing > 0.0]
     late += [name for name, own in budget.obstacles.items() if own.timing > 0.0]
     _require_no_loops(case, late)
-    if late and len({section.phase.first for section in plan.sections}) > 1:
+    phases = {section.phase.first: section.phase for section in plan.sections}
+    parts = [part for phase in phases.values() for part in phase.case.obstacles]
+    if len(phases) == 1:  # what is gripped as the run begins
+        gripping = {one.owner for part in parts for one in part.past}
+        late = [name for name in late if name in gripping]
+    if late:
         raise BadInput(
             f"the clock of {late[0]!r} may be off, and parts change hands, come or go during the run",
             where="tolerance.timing",

@@ -1,12 +1,13 @@
 """The errors of a case's budget, laid over the links and bodies that are measured.
 
-Links that are seen from another link (`simulate.layout`) have the errors of the joints between. Not for: what the
-errors do to a distance (`kernels.budget`).
+Links that are seen from another link (`simulate.layout`) have the errors of the joints between; a part that has
+changed hands has those of its carriers at these moments too. Not for: what the errors do to a distance
+(`kernels.budget`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -16,7 +17,7 @@ from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
 from clearance.late_dataclass import dataclass
-from clearance.simulate.layout import IN_WORLD, Layout
+from clearance.simulate.layout import IN_WORLD, Layout, SeenBody
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
     EXACT,
@@ -26,6 +27,7 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
+from clearance.world.carrier_error import CarrierError
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.mimics import leads_of
@@ -37,19 +39,15 @@ EXACT_JOINT = JointTolerance()
 EXACT_ROBOT = RobotTolerance()
 EXACT_OBSTACLE = ObstacleTolerance()
 
+NOW = ""
+"""The moment that is looked at, as `CarrierError` calls it."""
 
-@dataclass(frozen=True)
-class HeldFrame:
-    """A frame on which something hangs.
 
-    Attributes:
-        owner: the obstacle whose place it is. origin: (3,) [m] in the frame of what hangs there.
-        place: how far it may be off.
-    """
+Held = tuple[CarrierError, PlacementTolerance]
+"""An error of what something hangs on, and how large it is: a joint turns by the angle, or slides by xyz."""
 
-    owner: str
-    origin: np.ndarray
-    place: PlacementTolerance
+BudgetAt = Callable[[str], Budget]
+"""The budget of a moment, as `CarrierError` calls it."""
 
 
 def robot_tolerance(budget: Budget, robot: Robot) -> RobotTolerance:
@@ -62,8 +60,11 @@ def obstacle_tolerance(budget: Budget, obstacle: Obstacle) -> ObstacleTolerance:
     return budget.obstacles.get(obstacle.name, EXACT_OBSTACLE)
 
 
-def held_frames(case: Case, budget: Budget, mount: Mount | None) -> Iterator[HeldFrame]:
-    """The places of the obstacles that something rides on, nearest first, up to one with a motion of its own."""
+def errors_below(case: Case, mount: Mount | None) -> Iterator[CarrierError]:
+    """The errors of the obstacles that something rides on, nearest first, up to one with a motion of its own.
+
+    These are of their places now, and of the hands that they have gone through.
+    """
     obstacles = {obstacle.name: obstacle for obstacle in case.obstacles}
     below = np.eye(4)
     while mount is not None and mount.on in obstacles:
@@ -71,13 +72,26 @@ def held_frames(case: Case, budget: Budget, mount: Mount | None) -> Iterator[Hel
         if carrier.moves is not None:
             return
         below = below @ inverse(mount.pose)
-        yield HeldFrame(carrier.name, below[:3, 3], obstacle_tolerance(budget, carrier).place)
+        yield CarrierError(carrier.name, "", below[:3, 3])
+        yield from (one.seen_from(below) for one in carrier.past)
         mount = carrier.mount
 
 
-def errors_of(case: Case, budget: Budget, layout: Layout) -> Errors:
+def size_of(case: Case, budget: Budget, one: CarrierError) -> PlacementTolerance:
+    """How large a budget says that an error is."""
+    robot = next((each.robot for each in case.robots if each.robot.name == one.owner), None)
+    if robot is None:
+        return budget.obstacles.get(one.owner, EXACT_OBSTACLE).place
+    own = robot_tolerance(budget, robot)
+    if one.axis is None:
+        return own.joints.get(one.joint, EXACT_JOINT).frame if one.joint else own.base
+    size = sum(abs(factor) * _size(own, name) for name, factor in leads_of(robot)[one.joint])
+    return PlacementTolerance(size, 0.0) if one.slides else PlacementTolerance(0.0, size)
+
+
+def errors_of(case: Case, budget_at: BudgetAt, layout: Layout) -> Errors:
     """The errors of all links and bodies of a layout."""
-    own, origins = _ForestErrors(case, budget), layout.origins
+    own, origins = _ForestErrors(case, budget_at), layout.origins
     known = origins >= 0
     at = np.maximum(origins, 0)
 
@@ -85,6 +99,9 @@ def errors_of(case: Case, budget: Budget, layout: Layout) -> Errors:
         return np.where(known, column[at], 0.0)
 
     of_links = [own.extras.get(link, []) for link in origins.tolist()]
+    of_bodies = [
+        own.of_standing(*body) for body in zip(layout.world.frames, layout.places, strict=True)
+    ]
     return Errors(
         of(own.joint),
         of(own.xyz),
@@ -92,9 +109,9 @@ def errors_of(case: Case, budget: Budget, layout: Layout) -> Errors:
         of(own.delay),
         np.where(known, own.owner[at], -1),
         _extras(of_links),
-        _extras(_of_bodies(case, budget, layout)),
-        np.array([surface_of(case, budget, place.body) for place in layout.places]),
-        _most_rows(layout, of_links),
+        _extras(of_bodies),
+        np.array([surface_of(case, own.budget, place.body) for place in layout.places]),
+        _most_rows(layout, of_links, of_bodies),
     )
 
 
@@ -103,11 +120,11 @@ class _ForestErrors:
     """The errors of the links of a case's forest."""
 
     case: Case
-    budget: Budget
-    extras: dict[int, list[HeldFrame]] = field(default_factory=dict)
+    budget_at: BudgetAt
+    extras: dict[int, list[Held]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.forest = forest_of(self.case)
+        self.forest, self.budget = forest_of(self.case), self.budget_at(NOW)
         n_links = len(self.forest.links.parents)
         self.joint, self.xyz, self.angle, self.delay = np.zeros((4, n_links))
         self.owner = np.full(n_links, -1)
@@ -127,7 +144,7 @@ class _ForestErrors:
                 self.joint[links[joint.child]] = sum(abs(f) * _size(own, name) for name, f in leads)
                 self._delay(links[joint.child], own.timing, i_robot)
         self._place(start, own.base)
-        self._hold(start, placed.mount)
+        self._hold(start, errors_below(self.case, placed.mount))
 
     def _add_obstacle(self, i_obstacle: int) -> None:
         link = self.forest.obstacle_links[i_obstacle]
@@ -137,7 +154,7 @@ class _ForestErrors:
         own = obstacle_tolerance(self.budget, obstacle)
         self._place(link, own.place)
         if obstacle.moves is None:
-            self._hold(link, obstacle.mount)
+            self._hold(link, [*obstacle.past, *errors_below(self.case, obstacle.mount)])
             return
         for part in range(link - 3, link + 1):
             self._delay(part, own.timing, len(self.case.robots) + i_obstacle)
@@ -147,14 +164,14 @@ class _ForestErrors:
         """What a body with a motion of its own rides on holds the link that its motion starts from."""
         base = int(self.forest.links.parents[first])
         if self.forest.links.parents[base] == NO_PARENT:
-            self._hold(base, obstacle.mount)
+            self._hold(base, errors_below(self.case, obstacle.mount))
             return
-        held = [one for one in held_frames(self.case, self.budget, obstacle.mount)]
-        if any(one.place != EXACT for one in held):
+        for one, _ in self._held(errors_below(self.case, obstacle.mount)):
+            on = obstacle.mount.on if obstacle.mount is not None else one.owner
             raise BadInput(
-                f"obstacle {obstacle.name!r} moves by its own table on {held[0].owner!r}, which moves too",
+                f"obstacle {obstacle.name!r} moves by its own table on {on!r}, which moves too",
                 where="tolerance.obstacles",
-                valid=f"no place tolerance of {held[0].owner!r}; give it to {obstacle.name!r}",
+                valid=f"no place tolerance of {one.owner!r}; give it to {obstacle.name!r}",
             )
 
     def _place(self, link: int, place: PlacementTolerance) -> None:
@@ -164,29 +181,27 @@ class _ForestErrors:
         if delay > 0.0:
             self.delay[link], self.owner[link] = delay, owner
 
-    def _hold(self, link: int, mount: Mount | None) -> None:
-        held = [one for one in held_frames(self.case, self.budget, mount) if one.place != EXACT]
-        if held:
+    def _hold(self, link: int, errors: Iterable[CarrierError]) -> None:
+        if held := self._held(errors):
             self.extras[link] = held
+
+    def _held(self, errors: Iterable[CarrierError]) -> list[Held]:
+        """Those of errors that are not 0, and how large they are."""
+        sizes = ((one, size_of(self.case, self.budget_at(one.moment), one)) for one in errors)
+        return [(one, size) for one, size in sizes if size != EXACT]
+
+    def of_standing(self, frame: int, seen: SeenBody) -> list[Held]:
+        """The errors of a body that no link carries, if it stands in the world."""
+        if frame >= 0 or seen.reference != IN_WORLD or not seen.body.is_obstacle:
+            return []
+        obstacle = self.case.obstacles[seen.body.i_body]
+        return self._held([CarrierError(obstacle.name, "", np.zeros(3)), *obstacle.past])
 
 
 def _size(own: RobotTolerance, joint: str) -> float:
     """[rad or m] What a joint may be off in all, by itself."""
     tolerance = own.joints.get(joint, EXACT_JOINT)
     return tolerance.position + tolerance.tracking
-
-
-def _of_bodies(case: Case, budget: Budget, layout: Layout) -> list[list[HeldFrame]]:
-    """The places of the bodies that stand in the world."""
-    found: list[list[HeldFrame]] = []
-    for frame, seen in zip(layout.world.frames.tolist(), layout.places, strict=True):
-        if frame >= 0 or seen.reference != IN_WORLD or not seen.body.is_obstacle:
-            found.append([])
-            continue
-        obstacle = case.obstacles[seen.body.i_body]
-        place = obstacle_tolerance(budget, obstacle).place
-        found.append([] if place == EXACT else [HeldFrame(obstacle.name, np.zeros(3), place)])
-    return found
 
 
 def surface_of(case: Case, budget: Budget, body: BodyIndex) -> float:
@@ -197,22 +212,26 @@ def surface_of(case: Case, budget: Budget, body: BodyIndex) -> float:
     return robot_tolerance(budget, robot).surfaces.get(body.own_name_in(case), 0.0)
 
 
-def _extras(held: Sequence[Sequence[HeldFrame]]) -> Extras:
-    flat = [frame for frames in held for frame in frames]
-    origins = np.array([frame.origin for frame in flat], dtype=np.float64).reshape(-1, 3)
+def _extras(held: Sequence[Sequence[Held]]) -> Extras:
+    flat = [one for errors in held for one in errors]
+    origins = np.array([one.origin for one, _ in flat], dtype=np.float64).reshape(-1, 3)
+    axes = [np.zeros(3) if one.axis is None else one.axis for one, _ in flat]
     return Extras(
-        np.concatenate([[0], np.cumsum([len(frames) for frames in held])]).astype(np.int64),
+        np.concatenate([[0], np.cumsum([len(errors) for errors in held])]).astype(np.int64),
         origins,
-        np.array([frame.place.xyz for frame in flat], dtype=np.float64),
-        np.array([frame.place.angle for frame in flat], dtype=np.float64),
+        np.array([size.xyz for _, size in flat], dtype=np.float64),
+        np.array([size.angle for _, size in flat], dtype=np.float64),
+        np.array(axes, dtype=np.float64).reshape(-1, 3),
     )
 
 
-def _most_rows(layout: Layout, held: Sequence[Sequence[HeldFrame]]) -> int:
+def _most_rows(
+    layout: Layout, of_links: Sequence[Sequence[Held]], of_bodies: Sequence[Sequence[Held]]
+) -> int:
     """Rows that any body can have: three a link, one for what moves together, and what is held."""
     parents = layout.world.links.parents
     rows = np.zeros(len(parents), dtype=np.int64)
     for link, parent in enumerate(parents.tolist()):  # parents come first
-        own = 3 + len(held[link])
+        own = 3 + len(of_links[link])
         rows[link] = own if parent == NO_PARENT else own + rows[parent]
-    return int(rows.max(initial=0)) + 2
+    return max(int(rows.max(initial=0)), *map(len, of_bodies)) + 2

@@ -192,7 +192,6 @@ class _Trial:
             return math.inf
         case = section.section.phase.case
         reach = farthest_reach(case, section.section.phase.motions)
-        lever = 4.0 * reach + 1.0 if self.unit == "rad" else 1.0
         factor = 1.0
         for placed in case.robots:
             if placed.robot.name == self.key.owner:
@@ -200,15 +199,11 @@ class _Trial:
                     abs(more) for leads in leads_of(placed.robot).values()
                     for name, more in leads[1:] if name == self.key.part
                 )  # fmt: skip
-        return (
-            2.0
-            * factor
-            * (
-                lever
-                if self.unit == "rad"
-                else max(1.0, 4.0 * reach + 1.0 if factor > 1.0 else 1.0)
-            )
-        )
+        has_lever = self.unit == "rad" or factor > 1.0
+        past = [one for part in case.obstacles for one in part.past if one.owner == self.key.owner]
+        own = [one for one in past if factor > 1.0 or one.joint == self.key.part]
+        reach = max([reach, *(float(np.linalg.norm(one.origin)) for one in own)])
+        return 2.0 * (1 + len(own)) * factor * (4.0 * reach + 1.0 if has_lever else 1.0)
 
 
 def _failing(

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from clearance.budget.errors_of import errors_of
+from clearance.budget.errors_of import NOW, errors_of
 from clearance.compile.kernel_table import call, prepared
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
@@ -73,17 +73,24 @@ class PairsWithErrors:
     Attributes:
         n_threads: how many may work at it.
         rooms: for searches, in which no thread is at work; pairs that are asked in turn may share them.
+        but_for: a moment, as `CarrierError` calls it, and the budget that holds of errors made then.
     """
 
     what: PairsInMotion
     budget: Budget
     n_threads: int = 1
     rooms: list[SearchRoom] = field(default_factory=list)
+    but_for: tuple[str, Budget] | None = None
 
     @cached_property
     def errors(self) -> Errors:
         """Of the links and bodies of the layout."""
-        return errors_of(self.what.case, self.budget, self.what.layout)
+        moment, then = self.but_for or (NOW, self.budget)
+
+        def budget_at(when: str) -> Budget:
+            return then if when == moment else self.budget
+
+        return errors_of(self.what.case, budget_at, self.what.layout)
 
     @cached_property
     def path(self) -> JointPath:
@@ -95,9 +102,9 @@ class PairsWithErrors:
         times, cubic = motions[0].times[[0, 0]], np.zeros(positions.shape[1], dtype=bool)
         return joint_path(links, times, positions, np.zeros_like(positions), cubic)
 
-    def of(self, budget: Budget) -> PairsWithErrors:
+    def of(self, budget: Budget, but_for: tuple[str, Budget] | None = None) -> PairsWithErrors:
         """The same with another budget."""
-        other = PairsWithErrors(self.what, budget, self.n_threads, self.rooms)
+        other = PairsWithErrors(self.what, budget, self.n_threads, self.rooms, but_for)
         other.__dict__["path"] = self.path  # errors are no part of it
         return other
 

@@ -6,7 +6,7 @@ error, times their factor, so that what it does to both bodies is added up with 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import NamedTuple
 
@@ -15,10 +15,11 @@ import numpy as np
 from clearance.budget.errors_of import (
     EXACT_JOINT,
     EXACT_ROBOT,
-    held_frames,
+    NOW,
+    errors_below,
     surface_of,
 )
-from clearance.kernels.motion.kinematics import NO_PARENT, TURNING
+from clearance.kernels.motion.kinematics import NO_PARENT
 from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
@@ -28,10 +29,10 @@ from clearance.world.budget import (
     PlacementTolerance,
     RobotTolerance,
 )
+from clearance.world.carrier_error import CarrierError
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, carried_by, forest_of
 from clearance.world.mimics import leads_of
-from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.robot import JointKind
 
@@ -45,11 +46,13 @@ class SourceKey(NamedTuple):
 
     Attributes:
         owner: the robot or obstacle. kind: as in `ErrorSource`. part: the joint or link, or empty.
+        moment: as `CarrierError` calls it.
     """
 
     owner: str
     kind: str
     part: str
+    moment: str = NOW
 
 
 class Slope(NamedTuple):
@@ -202,13 +205,14 @@ def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effec
         owner, part = case.robots[body.i_robot].robot.name, body.own_name_in(case)
     if surface_of(case, budget, body) > 0.0:
         yield SourceKey(owner, SURFACE, part), 0, np.full((len(side.x), 1), -1.0)
-    frame = body.frame_in(case)
+    frame, told = body.frame_in(case), _LinkNames(case)
     if frame == WORLD:
-        origin = case.obstacles[body.i_body].world_from_body[:3, 3]
-        yield from _of_frame(SourceKey(owner, PLACE, ""), side, origin)
+        obstacle = case.obstacles[body.i_body]
+        pose = np.broadcast_to(obstacle.world_from_body, (len(side.x), 4, 4))
+        yield from _of_frame(SourceKey(owner, PLACE, ""), side, pose[:, :3, 3])
+        yield from told.of_errors(obstacle.past, pose, side)
         return
     yield from _of_clocks(frame, side)
-    told = _LinkNames(case, budget)
     for link in carried_by(forest_of(case), frame):
         if link in common:
             return
@@ -234,37 +238,42 @@ def _of_frame(key: SourceKey, side: _Side, origin: np.ndarray) -> Effects:
 class _LinkNames:
     """What each link of a case's forest is called by."""
 
-    def __init__(self, case: Case, budget: Budget) -> None:
-        self.case, self.budget, self.forest = case, budget, forest_of(case)
+    def __init__(self, case: Case) -> None:
+        self.case, self.forest = case, forest_of(case)
+        self.leads = {one.robot.name: leads_of(one.robot) for one in case.robots}
         self.joints, self.roots = {}, {}
         for i, placed in enumerate(case.robots):
             start = self.forest.robot_starts[i]
             links = {name: start + k for k, name in enumerate(placed.robot.link_names)}
             self.roots[start] = placed
-            leads = leads_of(placed.robot)
             for joint in placed.robot.joints:
-                self.joints[links[joint.child]] = placed.robot, joint, leads.get(joint.name, ())
+                self.joints[links[joint.child]] = placed.robot, joint
         links_of = enumerate(self.forest.obstacle_links)
         self.obstacles = {link: case.obstacles[i] for i, link in links_of if link != WORLD}
 
     def of_link(self, link: int, side: _Side) -> Effects:
-        """The slopes of the joint above a link and of all frames that it hangs on."""
-        origin = self._joined(link, side)
+        """The slopes of the joint above a link and of all else that it hangs on."""
+        origin, at = self._joined(link, side), side.witness.poses[:, link]
+        below: list[CarrierError] = []
         if link in self.joints:
-            robot, joint, leads = self.joints[link]
-            yield from self._of_joint(link, robot.name, leads, side)
+            robot, joint = self.joints[link]
+            if joint.kind is not JointKind.FIXED:
+                slides = joint.kind is JointKind.PRISMATIC
+                own = CarrierError(robot.name, joint.name, np.zeros(3), joint.axis, slides)
+                yield from self._of_joint(own, at, side)
             yield from _of_frame(SourceKey(robot.name, FRAME, joint.name), side, origin)
         elif link in self.roots:
             placed = self.roots[link]
             yield from _of_frame(SourceKey(placed.robot.name, BASE, ""), side, origin)
-            yield from self._held(placed.mount, link, side)
+            below += errors_below(self.case, placed.mount)
         elif link in self.obstacles:
             obstacle = self.obstacles[link]
             yield from _of_frame(SourceKey(obstacle.name, PLACE, ""), side, origin)
             if obstacle.moves is None:
-                yield from self._held(obstacle.mount, link, side)
+                below += [*obstacle.past, *errors_below(self.case, obstacle.mount)]
         for obstacle in self._moving_from(link):
-            yield from self._held(obstacle.mount, link, side)
+            below += errors_below(self.case, obstacle.mount)
+        yield from self.of_errors(below, at, side)
 
     def _joined(self, link: int, side: _Side) -> np.ndarray:
         """(n, 3) where the frame that a link hangs on has its origin [m]."""
@@ -283,22 +292,23 @@ class _LinkNames:
                 if obstacle.moves is not None and int(parents[last - 3]) == link:
                     yield obstacle
 
-    def _held(self, mount: Mount | None, link: int, side: _Side) -> Effects:
-        at = side.witness.poses[:, link]
-        for held in held_frames(self.case, self.budget, mount):
-            origin = at[:, :3, 3] + at[:, :3, :3] @ held.origin
-            yield from _of_frame(SourceKey(held.owner, PLACE, ""), side, origin)
+    def of_errors(self, errors: Iterable[CarrierError], at: np.ndarray, side: _Side) -> Effects:
+        """The slopes of errors that are seen from a link or body at poses (n, 4, 4) [m]."""
+        for one in errors:
+            if one.axis is not None:
+                yield from self._of_joint(one, at, side)
+                continue
+            kind = PLACE if one.owner not in self.leads else FRAME if one.joint else BASE
+            origin = at[:, :3, 3] + at[:, :3, :3] @ one.origin
+            own = SourceKey(one.owner, kind, one.joint, one.moment)
+            for key, place, along in _of_frame(own, side, origin):
+                yield key, place, one.sign * along
 
-    def _of_joint(
-        self, link: int, robot: str, leads: tuple[tuple[str, float], ...], side: _Side
-    ) -> Effects:
-        if not leads:
-            return
-        at, links = side.witness.poses[:, link], self.forest.links
-        way = at[:, :3, :3] @ links.axes[link]
-        if links.kinds[link] == TURNING:
-            way = np.cross(way, side.x - at[:, :3, 3])
-        slope = np.einsum("ni,ni->n", side.u, way)[:, None]
-        for name, factor in leads:
+    def _of_joint(self, one: CarrierError, at: np.ndarray, side: _Side) -> Effects:
+        way = at[:, :3, :3] @ one.axis
+        if not one.slides:
+            way = np.cross(way, side.x - at[:, :3, 3] - at[:, :3, :3] @ one.origin)
+        slope = one.sign * np.einsum("ni,ni->n", side.u, way)[:, None]
+        for name, factor in self.leads[one.owner][one.joint]:
             for kind in (POSITION, TRACKING):
-                yield SourceKey(robot, kind, name), 0, factor * slope
+                yield SourceKey(one.owner, kind, name, one.moment), 0, factor * slope

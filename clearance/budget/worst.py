@@ -12,6 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from clearance.budget.errors_of import NOW
 from clearance.budget.expected import clock_rates, deviations, variance_of
 from clearance.budget.largest import ToleranceSearch
 from clearance.budget.proven import PairsWithErrors, PathMoments
@@ -123,14 +124,16 @@ class WorstMoments(LazyItems[BudgetMoment]):
         found = []
         for key, own in by_key.items():
             sizes, units = sizes_of(budget, key), units_of(case, key)
-            without = pairs.of(with_sizes(budget, key, (0.0,) * len(sizes)))
+            less = with_sizes(budget, key, (0.0,) * len(sizes))
+            without = pairs.of(budget, (key.moment, less))
             taken = _at(without, low) - _at(pairs, low)
             expected = None if moment.touches else _deviation(own, budget)
             found.append(
                 ErrorSource(
                     key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
                     max(0.0, taken), expected,
-                    LazyItems(partial(self._largest.of, case, key)),
+                    LazyItems(partial(self._largest.of, case, key._replace(moment=NOW))),
+                    key.moment,
                 )
             )  # fmt: skip
         return sorted(found, key=lambda source: -source.proven)

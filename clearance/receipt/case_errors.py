@@ -5,21 +5,36 @@ The model is that of `clearance.budget`; how it is laid over the links is worked
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.geometry.pose import inverse
 from clearance.receipt.proof.motion_data import Errors, MountFrames
-from clearance.world.budget import EXACT, Budget, JointTolerance, PlacementTolerance, RobotTolerance
+from clearance.world.body import Obstacle
+from clearance.world.budget import EXACT, JointTolerance, PlacementTolerance, RobotTolerance
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.mimics import leads_of
 from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex
 
-Row = tuple[int, np.ndarray, PlacementTolerance]
-"""A link or body; where in its frame what it stands on has its origin [m]; how far that may be off."""
+NO_AXIS = np.zeros(3)
+
+
+class Row(NamedTuple):
+    """What a link or body stands on, or has stood on.
+
+    Attributes:
+        which: link or body. origin: [m] of what it stands on, in its own frame. size: how far that may be off.
+        axis: of a joint, about or along which; 0 of a frame.
+    """
+
+    which: int
+    origin: np.ndarray
+    size: PlacementTolerance
+    axis: np.ndarray = NO_AXIS
 
 
 def is_covered(case: Case) -> bool:
@@ -42,20 +57,21 @@ def errors_of(case: Case, bodies: Sequence[BodyIndex]) -> Errors:
     for placed, start in zip(case.robots, forest.robot_starts, strict=True):
         own = budget.robots.get(placed.robot.name, RobotTolerance())
         _lay_robot(placed, start, own, joint, places)
-        rows += [(start, at, place) for at, place in _carriers(case, budget, placed.mount)]
+        rows += _carriers(case, start, placed.mount)
     for obstacle, link in zip(case.obstacles, forest.obstacle_links, strict=True):
         if link != WORLD:
-            places[link] = _place_of(budget, obstacle.name)
+            places[link] = _place_of(case, obstacle.name)
             first = (
                 link if obstacle.moves is None else link - 3
             )  # three slides before the ball joint
-            rows += [(first, at, place) for at, place in _carriers(case, budget, obstacle.mount)]
+            rows += _hands(case, first, obstacle, np.eye(4))
+            rows += _carriers(case, first, obstacle.mount)
     return Errors(
         joint,
         np.array([place.xyz for place in places]),
         np.array([place.angle for place in places]),
         _held(rows),
-        _held(_standing(case, budget, forest, bodies)),
+        _held(_standing(case, forest, bodies)),
     )
 
 
@@ -87,44 +103,76 @@ def _lay_robot(
     places[start] = own.base
     for one in robot.joints:
         places[links[one.child]] = own.joints.get(one.name, JointTolerance()).frame
-        for name, factor in leads.get(one.name, ()):
-            lead = own.joints.get(name, JointTolerance())
-            joint[links[one.child]] += abs(factor) * (lead.position + lead.tracking)
+        if one.name in leads:
+            joint[links[one.child]] = _joint_of(own, leads[one.name])
 
 
-def _place_of(budget: Budget, name: str) -> PlacementTolerance:
-    return budget.obstacles[name].place if name in budget.obstacles else EXACT
+def _carriers(case: Case, which: int, mount: Mount | None) -> Iterator[Row]:
+    """The obstacles that something stands on, the nearest first, up to one that moves by itself.
 
-
-def _carriers(
-    case: Case, budget: Budget, mount: Mount | None
-) -> Iterator[tuple[np.ndarray, PlacementTolerance]]:
-    """The obstacles that something stands on, the nearest first, up to one that moves by itself: where each has
-    its origin [m], seen from what stands there, and how far it may be off.
+    Each is followed by the hands that it has gone through.
     """
     named = {obstacle.name: obstacle for obstacle in case.obstacles}
     pose = np.eye(4)
     while mount is not None and mount.on in named and named[mount.on].moves is None:
         carrier = named[mount.on]
         pose = pose @ inverse(mount.pose)
-        yield pose[:3, 3], _place_of(budget, carrier.name)
+        yield Row(which, pose[:3, 3], _place_of(case, carrier.name))
+        yield from _hands(case, which, carrier, pose)
         mount = carrier.mount
 
 
-def _standing(
-    case: Case, budget: Budget, forest: Forest, bodies: Sequence[BodyIndex]
-) -> Iterator[Row]:
-    """The places of obstacles that no link carries."""
+def _hands(case: Case, which: int, part: Obstacle, pose: np.ndarray) -> Iterator[Row]:
+    """What was off of all that has gripped a part, seen from what stands on it, which sees it at a pose [m]."""
+    assert case.tolerance is not None
+    leads = {placed.robot.name: leads_of(placed.robot) for placed in case.robots}
+    for one in part.past:
+        at = pose[:3, :3] @ one.origin + pose[:3, 3]
+        if one.axis is None:
+            yield Row(which, at, _frame_of(case, one.owner, one.joint))
+            continue
+        own = case.tolerance.robots.get(one.owner, RobotTolerance())
+        size = _joint_of(own, leads[one.owner][one.joint])
+        most = PlacementTolerance(size, 0.0) if one.slides else PlacementTolerance(0.0, size)
+        yield Row(which, at, most, pose[:3, :3] @ one.axis)
+
+
+def _standing(case: Case, forest: Forest, bodies: Sequence[BodyIndex]) -> Iterator[Row]:
+    """The places of obstacles that no link carries, and the hands that they have gone through."""
     for i, body in enumerate(bodies):
         if body.is_obstacle and forest.obstacle_links[body.i_body] == WORLD:
-            yield i, np.zeros(3), _place_of(budget, case.obstacles[body.i_body].name)
+            obstacle = case.obstacles[body.i_body]
+            yield Row(i, np.zeros(3), _place_of(case, obstacle.name))
+            yield from _hands(case, i, obstacle, np.eye(4))
 
 
-def _held(rows: Sequence[Row] | Iterator[Row]) -> MountFrames:
-    kept = [row for row in rows if row[2] != EXACT]
+def _held(rows: Iterable[Row]) -> MountFrames:
+    kept = [row for row in rows if row.size != EXACT]
     return MountFrames(
-        np.array([which for which, _, _ in kept], dtype=np.int64),
-        np.array([at for _, at, _ in kept], dtype=np.float64).reshape(-1, 3),
-        np.array([place.xyz for _, _, place in kept]),
-        np.array([place.angle for _, _, place in kept]),
+        np.array([row.which for row in kept], dtype=np.int64),
+        np.array([row.origin for row in kept], dtype=np.float64).reshape(-1, 3),
+        np.array([row.size.xyz for row in kept]),
+        np.array([row.size.angle for row in kept]),
+        np.array([row.axis for row in kept], dtype=np.float64).reshape(-1, 3),
     )
+
+
+def _place_of(case: Case, name: str) -> PlacementTolerance:
+    assert case.tolerance is not None
+    own = case.tolerance.obstacles.get(name)
+    return EXACT if own is None else own.place
+
+
+def _frame_of(case: Case, owner: str, joint: str) -> PlacementTolerance:
+    """Of a joint's frame, of a robot's base, or the place of an obstacle."""
+    assert case.tolerance is not None
+    own = case.tolerance.robots.get(owner)
+    if own is None:
+        return _place_of(case, owner)
+    return own.joints.get(joint, JointTolerance()).frame if joint else own.base
+
+
+def _joint_of(own: RobotTolerance, leads: Iterable[tuple[str, float]]) -> float:
+    """[rad or m] of a joint, itself and what it follows by their factors."""
+    given = ((own.joints.get(name, JointTolerance()), abs(factor)) for name, factor in leads)
+    return sum(factor * (one.position + one.tracking) for one, factor in given)

@@ -95,6 +95,7 @@ def carried_of(record: Record) -> list[dict[str, Any]]:
             "from": max(carry.window.start, float(times[0])),
             "until": min(carry.window.end, float(times[-1])),
             "touch": list(carry.touch),
+            "grasp": "exact" if carry.exact_grasp else "as driven",
         }
         for carry in case.carries
     ]

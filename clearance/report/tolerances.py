@@ -42,6 +42,13 @@ def budget_lines(record: Record) -> tuple[str, ...]:
     return tuple(_line(record, budget, one) for one in record.budget)
 
 
+def tolerance_lines(record: Record) -> tuple[str, ...]:
+    """These, and which grasps are taken as exact."""
+    exact = [f"{one.part} by {one.by}" for one in record.case.carries if one.exact_grasp]
+    told = budget_lines(record)
+    return (*told, f"Grasps taken as exact: {', '.join(exact)}.") if told and exact else told
+
+
 def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else "the motion"
@@ -71,7 +78,12 @@ def worst_of(record: Record) -> tuple[RuleBudget, BudgetMoment] | None:
 
 
 def source_text(record: Record, source: ErrorSource) -> str:
-    """What an error is of: `position of joint elbow`, `base of left`."""
+    """What an error is of, and when, if not now: `base of left`, `tracking of joint left/j at the grasp (2 s)`."""
+    told = _name(record, source)
+    return f"{told} at the {source.moment}" if source.moment else told
+
+
+def _name(record: Record, source: ErrorSource) -> str:
     part = source.part
     if len(record.case.robots) > 1 and part:
         part = f"{source.owner}/{part}"
@@ -159,7 +171,7 @@ def tolerances_of(record: Record) -> dict[str, Any] | None:
         "distributions": "normal" if budget.is_normal else "uniform",
         "unproven_ok": budget.unproven_ok,
         "sources": list(budget.sources),
-        "lines": list(budget_lines(record)),
+        "lines": list(tolerance_lines(record)),
         "rules": [_told(record, one) for one in record.budget or ()],
     }
 

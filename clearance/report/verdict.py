@@ -222,9 +222,9 @@ def _of_tolerances(
     if record.case.tolerance is None:
         return (), ()
     from clearance.findings.of_budget import of_budget
-    from clearance.report.tolerances import budget_lines
+    from clearance.report.tolerances import tolerance_lines
 
-    return of_budget(record, judgement), budget_lines(record)
+    return of_budget(record, judgement), tolerance_lines(record)
 
 
 def _less_open(measured: str, open_limits: Sequence[Finding], stale: Sequence[str]) -> str:

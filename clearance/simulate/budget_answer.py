@@ -34,6 +34,8 @@ class ErrorSource:
             deviation at the witness points; None in contact, where no direction leads from one body to the other.
         largest: the greatest single tolerance, in the order of `tolerances`, all others as given, at which the
             limit is still proven to be kept; None where even 0 does not keep it.
+        moment: at which a part changed hands, if the error is of then: `grasp (2 s)`. Its `largest` is that of the
+            error at every moment.
     """
 
     owner: str
@@ -43,6 +45,7 @@ class ErrorSource:
     proven: float
     expected: float | None
     largest: Sequence[float | None] = ()
+    moment: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.late_dataclass import dataclass
+from clearance.world.carrier_error import CarrierError
 from clearance.world.mount import Mount
 from clearance.world.padding import checked_padding
 from clearance.world.pose_table import PoseTable
@@ -66,6 +67,8 @@ class Obstacle:
         mount: what it rides on, and where.
         moves: how it moves: in the world, or as seen from the pose of its mount.
         padding: [m] by how much its clearance is lessened.
+        past: of a part that has changed hands in a case with tolerances, the errors of what gripped it, and let it
+            go, at those moments, the first first.
 
     Raises:
         BadInput: a pose in the world of what has none. BadDimension: a padding that is not 0 or more.
@@ -76,6 +79,7 @@ class Obstacle:
     mount: Mount | None = None
     moves: PoseTable | None = None
     padding: float = 0.0
+    past: tuple[CarrierError, ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):

@@ -22,6 +22,8 @@ class Carry:
         window: with a start; without an end it is carried until the run ends.
         touch: patterns of bodies that it may touch while it is carried. What carries it moves with it, so that
             pair is not measured.
+        exact_grasp: True where the gripper itself puts the part in its place, as a nest does. Then the part has
+            none of the errors that the carrier has when it grips, nor of those that it had before.
 
     Raises:
         BadTime: no start. BadInput: a part that carries itself.
@@ -31,6 +33,7 @@ class Carry:
     by: str
     window: Window
     touch: tuple[str, ...] = ()
+    exact_grasp: bool = False
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.window.start):

@@ -55,7 +55,7 @@ class Forest:
         for i, obstacle in enumerate(case.obstacles):
             if obstacle.name == name:
                 return self.obstacle_links[i]
-        i_robot, link = _link_names(case)[name]
+        i_robot, link = links_by_name(case)[name]
         return self.robot_starts[i_robot] + link
 
     def rigid_part(self, link: int) -> int:
@@ -137,7 +137,7 @@ def require_known(case: Case, name: str) -> None:
     Raises:
         UnknownLink: with the nearest name.
     """
-    known = [*(obstacle.name for obstacle in case.obstacles), *_link_names(case)]
+    known = [*(obstacle.name for obstacle in case.obstacles), *links_by_name(case)]
     if name not in known:
         raise UnknownLink(f"nothing is called {name!r}", valid=nearest_name(name, known))
 
@@ -152,10 +152,10 @@ def owner_of(case: Case, mount: Mount) -> tuple[bool, int]:
     for i, obstacle in enumerate(case.obstacles):
         if obstacle.name == on:
             return True, i
-    return False, _link_names(case)[on][0]
+    return False, links_by_name(case)[on][0]
 
 
-def _link_names(case: Case) -> dict[str, tuple[int, int]]:
+def links_by_name(case: Case) -> dict[str, tuple[int, int]]:
     """Robot and link by `robot/link`, and by the link alone where there is one robot."""
     names = {
         f"{placed.robot.name}/{link}": (i, k)
@@ -172,7 +172,7 @@ class _Planter:
 
     def __init__(self, case: Case) -> None:
         self.case = case
-        self.names = _link_names(case)
+        self.names = links_by_name(case)
         self.obstacles = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
         self.parts: list[Links] = []
         self.n_links = 0

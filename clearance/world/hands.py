@@ -9,9 +9,11 @@ import numpy as np
 
 from clearance.geometry.pose import inverse
 from clearance.world.body import Obstacle
+from clearance.world.carrier_error import GRASP, RELEASE, CarrierError, followed_by
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at
+from clearance.world.grips import Grip
 from clearance.world.mount import Mount
 from clearance.world.phase import Phase
 
@@ -36,7 +38,8 @@ def _left_as_they_were(phase: Phase, last: Phase, parts: frozenset[str]) -> Case
         carry = last.carried.get(here.name)
         if carry is not None and carry is not phase.carried.get(here.name):
             at_end = _pose_of(last, here.name, last.n_steps - 1)
-            found.append(Obstacle(here.body, at_end, padding=here.padding))
+            past = _let_go(last, then, at_end)
+            found.append(Obstacle(here.body, at_end, padding=here.padding, past=past))
         else:
             found.append(then if here.name in parts else here)
     return replace(phase.case, obstacles=tuple(found))
@@ -59,14 +62,34 @@ def _carriers_first(carried: Mapping[str, Carry]) -> list[Carry]:
 def _picked_up(phase: Phase, carry: Carry, last: Phase | None) -> Case:
     """The case with a part on what carries it, at the pose that it has there when it is picked up."""
     held = phase if last is None else last
-    world_from_part = _pose_of(held, carry.part, 0 if last is None else last.n_steps - 1)
+    step = 0 if last is None else last.n_steps - 1
+    world_from_part = _pose_of(held, carry.part, step)
     world_from_by = _pose_of(phase, carry.by, 0)
     mount = Mount(carry.by, inverse(world_from_by) @ world_from_part)
+    then, now = (Grip(*at, world_from_part, GRASP) for at in ((held, step), (phase, 0)))
     obstacles = tuple(
-        Obstacle(o.body, mount=mount, padding=o.padding) if o.name == carry.part else o
+        Obstacle(o.body, mount=mount, padding=o.padding, past=_gripped(o, carry, then, now))
+        if o.name == carry.part
+        else o
         for o in phase.case.obstacles
     )
     return replace(phase.case, obstacles=obstacles)
+
+
+def _gripped(part: Obstacle, carry: Carry, then: Grip, now: Grip) -> tuple[CarrierError, ...]:
+    """The errors of the past that a part has once it is picked up, those of what it lay on until then too."""
+    if now.phase.case.tolerance is None or carry.exact_grasp:
+        return ()
+    under = () if part.mount is None else then.errors_on(part.mount.on)
+    return followed_by(followed_by(part.past, under), now.against(carry.by))
+
+
+def _let_go(last: Phase, part: Obstacle, world_from_part: np.ndarray) -> tuple[CarrierError, ...]:
+    """The same once it is let go, at the end of the phase in which it was carried."""
+    if last.case.tolerance is None or part.mount is None:
+        return ()
+    grip = Grip(last, last.n_steps - 1, world_from_part, RELEASE)
+    return followed_by(part.past, grip.errors_on(part.mount.on))
 
 
 def _pose_of(phase: Phase, name: str, step: int) -> np.ndarray:

@@ -1,12 +1,14 @@
 """A case whose machine is off, at any time, in numpy alone: what samples of errors leave, at best as bad as found.
 
-Joints may follow cubics and each other, tables may loop, anything may stand on anything. Not for: cases in which
-parts change hands; `tests/oracle` is another reading of the same model.
+Joints may follow cubics and each other, tables may loop, anything may stand on anything, parts change hands
+(`HandlingMachine`). `tests/oracle` is another reading of the same model.
 """
 
 from __future__ import annotations
 
+import functools
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -98,22 +100,29 @@ class SampledMachine:
             errors.get(("xyz", owner, part), nothing), errors.get(("angle", owner, part), nothing)
         )
 
-    def poses(self, time: float, errors) -> dict[str, np.ndarray]:
-        """(4, 4) in the world, of all links and obstacles."""
+    def poses(self, time: float, errors, parts=None) -> dict[str, np.ndarray]:
+        """(4, 4) in the world, of all links and obstacles; parts that have changed hands are on what `parts` says,
+        None for the world, and where (4, 4).
+        """
         found: dict[str, np.ndarray] = {}
-        single = len(self.case.robots) == 1
         waiting = [*self.case.robots, *self.case.obstacles]
         while waiting:
             one = waiting.pop(0)
             below = np.eye(4)
-            if one.mount is not None:
-                on = one.mount.on
-                if on not in found and single:
-                    on = f"{self.case.robots[0].robot.name}/{on}"
+            handled = None if hasattr(one, "robot") else (parts or {}).get(one.name)
+            mount = (one.mount and one.mount.on, one.mount and one.mount.pose)
+            on, pose = handled if handled is not None else mount
+            if on is not None:
+                on = self.called(on)
                 if on not in found:
                     waiting.append(one)
                     continue
-                below = found[on] @ one.mount.pose
+                below = found[on]
+            if pose is not None:
+                below = below @ pose
+            if handled is not None:
+                found[one.name] = below
+                continue
             if hasattr(one, "robot"):
                 self._robot(one, below @ one.world_from_base, time, errors, found)
                 continue
@@ -122,6 +131,11 @@ class SampledMachine:
                 below = below @ self._on_table(one.moves, time + self._clock(errors, one.name))
             found[one.name] = below @ self._off(errors, one.name)
         return found
+
+    def called(self, on: str) -> str:
+        """The name that a link has here, of one that a case gives."""
+        is_link = all(on != one.name for one in self.case.obstacles)
+        return f"{self.case.robots[0].robot.name}/{on}" if is_link and "/" not in on else on
 
     def _clock(self, errors, owner: str) -> float:
         return float(np.sum(errors.get(("clock", owner, ""), 0.0)))
@@ -207,6 +221,77 @@ class SampledMachine:
                     if value < best:
                         best, errors = value, errors | {key: one}
         return best
+
+
+class HandlingMachine(SampledMachine):
+    """The same of a case in which parts change hands: what grips is off, then and later, each time otherwise.
+
+    Errors are a mapping of a moment, a number of seconds or `NOW`, to those of that moment. How far parts are off
+    where they lie is of no moment: they keep it.
+    """
+
+    NOW = -1.0
+
+    def moments(self, start: float) -> list[float]:
+        """[s] at which parts have changed hands in a phase that begins at `start`."""
+        edges = {t for one in self.case.carries for t in (one.window.start, one.window.end)}
+        return sorted(edge for edge in edges if edge <= start)
+
+    def parts_at(self, start: float, errors) -> dict[str, tuple[str | None, np.ndarray]]:
+        """What parts are on in a phase that begins at `start`, and where, as the errors have it."""
+        parts: dict[str, tuple[str | None, np.ndarray]] = {}
+        names = {one.part for one in self.case.carries}
+        places = {key: value for key, value in errors[self.NOW].items() if key[1] in names}
+        for moment in self.moments(start):
+            off = errors[moment] | places
+            there = self.poses(moment, off, parts)
+            for one in self.case.carries:
+                if one.window.end == moment:
+                    parts[one.part] = None, there[one.part]
+            for one in self.case.carries:
+                if one.window.start == moment:
+                    grip = np.linalg.inv(there[self.called(one.by)]) @ there[one.part]
+                    if one.exact_grasp:
+                        grip = self._nominal(moment)[one.part][1] @ self._off(off, one.part)
+                    parts[one.part] = one.by, grip
+        return parts
+
+    @functools.cache  # noqa: B019  # a machine lives as long as a test
+    def _nominal(self, moment: float):
+        """What parts are on after a moment, without errors."""
+        plain = replace(
+            self.case, carries=tuple(replace(one, exact_grasp=False) for one in self.case.carries)
+        )
+        exactly = {one: {} for one in [*self.moments(moment), self.NOW]}
+        return HandlingMachine(plain).parts_at(moment, exactly)
+
+    def left_in(self, start: float, time: float, errors, pair: tuple[str, str]) -> float:
+        """[m] as `left`, in a phase that begins at `start`."""
+        there = self.poses(time, errors[self.NOW], self.parts_at(start, errors))
+        a, b = (self.shapes[name].at(there[name]) for name in pair)
+        return distance(a, b) - self.surfaces(pair)
+
+    def nearer(self, start: float, time: float, pair, errors):
+        """[m] the least that is left when one error of one moment after the other is made as bad as it can be."""
+        best = self.left_in(start, time, errors, pair)
+        for moment, key in itertools.product(errors, self.most):
+            most, n = self.most[key]
+            value = errors[moment][key]
+            tries = [value + d for d in 1e-3 * most * np.eye(n)] if n > 1 else [[most], [-most]]
+            tried = [errors | {moment: errors[moment] | {key: np.array(one)}} for one in tries]
+            left = [self.left_in(start, time, one, pair) for one in tried]
+            size = float(np.linalg.norm(np.array(left) - best))
+            if n > 1 and size > 0.0:
+                worst = (best - np.array(left)) / size * most
+                tried = [errors | {moment: errors[moment] | {key: worst}}]
+                left = [self.left_in(start, time, tried[0], pair)]
+            if n == 1 or size > 0.0:
+                best, errors = min([(best, errors), *zip(left, tried, strict=True)], key=_least)
+        return best
+
+
+def _least(found) -> float:
+    return found[0]
 
 
 class _Shape:

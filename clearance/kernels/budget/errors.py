@@ -22,17 +22,19 @@ N_NUMBERS = 12
 
 
 class Extras(NamedTuple):
-    """Frames on which links hang beside those of their joints, as what is carried by something that is carried.
+    """Errors of what links hang on beside those of their joints, from the tip to the base: of frames of what is
+    carried by something that is carried, and of joints at a moment that has passed.
 
     Attributes:
         starts: (n + 1,) of each. origins: (m, 3) [m] in the frame of what hangs there. xyz: (m,) [m]. angle: (m,)
-            [rad].
+            [rad]. axes: (m, 3) unit, in that frame, of a joint, whose other size is 0; 0 of a frame, for any axis.
     """
 
     starts: np.ndarray
     origins: np.ndarray
     xyz: np.ndarray
     angle: np.ndarray
+    axes: np.ndarray
 
 
 class Errors(NamedTuple):

@@ -53,7 +53,7 @@ def _scene_like():
     links = Links(places, places, rows, poses, places, numbers, numbers)
     world = World(places, places, places, poses, np.empty((0, 2), dtype=np.int64), links)
     path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
-    extras = Extras(places, rows, numbers, numbers)
+    extras = Extras(places, rows, numbers, numbers, rows)
     errors = Errors(numbers, numbers, numbers, numbers, places, extras, extras, numbers, 0)
     return BudgetScene(surface_like(), world, path, errors, new_state(world, errors, new_room()))
 

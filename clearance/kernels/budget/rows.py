@@ -16,7 +16,9 @@ from clearance.kernels.arithmetic.vec3 import (
     move,
     move_back,
     rigid,
+    row,
     sub,
+    turn,
     turn_back,
 )
 from clearance.kernels.budget.errors import (
@@ -117,13 +119,31 @@ def _ball_of(surface, root):
 
 
 @inline
-def _extras(extras, i, rows, n, ball, chain):
-    """Rows of all further frames of a link or body, whose origins are told in its own frame or that of the tip."""
+def _joint_of_the_past(rows, n, origin, axis, angle, xyz, ball, chain):
+    """A row of a turn by up to `angle` or a slide by up to `xyz` (body frame), and the sums after it."""
+    if angle > 0.0:
+        n = _write(rows, n, origin, axis, TURN, angle, 0.0)
+        rows[n - 1, CHORD] = chord(angle)
+        chain = _turned(chain, angle, angle, from_axis(ball, origin, axis))
+    elif xyz > 0.0:
+        n = _write(rows, n, origin, axis, SLIDE, xyz, 0.0)
+        rows[n - 1, WAY] = xyz * OUTWARD
+        chain = _slid(chain, xyz, xyz)
+    return n, chain
+
+
+@inline
+def _extras(extras, i, pose, tip_pose, rows, n, ball, chain):
+    """Rows of all further errors of a link or body at a pose, for a body at `tip_pose`."""
     for k in range(extras.starts[i], extras.starts[i + 1]):
-        o = extras.origins[k]
-        n, chain = _frame(
-            rows, n, Vec3(o[0], o[1], o[2]), extras.angle[k], extras.xyz[k], ball, chain
-        )
+        o, a = row(extras.origins, k), row(extras.axes, k)
+        origin = move_back(tip_pose, move(pose, o))
+        angle, xyz = extras.angle[k], extras.xyz[k]
+        if dot(a, a) > 0.0:
+            axis = turn_back(tip_pose, turn(pose, a))
+            n, chain = _joint_of_the_past(rows, n, origin, axis, angle, xyz, ball, chain)
+        else:
+            n, chain = _frame(rows, n, origin, angle, xyz, ball, chain)
     return n, chain
 
 
@@ -223,12 +243,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
             origin = move_back(pose, _joint_origin(links, poses, i))
             angle = errors.angle[i] + motion.turned[i]
             n, chain = _frame(rows, n, origin, angle, errors.xyz[i], ball, chain)
-        for k in range(errors.of_links.starts[i], errors.of_links.starts[i + 1]):
-            o = errors.of_links.origins[k]
-            origin = move_back(pose, move(rigid(poses[i]), Vec3(o[0], o[1], o[2])))
-            n, chain = _frame(
-                rows, n, origin, errors.of_links.angle[k], errors.of_links.xyz[k], ball, chain
-            )
+        n, chain = _extras(errors.of_links, i, rigid(poses[i]), pose, rows, n, ball, chain)
         i = links.parents[i]
     if moves:
         n = _write(rows, n, velocity, spin, TOGETHER, share, 0.0)
@@ -245,7 +260,8 @@ def fill_rows_of_standing(surface, world, body, errors, found):
     for k in range(extras.starts[body], extras.starts[body + 1]):
         turned += extras.angle[k]
     chain = _Chain(turned, 0.0, 0.0, turned, 0.0, 0.0)
-    n, chain = _extras(extras, body, rows, 0, ball, chain)
+    own = rigid(world.standing[body])
+    n, chain = _extras(extras, body, own, own, rows, 0, ball, chain)
     _sum_up(rows, n, ball, chain, turned, errors.surface[body], body, found)
 
 

@@ -48,5 +48,6 @@ def carries_of(given: Sequence[schema.Carry]) -> tuple[Carry, ...]:
     carries = []
     for i, row in enumerate(given):
         with at(f"carry[{i}]"):
-            carries.append(Carry(row.part, row.by, row.window, tuple(row.touch)))
+            is_exact = row.grasp == "exact"
+            carries.append(Carry(row.part, row.by, row.window, tuple(row.touch), is_exact))
     return tuple(carries)

@@ -56,7 +56,11 @@ class Robot(StrictModel):
 
 
 class Carry(WindowedEntry):
-    """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some."""
+    """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some.
+
+    `grasp: exact` says that the gripper itself puts the part in its place. With tolerances the part then has none of
+    the errors that the carrier has when it grips.
+    """
 
     FILLED = frozenset({"until"})
 
@@ -64,6 +68,7 @@ class Carry(WindowedEntry):
     by: Name
     from_: Annotated[float, Field(alias="from")]
     touch: list[Name] = []
+    grasp: Literal["exact"] | None = None
 
 
 CLOCKS = {"common": 0.0, "unsynchronised": math.inf}

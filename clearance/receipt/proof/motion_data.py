@@ -58,17 +58,20 @@ class Joints(NamedTuple):
 
 
 class MountFrames(NamedTuple):
-    """Frames that may be off and that something stands on, beside those of its own joint.
+    """What may be off of all that something stands on, or has stood on, beside its own joint; the nearest first.
 
     Attributes:
         which: (m,) links or bodies that stand there. origins: (m, 3) [m] in their own frames.
         xyz: (m,) [m]. angle: (m,) [rad].
+        axes: (m, 3) unit, of a joint that slides by xyz or turns by the angle; 0 of a frame, that does both in
+            any direction.
     """
 
     which: np.ndarray
     origins: np.ndarray
     xyz: np.ndarray
     angle: np.ndarray
+    axes: np.ndarray
 
 
 class Errors(NamedTuple):

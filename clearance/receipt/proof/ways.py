@@ -45,6 +45,7 @@ class Step(NamedTuple):
         most: (pieces,) how far it swings and bends; bend: (pieces,) of that.
         length: (pieces,) [m] at most from the frame above.
         off: how far the frame's rotation is from one. errors: of the joint, then of frames, from the body outward.
+        own: [rad or m] that of the joint, which is the first of these; 0 where it has none.
     """
 
     kind: int
@@ -55,6 +56,7 @@ class Step(NamedTuple):
     length: np.ndarray
     off: float
     errors: list[Error]
+    own: float = 0.0
 
 
 def steps_of(
@@ -73,9 +75,9 @@ def steps_of(
             length = length + np.abs(positions.middle[:, link]) + most
         axis, at = frames.axis[frame], frames.joint[frame]
         errors = _errors_at(stretch.errors, link, kind, frame, positions, frames)
-        found.append(
-            Step(kind, axis, at, most, positions.bend[:, link], length, _off(joints.fixed[link]), errors)
-        )  # fmt: skip
+        own = 0.0 if stretch.errors is None or kind == FIXED else float(stretch.errors.joint[link])
+        off = _off(joints.fixed[link])
+        found.append(Step(kind, axis, at, most, positions.bend[:, link], length, off, errors, own))
     body = int(views.bodies[view])
     if stretch.errors is not None and stretch.carriers[body] == NONE:
         n, zero = len(positions.middle), np.zeros(len(positions.middle))
@@ -109,8 +111,14 @@ def _held(held: MountFrames, which: int, turn: np.ndarray, at: np.ndarray) -> li
     """Those of the frames that a link or body stands on."""
     found = []
     for i in np.flatnonzero(held.which == which).tolist():
-        origin = turn @ held.origins[i] + at
-        found += _place(float(held.xyz[i]), float(held.angle[i]), origin)
+        origin, axis = turn @ held.origins[i] + at, turn @ held.axes[i]
+        xyz, angle = float(held.xyz[i]), float(held.angle[i])
+        if not held.axes[i].any():
+            found += _place(xyz, angle, origin)
+        elif angle > 0.0:
+            found.append(Error(angle, axis, origin))
+        else:
+            found.append(Error(xyz, axis, None))
     return found
 
 
@@ -174,10 +182,9 @@ def _motions(step: Step) -> list[Motion]:
     still = np.zeros(1)
     if step.kind == FIXED:
         return [Motion(e.axis, e.origin, still + e.size, still) for e in step.errors]
-    own = [e for e in step.errors if e.axis is not None]
-    most = step.most + sum(e.size for e in own)
-    joint = Motion(step.axis, None if step.kind == SLIDING else step.at, most, step.bend)
-    rest = [e for e in step.errors if e.axis is None]
+    origin = None if step.kind == SLIDING else step.at
+    joint = Motion(step.axis, origin, step.most + step.own, step.bend)
+    rest = step.errors[1:] if step.own > 0.0 else step.errors
     return [joint, *(Motion(e.axis, e.origin, still + e.size, still) for e in rest)]
 
 

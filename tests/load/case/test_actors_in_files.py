@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from clearance.errors import UnknownLink
+from clearance.errors import BadInput, UnknownLink
 from clearance.load.case.case_file import load_case
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
@@ -193,3 +193,12 @@ def test_profiles_name_links_of_one_robot_or_of_several(tmp_path):
     assert case.profiles[0].links == ("left/upper",)
     with pytest.raises(UnknownLink, match="did you mean 'left/upper'"):
         load_cell(tmp_path, "limits:", profile % "upper" + "limits:", zone__yaml=sketch)
+
+
+def test_a_grasp_is_as_driven_unless_it_is_said_to_be_exact(tmp_path):
+    (carry,) = load_cell(tmp_path).carries
+    assert not carry.exact_grasp
+    (carry,) = load_cell(tmp_path, 'touch: ["left/*"]}', "grasp: exact}").carries
+    assert carry.exact_grasp
+    with pytest.raises(BadInput, match="carry"):
+        load_cell(tmp_path, 'touch: ["left/*"]}', "grasp: loose}")

@@ -1,0 +1,99 @@
+"""Receipts of parts that are gripped by what is off: proven with the errors of that moment, and of now."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadSyntax
+from clearance.receipt.case_data import case_data
+from clearance.receipt.proof.items import Items
+from clearance.receipt.proof.motion_data import UNIT
+from clearance.receipt.proof.stage import by_balls, by_directions
+from tests.budget.part_cases import carried, off_by, quarter_turn, slid
+from tests.budget.sampled_machine import HandlingMachine, distance
+from tests.budget.test_parts_sampled import handling
+from tests.receipt.receipts import saved, stage_of
+from tests.receipt.test_error_terms import names_in
+
+ROUNDING = 1e-12
+FAR = 100.0
+LEAST = "default, with tolerances"
+SAMPLES = 8
+
+
+def whole_pairs(stage, rng) -> tuple[Items, np.ndarray]:
+    """An item of both bodies whole for each pair, in its last interval, and a direction for each."""
+    n = len(stage.stretch.pairs)
+    zero, last = np.zeros(n, dtype=np.int64), np.full(n, stage.stretch.n_intervals - 1)
+    items = Items(np.arange(n), zero, zero, last, zero + 1, zero, zero)
+    u = rng.normal(size=(3, n))
+    return items, u / np.sqrt((u * u).sum(axis=0))
+
+
+def in_the_world(stage) -> np.ndarray:
+    """(pairs,) True where the pair is seen in the world."""
+    joints, carriers = stage.stretch.joints, stage.stretch.carriers
+
+    def root(link: int) -> int:
+        while link >= 0 and joints.parents[link] >= 0:
+            link = int(joints.parents[link])
+        return link
+
+    roots = np.array([root(int(link)) for link in carriers])[stage.stretch.pairs]
+    return (roots[:, 0] != roots[:, 1]) | (roots < 0).any(axis=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_no_error_of_any_moment_brings_parts_nearer_than_is_proven(seed):
+    case, rng = handling(seed), np.random.default_rng(seed)
+    data, machine, names = case_data(case), HandlingMachine(case), names_in(case)
+    half = len(data.stretches) // 2
+    for i in range(half, 2 * half):
+        stage = stage_of(data, i, FAR)
+        items, u = whole_pairs(stage, rng)
+        world = in_the_world(stage)
+        along = by_directions(stage, items, u) + FAR
+        apart = by_balls(stage, items) + stage.stretch.padding + UNIT
+        start, times = stage.stretch.times[0], stage.stretch.times[-2:]
+        for _ in range(SAMPLES):
+            errors = {
+                moment: machine.random(rng) for moment in [*machine.moments(start), machine.NOW]
+            }
+            parts = machine.parts_at(start, errors)
+            poses = machine.poses(float(rng.uniform(*times)), errors[machine.NOW], parts)
+            for k, pair in enumerate(stage.stretch.pairs.tolist()):
+                a, b = (machine.shapes[names[body]].at(poses[names[body]]) for body in pair)
+                assert apart[k] <= distance(a, b) + ROUNDING
+                if world[k]:
+                    least = (b[0] @ u[:, k]).min() - (a[0] @ u[:, k]).max()
+                    assert along[k] <= least + ROUNDING
+
+
+@pytest.mark.slow
+def test_a_receipt_proves_what_the_errors_of_both_moments_leave(tmp_path):
+    case = slid(off_by(0.004), carried("bar", 0.0))
+    saved(case, tmp_path)
+    found = cl.verify(tmp_path, case)
+    assert found.proven
+    assert 0.092 - 0.04 * 0.008 <= found.bounds[LEAST] <= 0.092
+
+
+@pytest.mark.parametrize(("how", "taken"), [({}, 0.008), ({"exact_grasp": True}, 0.004)])
+def test_along_a_slide_both_errors_are_taken_and_of_an_exact_grasp_one(how, taken):
+    data = case_data(slid(off_by(0.004), carried("bar", 0.0, **how)))
+    pairs = [{data.shapes[body].name for body in pair} for pair in data.stretches[0].pairs.tolist()]
+    zero, one = np.zeros(1, dtype=np.int64), np.ones(1, dtype=np.int64)
+    items = Items(zero + pairs.index({"part", "wall"}), zero, zero, zero, one, zero, zero)
+    for u in np.array([[[1.0], [0.0], [0.0]], [[-1.0], [0.0], [0.0]]]):
+        nominal, left = (by_directions(stage_of(data, i, FAR), items, u)[0] for i in (0, 1))
+        assert nominal - left == pytest.approx(taken, abs=ROUNDING)
+
+
+@pytest.mark.slow
+def test_a_receipt_of_an_exact_grasp_is_not_one_of_another(tmp_path):
+    saved(quarter_turn(0.1, 0.03, exact_grasp=True), tmp_path)
+    with pytest.raises(BadSyntax, match="other numbers"):
+        cl.verify(tmp_path, quarter_turn(0.1, 0.03))
