@@ -74,7 +74,7 @@ def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
     kinds = {joint.name: joint.kind for joint in robot.joints}
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(robot.name)}>"]
     lines.append("  <!-- Never: proven for all positions within the joint limits. -->")
-    lines.append("  <!-- Adjacent: neighbours along the tree of joints; not looked at. -->")
+    lines.append("  <!-- Adjacent: joined by one moving joint; not looked at. -->")
     for each in pairs:
         ends = f"link1={quoteattr(each.pair.link_a)} link2={quoteattr(each.pair.link_b)}"
         if each.reason is not None:
