@@ -99,4 +99,5 @@ def _longest(asked: Trajectory, i: int, steps: np.ndarray) -> LongStep:
     worst = int(steps[np.argmax(np.abs(np.diff(own))[steps])])
     ends = slice(worst, worst + 2)
     start, end = asked.written.times[ends].tolist()
-    return LongStep(asked.joint_names[i], start, end, *own[ends].tolist(), len(steps))
+    before, after = own[ends].tolist()
+    return LongStep(asked.joint_names[i], start, end, before, after, len(steps))

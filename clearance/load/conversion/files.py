@@ -106,6 +106,8 @@ def _refuse_holes(trajectory: Trajectory) -> None:
         BadInput: a recording with a hole, which samples alone would bridge.
     """
     for hole in trajectory.holes:
+        if hole.end <= trajectory.times[0] or hole.start >= trajectory.times[-1]:
+            continue  # not in the table
         raise BadInput(
             f"{hole.text}; a table would bridge it by a straight line",
             valid="a recording without holes, or the file itself in a case, with gaps:",

@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadTime, NotFinite
 from clearance.load.message.times import NANO
-from clearance.load.motion.recording_gaps import Track, holes_of
+from clearance.load.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
 from clearance.load.motion.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.notice import HOLD, listed
@@ -46,8 +46,8 @@ class _Joint(NamedTuple):
     unknown: list[int]
 
     @property
-    def track(self) -> Track:
-        return Track(np.array(self.times), np.array(self.positions))
+    def samples(self) -> tuple[np.ndarray, np.ndarray]:
+        return np.array(self.times), np.array(self.positions)
 
 
 def trajectory_of_states(
@@ -84,8 +84,9 @@ def trajectory_of_states(
                 f"no message has a finite position of joint {name!r}", valid="one at least"
             )
     start, end = _known_span({name: joints[name] for name in kept}, ends_hold=gaps == HOLD)
-    tracks = {name: joints[name].track for name in kept}
+    tracks = tracks_of({name: joints[name].samples for name in kept})
     holes = holes_of(tracks, gaps, (start, end), NANO)
+    holes += tuple(unknown_ends(tracks, (start, end), NANO))
     if gaps == HOLD:
         tracks = {name: track.held() for name, track in tracks.items()}
     every = np.unique(np.concatenate([track.times for track in tracks.values()]))
@@ -144,7 +145,7 @@ def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, 
     """From when until when [ns] all joints are known.
 
     Args:
-        ends_hold: True where a joint is known after its last message.
+        ends_hold: True where a joint is known after its last message; then it may be told of long before others.
 
     Raises:
         BadInput: that is never, or too little of the recording.
@@ -154,7 +155,8 @@ def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, 
     start, end = joints[last_to_begin].times[0], joints[first_to_end].times[-1]
     times = [time for joint in joints.values() for time in (joint.times[0], joint.times[-1])]
     whole = max(times) - min(times)
-    if end < start or whole - (end - start) > MOST_LEFT_OUT * whole:
+    most = whole if ends_hold else MOST_LEFT_OUT * whole
+    if end < start or whole - (end - start) > most:
         raise BadInput(
             f"joint {last_to_begin!r} is known from {(start - min(times)) / NANO:g} s on, {first_to_end!r} until "
             f"{(end - min(times)) / NANO:g} s of {whole / NANO:g} s",

@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.load.motion.trajectory_request import ReadTrajectory
-from clearance.world.notice import HOLD
+from clearance.world.notice import HOLD, NOT_MEASURED
 from clearance.world.trajectory import Hole, Trajectory
 
 LONG = 10.0
@@ -21,17 +21,16 @@ LONG = 10.0
 a straight line grows with the square of the interval, here to a hundred times what is usual."""
 
 
+FEW = 10
+"""Messages that show no usual interval of their own: it is then that of the joints told of more often."""
+
+
 class Track(NamedTuple):
-    """Where a joint was: times (n,) in any unit, increasing, and positions (n,) [rad or m]."""
+    """Where a joint was: times (n,) in any unit, increasing, positions (n,) [rad or m], and the usual interval."""
 
     times: np.ndarray
     positions: np.ndarray
-
-    @property
-    def usual(self) -> float:
-        """The median interval, the shorter one of two; infinite for a single sample."""
-        lengths = np.sort(np.diff(self.times))
-        return float(lengths[(len(lengths) - 1) // 2]) if len(lengths) else np.inf
+    usual: float
 
     @property
     def holes(self) -> np.ndarray:
@@ -44,7 +43,45 @@ class Track(NamedTuple):
         if not len(after):
             return self
         times = np.insert(self.times, after, self.times[after] - self.times.dtype.type(self.usual))
-        return Track(times, np.insert(self.positions, after, self.positions[after - 1]))
+        positions = np.insert(self.positions, after, self.positions[after - 1])
+        return Track(times, positions, self.usual)
+
+
+def tracks_of(samples: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, Track]:
+    """The tracks of joints, of times and positions (n,) each, with the median of their intervals as the usual one.
+
+    A joint that is told of a few times only, while others are all the time, has theirs.
+    """
+    own = {name: _median(np.diff(times)) for name, (times, _) in samples.items()}
+    often = (own[name] for name, (times, _) in samples.items() if len(times) > FEW)
+    least = min(often, default=np.inf)
+    return {
+        name: Track(times, positions, own[name] if len(times) > FEW else min(own[name], least))
+        for name, (times, positions) in samples.items()
+    }
+
+
+def _median(lengths: np.ndarray) -> float:
+    """The shorter of the two in the middle; infinite for none."""
+    return float(np.sort(lengths)[(len(lengths) - 1) // 2]) if len(lengths) else np.inf
+
+
+def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: float) -> list[Hole]:
+    """Where some joints are told of and others not yet, or no more, for many usual intervals: nothing is measured.
+
+    Args:
+        span: in which all are. unit: as in `holes_of`.
+    """
+    first = min(track.times[0] for track in tracks.values())
+    last = max(track.times[-1] for track in tracks.values())
+    late = {n: t.usual for n, t in tracks.items() if t.times[0] - first > LONG * t.usual}
+    early = {n: t.usual for n, t in tracks.items() if last - t.times[-1] > LONG * t.usual}
+    found = []
+    for unknown, start, end in ((late, first, span[0]), (early, span[1], last)):
+        if unknown and start < end:
+            ends = (float((time - span[0]) / unit) for time in (start, end))
+            found.append(Hole(tuple(unknown), *ends, min(unknown.values()) / unit, NOT_MEASURED))
+    return found
 
 
 def holes_of(
@@ -75,7 +112,7 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
     """
     given, own = read.trajectory, read.trajectory.written
     columns = zip(given.joint_names, own.positions.T, strict=True)
-    tracks = {name: Track(own.times, positions) for name, positions in columns}
+    tracks = tracks_of({name: (own.times, positions) for name, positions in columns})
     first, last = float(own.times[0]), float(own.times[-1])
     holes = tuple(
         replace(hole, start=hole.start + first, end=hole.end + first)

@@ -8,7 +8,7 @@ from clearance.errors import BadInput
 from clearance.load.case.case_file import load_case
 from clearance.load.case.recorded_run import with_recorded
 from clearance.load.motion.joint_states import JointState, trajectory_of_states
-from clearance.load.motion.recording_gaps import Track
+from clearance.load.motion.recording_gaps import tracks_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import selected_pairs
 from clearance.world.plausibility import notices_of
@@ -55,7 +55,8 @@ def read(messages, gaps=None):
     ],
 )
 def test_a_hole_is_more_than_ten_usual_intervals(times, starts):
-    assert Track(np.array(times), np.zeros(len(times))).holes.tolist() == starts
+    tracks = tracks_of({"j": (np.array(times), np.zeros(len(times)))})
+    assert tracks["j"].holes.tolist() == starts
 
 
 def test_a_hole_is_told_with_its_joints_its_length_and_what_is_usual():
@@ -75,6 +76,31 @@ def test_joints_that_are_recorded_at_different_rates_have_their_own_holes():
     assert (hole.start, hole.end) == pytest.approx(
         (4.0 - 0.05, 20.0 - 0.05)
     )  # all are known from 0.05 s
+
+
+def test_a_joint_that_is_told_of_a_few_times_only_has_holes_between():
+    """Twice in 10 s, as by a latched topic, where the arm is told of 50 times a second."""
+    arm = states(STEP * np.arange(501), "shoulder")
+    messages = sorted(
+        arm + states([-990.0, 5.0], "finger", ("finger",), lambda t: 0.02 * (t > 0.0))
+    )
+    hole, before = read(messages, "hold").trajectory.holes
+    assert (before.joints, before.start, before.means) == (("shoulder",), -990.0, "not_measured")
+    assert (hole.joints, hole.usual) == (("finger",), pytest.approx(STEP))
+    assert (hole.start, hole.end) == pytest.approx((0.0, 5.0))
+    found = read(messages, "hold").trajectory
+    at = np.interp([4.9, 4.98, 4.99, 5.0, 10.0], found.times, found.positions[:, 0])
+    assert at == pytest.approx([0.0, 0.0, 0.01, 0.02, 0.02])
+
+
+def test_ends_at_which_some_joints_are_unknown_are_said_not_to_be_measured():
+    arm = states(STEP * np.arange(501), "shoulder")
+    finger = states(0.4 + STEP * np.arange(456), "finger", ("finger",))
+    (start, end) = read(sorted(arm + finger)).trajectory.holes
+    assert (start.joints, start.means, end.means) == (("finger",), "not_measured", "not_measured")
+    assert (start.start, start.end, end.start, end.end) == pytest.approx((-0.4, 0.0, 9.1, 9.6))
+    skew = states(0.1 + STEP * np.arange(496), "finger", ("finger",))
+    assert not read(sorted(arm + skew)).trajectory.holes
 
 
 def test_a_joint_that_holds_moves_within_a_usual_interval_before_its_next_message():
