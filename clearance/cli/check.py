@@ -114,6 +114,7 @@ def check(
     recorded_offset: float | None,
     recorded_robot: str | None,
     recorded_gaps: str | None,
+    recorded_columns: dict[str, str] | None,
     as_json: bool,
     junit: Path | None,
     receipt: str | None,
@@ -136,7 +137,7 @@ def check(
     change it: `clearance compare` has an exit code of its own.
     """
     _require_proof_or_samples(samples_only, certify or certify_mm is not None)
-    recording = recorded, recorded_offset, recorded_robot, recorded_gaps
+    recording = recorded, recorded_offset, recorded_robot, recorded_gaps, recorded_columns
     require_recorded(motion, *recording)
     _require_extras(cross_check, motion)
     outputs = Outputs(out, junit, CiOutputs(summary, github), MoreFiles(png, glb, trajectory))
@@ -146,8 +147,7 @@ def check(
 
     _compile_ahead(quiet)
     case = _case(case_file, fail_mm, warn_mm, accept, waivers)
-    case = with_recording(with_tolerances(case, tolerance), *recording)
-    case = with_leniency(case, unproven_ok)
+    case = with_leniency(with_recording(with_tolerances(case, tolerance), *recording), unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
     question = Question(

@@ -11,7 +11,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
-from clearance.cli.options import XACRO_OPTIONS, OutputPath
+from clearance.cli.options import XACRO_OPTIONS, ColumnsParamType, OutputPath
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
 
@@ -70,6 +70,12 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     help="The columns of a CSV without a header.",
 )
 @click.option(
+    "--columns",
+    type=ColumnsParamType(),
+    metavar="A,B=C,…",
+    help="The columns of a CSV that are meant, others being left out: time, joints, or joint=column.",
+)
+@click.option(
     "--states",
     type=_NamesParamType(),
     metavar="A,B,…",
@@ -109,6 +115,7 @@ def new(
     units: tuple[str, ...],
     period: float | None,
     joints: list[str] | None,
+    columns: dict[str, str] | None,
     states: list[str] | None,
     scene: str | None,
     srdf: str | None,
@@ -148,6 +155,7 @@ def new(
         "units": {_UNITS[unit]: unit for unit in units},
         "period": period,
         "joints": joints,
+        "columns": columns,
     }
     asked = _given(motion)
     if asked and (states or trajectory is None):

@@ -31,6 +31,24 @@ class LengthParamType(click.ParamType):
         return length / 1000.0
 
 
+class ColumnsParamType(click.ParamType):
+    """Columns of a table by what they are: `time,elbow=q3`; one name alone is both."""
+
+    name = "columns"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> dict[str, str]:
+        """The column of each joint, and of time."""
+        found = {}
+        for part in value.split(","):
+            name, separator, column = (one.strip() for one in part.partition("="))
+            if not name or (separator and not column):
+                self.fail(f"{value!r} is not a list of columns; time,elbow=q3", param, ctx)
+            found[name] = column or name
+        return found
+
+
 class OutputPath(click.Path):
     """A place to write; an empty one, mostly a variable that is not set, would be the current folder."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from clearance.cli.options import in_order, motion_option
+from clearance.cli.options import ColumnsParamType, in_order, motion_option
 from clearance.world.notice import GAPS
 
 if TYPE_CHECKING:
@@ -35,6 +35,12 @@ _OPTIONS = (
         help="What joints do in holes of RUN: they stay until just before their next message, go straight, or are "
         "not measured.  [default: holes are suspect]",
     ),
+    click.option(
+        "--recorded-columns",
+        type=ColumnsParamType(),
+        metavar="A,B=C,…",
+        help="The columns of a CSV that are meant, others being left out: time, joints, or joint=column.",
+    ),
 )
 
 
@@ -47,6 +53,7 @@ def require_recorded(
     offset: float | None,
     robot: str | None,
     gaps: str | None,
+    columns: dict[str, str] | None,
 ) -> None:
     """Nothing, if a recording is given exactly where one is meant.
 
@@ -61,13 +68,19 @@ def require_recorded(
         return
     if recorded is not None:
         raise click.UsageError(f"{str(recorded)!r} says nothing without --motion recorded")
-    for option, given in (("offset", offset), ("robot", robot), ("gaps", gaps)):
+    options = {"offset": offset, "robot": robot, "gaps": gaps, "columns": columns}
+    for option, given in options.items():
         if given is not None:
             raise click.UsageError(f"--recorded-{option} says nothing without --motion recorded")
 
 
 def with_recording(
-    case: Case, path: Path | None, offset: float | None, robot: str | None, gaps: str | None
+    case: Case,
+    path: Path | None,
+    offset: float | None,
+    robot: str | None,
+    gaps: str | None,
+    columns: dict[str, str] | None,
 ) -> Case:
     """The case as it was driven, where a recording is given.
 
@@ -78,4 +91,4 @@ def with_recording(
         return case
     from clearance.load.case.recorded_run import with_recorded
 
-    return with_recorded(case, path, offset or 0.0, robot, gaps)
+    return with_recorded(case, path, offset or 0.0, robot, gaps, columns)

@@ -19,6 +19,18 @@ def of_unit_length(quaternions: np.ndarray) -> tuple[np.ndarray, int]:
     return quaternions / np.where(rounded, lengths, 1.0)[:, None], int(rounded.sum())
 
 
+def yaw_pitch_roll(quaternions: np.ndarray) -> np.ndarray:
+    """(n, 3) [rad] the angles about z, y and x, one after the other, of unit quaternions (n, 4) x, y, z, w.
+
+    Exactness: to a few roundings; yaw and roll are lost where pitch is a quarter turn.
+    """
+    x, y, z, w = quaternions.T
+    yaw = np.arctan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+    pitch = np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+    roll = np.arctan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))
+    return np.column_stack([yaw, pitch, roll])
+
+
 def quaternions_of(rotations: np.ndarray) -> np.ndarray:
     """(n, 4) x, y, z, w of rotation matrices (n, 3, 3); of the two of each the one whose last part that is not 0,
     from w to x and then y and z, is positive.

@@ -13,6 +13,7 @@ from clearance.errors import BadInput, at
 from clearance.load.files.foreign_files import refuse_foreign
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.motion.bag_files import files_of, is_bag
+from clearance.load.motion.joint_columns import without_followers
 from clearance.load.motion.pose_formats import read_poses, read_samples
 from clearance.load.motion.pose_table_request import PoseRequest, ReadPoses, ReadSamples
 from clearance.load.motion.recording_gaps import as_recorded
@@ -54,9 +55,12 @@ def trajectory_of(
 
     kinds = {joint.name: turns(joint) for joint in robot.moving_joints}
     wrapping = frozenset() if given.wrap == AS_WRITTEN else wrapping_joints(robot)
+    follow = {joint.name: turns(joint) for joint in robot.joints if joint.mimic is not None}
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
-        request = TrajectoryRequest(opened, n_bytes, bool(kinds), given.choice, kinds)
+        request = TrajectoryRequest(
+            opened, n_bytes, bool(kinds), given.choice, kinds | follow, robot
+        )
         found = read_trajectory(request, shown)
         return as_recorded(found, given.gaps) if recorded or given.gaps else found
 
@@ -67,13 +71,15 @@ def trajectory_of(
             if is_bag(path)
             else _read(path, files, read, "a trajectory")
         )
-        trajectory = found.trajectory
         with at(files.shown(path)):
+            trajectory, notes = without_followers(robot, found.trajectory)
             require_moving_joints(robot, trajectory.joint_names)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     with at(field), at(files.shown(path)):
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
+    told = (f"{files.shown(path)}: {note}" for note in notes)
+    found = ReadTrajectory(trajectory, (*found.notes, *told))
     wrap = given.wrap or (SHORTEST if recorded or given.gaps else trajectory.wrap)
     return found if wrap is None else _with_wrap(found, wrap, robot, files.shown(path))
 

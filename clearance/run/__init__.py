@@ -5,7 +5,7 @@ Two ways in: `check` takes a case and the usual options; `answer` takes a `Quest
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
@@ -27,6 +27,7 @@ class CheckOptions(TypedDict, total=False):
     Attributes:
         recorded: a bag or a table of what the robot did. recorded_offset: [s] added to its times.
         recorded_gaps: what joints do in holes of it: "hold", "linear" or "not_measured".
+        recorded_columns: of a table, those that are meant; as a mapping, the column of time and of each joint.
     """
 
     need: str
@@ -37,6 +38,7 @@ class CheckOptions(TypedDict, total=False):
     recorded: str | PathLike[str] | None
     recorded_offset: float
     recorded_gaps: str | None
+    recorded_columns: Mapping[str, str] | Sequence[str] | None
 
 
 def check(
@@ -55,7 +57,7 @@ def check(
         tolerance: instead of the case's: a budget, the block of a case file as plain data, or a file with it.
         resources: threads, progress, and where rows are kept; the answer does not depend on them.
         options: need, certify, cross_check, contact, motion as in `Question`, which has further ones for `answer`;
-            with motion "recorded", recorded, recorded_offset and recorded_gaps.
+            with motion "recorded", recorded, recorded_offset, recorded_gaps and recorded_columns.
 
     Raises:
         BadInput: an unknown motion or need, or some that do not go together; tolerances of what is not there.
@@ -69,8 +71,8 @@ def check(
         asked = with_tolerance(asked, tolerance)
     given: dict[str, Any] = {**options}
     path, offset = given.pop("recorded", None), given.pop("recorded_offset", 0.0)
-    gaps = given.pop("recorded_gaps", None)
-    asked = _with_recorded(asked, given.get("motion", "kinematic"), path, offset, gaps)
+    how = given.pop("recorded_gaps", None), given.pop("recorded_columns", None)
+    asked = _with_recorded(asked, given.get("motion", "kinematic"), path, offset, *how)
     return answer(Question(asked, **given), resources)
 
 
@@ -96,7 +98,12 @@ def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
 
 
 def _with_recorded(
-    case: Case, motion: str, path: str | PathLike[str] | None, offset: float, gaps: str | None
+    case: Case,
+    motion: str,
+    path: str | PathLike[str] | None,
+    offset: float,
+    gaps: str | None,
+    columns: Mapping[str, str] | Sequence[str] | None,
 ) -> Case:
     """The case as it was driven, where a recording is given.
 
@@ -112,7 +119,7 @@ def _with_recorded(
         )
     from clearance.load.case.recorded_run import with_recorded
 
-    return with_recorded(case, Path(path), offset, gaps=gaps)
+    return with_recorded(case, Path(path), offset, gaps=gaps, columns=columns)
 
 
 def _loaded(path: str | PathLike[str]) -> Case:

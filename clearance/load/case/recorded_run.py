@@ -6,6 +6,7 @@ Not for: comparing (`world.recording`), nor the formats (`timed_files`).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from clearance.errors import BadInput, BadTime, UnknownRobot, at
 from clearance.load.files.input_files import InputFiles
+from clearance.load.schema.errors import validated
 from clearance.load.schema.pose import TrajectoryFile
 from clearance.load.schema.tolerance import MOST_ANGLE, MOST_OFFSET
 from clearance.load.timed_files import trajectory_of
@@ -36,13 +38,14 @@ def with_recorded(
     offset: float = 0.0,
     robot: str | None = None,
     gaps: str | None = None,
+    columns: Mapping[str, str] | Sequence[str] | None = None,
 ) -> Case:
     """The case in which a robot does what was recorded, its errors being the tracking of its joints.
 
     Args:
         path: a bag or a table. offset: [s] added to its times to have the run's; none is estimated.
         robot: whose run it is; needed where several move by trajectories.
-        gaps: what joints do in holes of it: one of `world.notice.GAPS`.
+        gaps: what joints do in holes of it: one of `world.notice.GAPS`. columns: of a table, as of a trajectory.
 
     Raises:
         BadInput: with the file; joints that are not recorded, no time in common, errors of a size that only
@@ -56,7 +59,9 @@ def with_recorded(
     shown = files.shown(path)
     if gaps is not None and gaps not in GAPS:
         raise BadInput(f"gaps is {gaps!r:.60}", valid=f"one of {', '.join(GAPS)}")
-    given = TrajectoryFile(file=path.name).model_copy(update={"gaps": gaps})
+    said = {} if columns is None else {"columns": columns}
+    given = validated(TrajectoryFile, {"file": path.name, **said}, "recorded")
+    given = given.model_copy(update={"gaps": gaps})
     read, notes = trajectory_of(given, "recorded", path.parent, placed.robot, files, recorded=True)
     with at(f"recorded: {shown}"):
         driven = _near_what_was_asked(read.shifted(offset), placed)

@@ -17,7 +17,13 @@ from clearance.load.motion.pose_table_request import (
     ReadSamples,
     samples_of,
 )
-from clearance.load.table.column_units import Column, columns_in, in_own_units, note_on_units
+from clearance.load.table.column_units import (
+    Column,
+    columns_in,
+    in_own_units,
+    note_on_units,
+    with_time,
+)
 from clearance.load.table.csv_table import (
     TIME,
     TextTable,
@@ -29,6 +35,7 @@ from clearance.load.table.csv_table import (
     refuse_standing_time,
     require_time,
 )
+from clearance.load.table.table_names import notes_on_names
 from clearance.tolerance import LARGEST, ROUNDED_ROTATION
 from clearance.world.pose_table import PoseTable
 
@@ -48,7 +55,7 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
     """
     table = as_written(request.opened)
     header = header_of(table, ", ".join(COLUMNS[1:]))
-    columns = columns_in(header, _SLIDES, ("rad", request.length or "m"))
+    columns = with_time(columns_in(header, _SLIDES, ("rad", request.length or "m")), _SLIDES)
     names = [column.name for column in columns]
     require_time(names, ", ".join(COLUMNS[1:]))
     _require_columns(names)
@@ -61,8 +68,8 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
         in_own_units(values, part)
     refuse_standing_time(times[:, 0], table)
     _refuse_far(positions, table)
-    _refuse_off_length_one(quaternions, table)
-    notes = (*note_on_separators(table), *note_on_units(columns))
+    refuse_off_length_one(quaternions, table)
+    notes = (*note_on_separators(table), *notes_on_names(header, columns), *note_on_units(columns))
     return samples_of(PoseSamples(times[:, 0], positions, quaternions), notes)
 
 
@@ -105,7 +112,12 @@ def _refuse_far(positions: np.ndarray, table: TextTable) -> None:
         )
 
 
-def _refuse_off_length_one(quaternions: np.ndarray, table: TextTable) -> None:
+def refuse_off_length_one(quaternions: np.ndarray, table: TextTable) -> None:
+    """Nothing, if quaternions (n, 4) are of length one, or rounded to three digits or so.
+
+    Raises:
+        BadPose: with the line of the table.
+    """
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(quaternions, axis=1)
     rows = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROUNDED_ROTATION))

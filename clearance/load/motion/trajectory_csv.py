@@ -12,6 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, MissingKey, nearest_name
+from clearance.load.motion.joint_columns import require_joints
+from clearance.load.motion.quaternion_columns import by_angles, joints_by_angles, turned_joints
 from clearance.load.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.load.table.column_units import (
     VELOCITY,
@@ -19,6 +21,7 @@ from clearance.load.table.column_units import (
     columns_in,
     in_own_units,
     note_on_units,
+    with_time,
 )
 from clearance.load.table.csv_table import (
     TIME,
@@ -30,6 +33,7 @@ from clearance.load.table.csv_table import (
     refuse_standing_time,
     require_time,
 )
+from clearance.load.table.table_names import chosen_columns, notes_on_names
 from clearance.world.trajectory import Trajectory
 
 
@@ -41,19 +45,18 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
         file. BadDimension: a velocity that no joint can have. BadInput: a unit that a joint cannot have.
     """
     choice = request.choice
-    choice.refuse_others({"units", "joints", "period", "gaps"}, "a CSV table")
+    choice.refuse_others({"units", "joints", "period", "gaps", "columns"}, "a CSV table")
     table = as_written(request.opened, _names_given(choice))
     header = header_of(table, "joint names")
-    columns = columns_in(header, request.turns, choice.units)
-    names = [column.name for column in columns]
-    _require_times(names, choice)
-    _refuse_unmatched_velocities(names)
-    joints = tuple(name for name in names if name != TIME and not name.endswith(VELOCITY))
-    if request.joints_needed and not joints:
-        raise BadShape("there is no joint column", valid="time and at least one joint are needed")
+    _refuse_numbers(header, table)
+    columns = _columns(header, request)
+    joints = _joints(columns, request)
+    turned = turned_joints(joints, request.turns)
+    if request.robot is not None:
+        require_joints(request.robot, joints_by_angles(joints, turned), columns)
     by_name = {column.name: column for column in columns}
     parts = [[TIME] * (choice.period is None), joints]
-    if any(name.endswith(VELOCITY) for name in names):
+    if any(name.endswith(VELOCITY) for name in by_name):
         parts.append([joint + VELOCITY for joint in joints])
     wanted = [[by_name[name] for name in part] for part in parts]
     times, *moving = _values(table, request.n_bytes, header, wanted)
@@ -61,9 +64,45 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
         with np.errstate(over="ignore"):
             times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
     refuse_standing_time(times[:, 0], table)
+    notes = [*_notes(table, choice), *notes_on_names(header, columns), *note_on_units(columns)]
+    if turned:
+        moving[0], told = by_angles(moving[0], joints, turned, table)
+        joints, notes = joints_by_angles(joints, turned), [*notes, *told]
     velocities = moving[1] if len(moving) > 1 else None
     trajectory = Trajectory(times[:, 0], joints, moving[0], velocities)
-    return ReadTrajectory(trajectory, (*_notes(table, choice), *note_on_units(columns)))
+    return ReadTrajectory(trajectory, tuple(notes))
+
+
+def _joints(columns: list[Column], request: TrajectoryRequest) -> tuple[str, ...]:
+    """The names of the columns that are positions.
+
+    Raises:
+        MissingKey, BadInput: times or velocities that are missing, or are there twice. BadShape: no joint.
+    """
+    names = [column.name for column in columns]
+    _require_times(names, request.choice)
+    _refuse_unmatched_velocities(names)
+    joints = tuple(name for name in names if name != TIME and not name.endswith(VELOCITY))
+    if request.joints_needed and not joints:
+        raise BadShape("there is no joint column", valid="time and at least one joint are needed")
+    return joints
+
+
+def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
+    """What is meant of a header."""
+    choice = request.choice
+    if choice.columns is not None:
+        return chosen_columns(header, dict(choice.columns), request.turns, choice.units)
+    return with_time(columns_in(header, request.turns, choice.units), request.turns)
+
+
+def _refuse_numbers(header: list[str], table: TextTable) -> None:
+    """Nothing, if the first row is no row of numbers, or names are given."""
+    if table.names is None and all(table.float_of(name or "0") is not None for name in header):
+        raise MissingKey(
+            f"the first row, {','.join(header)!r:.80}, is numbers: there is no header",
+            valid="joints: [the names of the columns beside time, in order] (--joints)",
+        )
 
 
 def _names_given(choice: Choice) -> tuple[str, ...] | None:
@@ -77,6 +116,8 @@ def _names_given(choice: Choice) -> tuple[str, ...] | None:
 
 
 def _require_times(names: list[str], choice: Choice) -> None:
+    if choice.period is None and choice.columns is not None and TIME not in names:
+        raise MissingKey(f"`columns` names no {TIME!r}", valid=f"{TIME}: the column of times [s]")
     if choice.period is None:
         require_time(names, "joint names")
     elif TIME in names:

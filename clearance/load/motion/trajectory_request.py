@@ -9,6 +9,7 @@ from typing import NamedTuple
 from clearance.errors import BadInput
 from clearance.late_dataclass import dataclass
 from clearance.load.table.csv_table import Opener
+from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
 
@@ -23,6 +24,8 @@ class Choice:
         period: [s] from row to row of a table without times.
         topic: of a bag.
         gaps: what joints do in holes of a recording: one of `world.notice.GAPS`.
+        columns: of a table, pairs of `time`, a joint, or a joint and `/velocity`, and the column that it is; other
+            columns are left out.
     """
 
     which: int | None = None
@@ -31,6 +34,7 @@ class Choice:
     period: float | None = None
     topic: str | None = None
     gaps: str | None = None
+    columns: tuple[tuple[str, str], ...] | None = None
 
     def refuse_others(self, used: Collection[str], what: str) -> None:
         """Nothing, if all that is said is of use.
@@ -55,7 +59,8 @@ class TrajectoryRequest:
     Attributes:
         opened: opens the file, `n_bytes` long, again and again.
         joints_needed: False for a robot that has no joint to move, for which times alone do.
-        turns: of each joint that the robot can move, whether it turns; empty where the robot is not known.
+        turns: of each joint that moves, whether it turns; empty where the robot is not known.
+        robot: whose joints those of a table must be; None where it is not known.
     """
 
     opened: Opener
@@ -63,6 +68,7 @@ class TrajectoryRequest:
     joints_needed: bool = True
     choice: Choice = Choice()
     turns: Mapping[str, bool] = field(default_factory=dict)
+    robot: Robot | None = None
 
 
 class ReadTrajectory(NamedTuple):

@@ -45,6 +45,9 @@ def case_schema() -> dict[str, Any]:
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
     parts["PoseFile"] = _or_path(parts["PoseFile"], "a CSV file, or stamped poses in YAML or JSON")
+    names = {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1}
+    motion = parts["TrajectoryFile"]["properties"]
+    motion["columns"] = {"anyOf": [motion["columns"], names]}
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
     )

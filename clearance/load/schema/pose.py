@@ -9,7 +9,7 @@ import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from clearance.errors import BadInput
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
@@ -111,14 +111,23 @@ class PoseFile(TimedFile):
         return None if self.units is None else self.units.length
 
 
+def _by_itself(given: Any) -> Any:
+    """Columns by name; those of a list are called so themselves."""
+    if not isinstance(given, list) or not all(isinstance(name, str) for name in given):
+        return given
+    return {name: name for name in given}
+
+
 class TrajectoryFile(TimedFile):
     """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
     `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
-    `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go straight (linear), or
-    are not measured. `wrap` says which way round a continuous joint goes in a step of more than half a turn.
+    Of a table with other columns besides, `columns` names those that are meant, `{joint: column}` where they are
+    called otherwise. `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go
+    straight (linear), or are not measured. `wrap` says which way round a continuous joint goes in a step of more
+    than half a turn.
     """
 
-    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps", "wrap"})
+    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps", "columns", "wrap"})
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None
@@ -127,13 +136,17 @@ class TrajectoryFile(TimedFile):
     topic: Name | None = None
     gaps: Literal["hold", "linear", "not_measured"] | None = None
     wrap: Literal["shortest", "as_written"] | None = None
+    columns: (
+        Annotated[dict[Name, Name], BeforeValidator(_by_itself), Field(min_length=1)] | None
+    ) = None
 
     @property
     def choice(self) -> Choice:
         """What is said beside path and times."""
         units = None if self.units is None else (self.units.angle, self.units.length)
         joints = None if self.joints is None else tuple(self.joints)
-        return Choice(self.which, units, joints, self.period, self.topic, self.gaps)
+        columns = None if self.columns is None else tuple(self.columns.items())
+        return Choice(self.which, units, joints, self.period, self.topic, self.gaps, columns)
 
 
 class WindowedEntry(StrictModel):

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, DuplicateName
-from clearance.load.table.csv_table import TIME
+from clearance.errors import BadInput, DuplicateName, MissingKey
+from clearance.load.table.csv_table import EMPTY, TIME
 from clearance.world.notice import listed
 
-VELOCITY = "/velocity"
+POSITION, VELOCITY = "/position", "/velocity"
+"""How ros2_control names its interfaces; a joint's position needs no ending."""
 
 
 class Unit(NamedTuple):
@@ -40,6 +41,9 @@ UNITS = {
     "ms": Unit("time", "milliseconds"),
 }
 """By how they are written; velocities are in one of them a second."""
+
+_TIMES = (TIME, "t", "timestamp")
+"""What programs call the column of times, in small letters."""
 
 _A = {"angle": "an angle", "length": "a length", "time": "a time"}
 
@@ -71,7 +75,7 @@ def columns_in(
         BadInput: a unit that the joint cannot have, or one of only a position or its velocity. DuplicateName: two
             columns of one thing.
     """
-    columns = [_column(name, turns) for name in header]
+    columns = [_column(name, turns) for name in header if name != EMPTY]
     by_name: dict[str, Column] = {}
     for column in columns:
         if column.name in by_name:
@@ -86,6 +90,46 @@ def columns_in(
                 valid="units of both, or of none",
             )
     return [_with_default(column, turns, units) for column in columns]
+
+
+def with_time(columns: Sequence[Column], turns: Mapping[str, bool]) -> list[Column]:
+    """The columns; where none is `time`, that which other programs call so, as `Time`, `t` or `timestamp`.
+
+    Raises:
+        MissingKey: several could be. BadInput: its unit is none of a time.
+    """
+    if any(column.name == TIME for column in columns):
+        return list(columns)
+    found = [one for one in columns if one.name.lower() in _TIMES and one.name not in turns]
+    if len(found) > 1:
+        names = listed([repr(one.header) for one in found])
+        raise MissingKey(
+            f"there is no column {TIME!r}, and {names} could each be it",
+            valid=f"did you mean {found[0].header!r}? columns: {{{TIME}: {found[0].header}, …}}",
+        )
+    named = [one._replace(name=TIME) if one in found else one for one in columns]
+    for one in named:
+        _refuse_other_kind(one, turns)
+    return named
+
+
+def in_kind(
+    header: str, name: str, turns: Mapping[str, bool], units: tuple[str, str] | None
+) -> Column:
+    """A column that is called otherwise than in its header; in the unit that the header ends in, if the joint, or
+    time, can have it.
+
+    Raises:
+        BadInput: a unit in brackets that the joint cannot have.
+    """
+    column = Column(header, name)
+    bracketed, ending = _BRACKETS.fullmatch(header), _ENDING.fullmatch(header)
+    if bracketed:
+        column = Column(header, name, bracketed[2] or bracketed[4])
+    elif ending and UNITS[ending[2]].of == _kind(name, turns):
+        column = Column(header, name, ending[2])
+    _refuse_other_kind(column, turns)
+    return _with_default(column, turns, units)
 
 
 def in_own_units(values: np.ndarray, columns: Sequence[Column]) -> None:
@@ -117,11 +161,12 @@ def _column(header: str, turns: Mapping[str, bool]) -> Column:
     if found:
         name, unit, a_second = found[1], found[2] or found[4], found[3] or found[5]
         if bool(a_second) == name.endswith(VELOCITY):
-            return Column(header, name, unit)
+            return Column(header, name.removesuffix(POSITION), unit)
     found = _ENDING.fullmatch(header)
-    if found and (found[1] in turns or found[1] == TIME):
+    is_time = found and found[1].lower() in _TIMES and UNITS[found[2]].of == "time"
+    if found and (found[1] in turns or found[1] == TIME or is_time):
         return Column(header, found[1], found[2])
-    return Column(header, header)
+    return Column(header, header.removesuffix(POSITION))
 
 
 def _refuse_other_kind(column: Column, turns: Mapping[str, bool]) -> None:

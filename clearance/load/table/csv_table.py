@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
 TIME = "time"
 
+EMPTY = ""
+"""The name of a column behind a separator at the end of each row, which holds nothing."""
+
 Opener = Callable[[], BinaryIO]
 """Opens a file for reading from its start."""
 
@@ -59,20 +62,25 @@ class TextTable(NamedTuple):
             return None
 
 
+_SEPARATORS = {";": "semicolons", "\t": "tabs"}
+"""Beside commas."""
+
+
 def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTable:
-    """The table with the separators that it shows: semicolons where the first row has some and, in a header, no
-    commas; then decimal commas where there is any comma.
+    """The table with the separators that it shows: semicolons, or else tabs, where the first row has some and, in
+    a header, no commas; then decimal commas where there is any comma.
 
     Args:
         names: of the columns, where there is no header.
     """
     with opened() as file:
         start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
-        if b";" not in start or (names is None and b"," in start):
+        others = [mark for mark in _SEPARATORS if mark.encode() in start]
+        if not others or (names is None and b"," in start):
             return TextTable(opened, names=names)
         file.seek(0)
         has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
-    return TextTable(opened, ";", "," if has_comma else ".", names)
+    return TextTable(opened, others[0], "," if has_comma else ".", names)
 
 
 def note_on_separators(table: TextTable) -> list[str]:
@@ -80,11 +88,11 @@ def note_on_separators(table: TextTable) -> list[str]:
     if table.delimiter == ",":
         return []
     decimals = ", decimals written with commas" if table.decimal == "," else ""
-    return [f"columns are separated by semicolons{decimals}"]
+    return [f"columns are separated by {_SEPARATORS[table.delimiter]}{decimals}"]
 
 
 def header_of(table: TextTable, others: str) -> list[str]:
-    """The names of the columns, each once.
+    """The names of the columns, each once; `EMPTY` last where each row ends with a separator.
 
     Args:
         others: what the columns beside `time` are, for errors.
@@ -93,11 +101,14 @@ def header_of(table: TextTable, others: str) -> list[str]:
         BadSyntax, DuplicateName: with the column.
     """
     if table.names is not None:
-        return list(table.names)
+        return _as_the_first_row(table, table.names)
     _, cells = next(_rows(table), (0, []))
     if not any(cell.strip() for cell in cells):
         raise BadSyntax("the file is empty", valid=f"a header with {TIME!r} and {others} is needed")
     names = [cell.strip() for cell in cells]
+    names[0] = names[0].removeprefix("#").lstrip()  # as programs write that mark what is no number
+    if len(names) > 1 and not names[-1]:
+        names.pop()
     seen: set[str] = set()
     for i, name in enumerate(names):
         if not name:
@@ -106,7 +117,14 @@ def header_of(table: TextTable, others: str) -> list[str]:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
         seen.add(name)
         checked_name(name)
-    return names
+    return _as_the_first_row(table, names)
+
+
+def _as_the_first_row(table: TextTable, names: Sequence[str]) -> list[str]:
+    """The names, and that of an empty column where the first row of numbers ends with one more."""
+    _, cells = next(_data_rows(table), (0, []))
+    ends_empty = len(cells) == len(names) + 1 and not cells[-1].strip()
+    return [*names, EMPTY] if ends_empty else [*names]
 
 
 def require_time(names: Sequence[str], others: str) -> None:
@@ -136,16 +154,16 @@ def columns_of(
     plain = _plain(table, n_bytes, len(names))
     if plain is not None:
         return [plain.take([names.index(name) for name in part], axis=1) for part in parts]
-    most = (
-        n_bytes // (2 * len(names)) + 2
-    )  # a cell is a digit and a comma; what is not filled takes no memory
+    wanted = list(dict.fromkeys(name for part in parts for name in part))
+    # a cell ends with a comma, and one that is wanted has a digit; what is not filled takes no memory
+    most = n_bytes // (len(names) + len(wanted)) + 2
     found = [np.empty((most, len(part))) for part in parts]
     n_rows = 0
-    for batch in _batches(table, names):
+    for batch in _batches(table, names, wanted):
         rows = slice(n_rows, n_rows + batch.num_rows)
         for columns, part in zip(found, parts, strict=True):
             for i, name in enumerate(part):
-                columns[rows, i] = batch.column(names.index(name)).to_numpy()
+                columns[rows, i] = batch.column(wanted.index(name)).to_numpy()
         n_rows = rows.stop
     if not n_rows:
         raise _no_rows()
@@ -167,14 +185,16 @@ def _plain(table: TextTable, n_bytes: int, n_columns: int) -> np.ndarray | None:
     return found if found is not None and len(found) else None
 
 
-def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:
-    """All rows, a few megabytes at a time; columns as in the header."""
+def _batches(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[pa.RecordBatch]:
+    """All rows, a few megabytes at a time; the columns that are wanted, whatever the others hold."""
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
     keys = [str(i) for i in range(len(names))]
+    of_wanted = [keys[names.index(name)] for name in wanted]
     types = arrow_csv.ConvertOptions(
-        column_types=dict.fromkeys(keys, pa.float64()),
+        column_types=dict.fromkeys(of_wanted, pa.float64()),
+        include_columns=of_wanted,
         null_values=[],
         strings_can_be_null=False,
         decimal_point=table.decimal,
@@ -190,7 +210,7 @@ def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:
                 return
             yield from arrow_csv.open_csv(stream, reading, parsing, types)
     except pa.ArrowException as error:
-        raise _fault_in_rows(table, names) or BadSyntax(
+        raise _fault_in_rows(table, names, wanted) or BadSyntax(
             f"not a table of numbers: {error}"
         ) from None
 
@@ -216,8 +236,10 @@ def _no_rows() -> ClearanceError:
     return BadShape("there are no rows below the header", valid="at least one row is needed")
 
 
-def _fault_in_rows(table: TextTable, names: list[str]) -> ClearanceError | None:
-    """The first row that is not as many numbers as the header has names."""
+def _fault_in_rows(
+    table: TextTable, names: list[str], wanted: Sequence[str]
+) -> ClearanceError | None:
+    """The first row that is not as many cells as the header has names, with numbers where they are wanted."""
     rows = _data_rows(table)
     has_header = table.names is None
     given = "the header has" if has_header else "there are"
@@ -232,7 +254,7 @@ def _fault_in_rows(table: TextTable, names: list[str]) -> ClearanceError | None:
                 valid=f"{given} {len(names)}{'' if has_header else ' names'}",
             )
         for name, cell in zip(names, cells, strict=True):
-            if table.float_of(cell) is None:
+            if name in wanted and table.float_of(cell) is None:
                 valid = "decimals have commas in this file" if table.decimal == "," else ""
                 return BadSyntax(
                     f"{cell.strip()!r} in column {name!r} is not a number", where=where, valid=valid

@@ -349,7 +349,7 @@ HEADER = "time,x,y,z,qx,qy,qz,qw\n"
         ("", BadSyntax, "the file is empty"),
         (HEADER, BadShape, "there are no rows"),
         ("time,x,y,z,qx,qy,qz\n0,0,0,0,0,0,0\n", MissingKey, "there is no column 'qw'"),
-        ("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n", MissingKey, "there is no column 'time'"),
+        ("when,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n", MissingKey, "there is no column 'time'"),
         (
             "time,x,y,z,qx,qy,qz,qw,w\n0,0,0,0,0,0,0,1,2\n",
             UnknownKey,

@@ -5,6 +5,7 @@ import importlib.util
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.errors import BadSyntax
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
@@ -13,6 +14,7 @@ from clearance.load.robot.request import RobotRequest
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.mimics import followers
+from clearance.world.notice import Severity
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.load.making import ARM, cube_stl, signed_volume
@@ -310,3 +312,39 @@ def test_elements_in_each_other_without_end_are_refused(tmp_path):
     deep = "<x>" * 100_000 + "</x>" * 100_000
     with pytest.raises(BadSyntax, match="not XML"):
         load_urdf(tmp_path, robot(link(BOX), deep))
+
+
+@pytest.mark.parametrize(
+    "empty",
+    [
+        "<collision/>",
+        "<collision><geometry/></collision>",
+        collision('<sphere radius="0"/>'),
+        collision('<box size="0 0.0 .0"/>'),
+        collision('<cylinder radius="0" length="-0.0"/>'),
+    ],
+)
+def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, empty):
+    arm = load_urdf(tmp_path, robot(link(BOX + empty), link(empty, "b"), joint("j", "a", "b")))
+    assert [body.name for body in arm.bodies] == ["a"]
+    assert np.array_equal(arm.bodies[0].shape.vertices, cl.box((1.0, 1.0, 1.0)).vertices)
+    (notice,) = arm.notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
+    assert notice.text.endswith("measured: link 'a' collision[1], link 'b' collision[0]")
+
+
+def test_pictures_of_no_size_are_no_matter_where_they_are_not_measured(tmp_path):
+    arm = load_urdf(tmp_path, robot(link(BOX + "<visual/>")))
+    assert len(arm.bodies) == 1 and not arm.notices
+
+
+def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):
+    joints = [
+        joint("j", "a", "b", inner=""),
+        joint("k", "b", "c", "prismatic", '<limit effort="1" velocity="1"/>'),
+        joint("l", "c", "d"),
+        joint("m", "d", "e", "continuous", ""),
+    ]
+    arm = load_urdf(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
+    told = "arm.urdf: joints without <limit>, which may go anywhere: 'j', 'k'"
+    assert [note for note in arm.notes if "without <limit>" in note] == [told]

@@ -7,6 +7,7 @@ Elements that say nothing about shape or motion (inertia, colour, transmission, 
 from __future__ import annotations
 
 import math
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -64,12 +65,56 @@ def parse_document(data: bytes) -> Element:
     """The checked root element of a URDF document, reduced to links' shapes and joints.
 
     Raises:
-        BadSyntax: not XML, not URDF, or a xacro file. MissingKey, BadShape, NotFinite,
-            DuplicateName, BadInput: an element that cannot be used, with its place in the document.
+        BadInput: as `reduced_document` and `checked_document`.
+    """
+    return checked_document(reduced_document(data))
+
+
+def reduced_document(data: bytes) -> Element:
+    """The root element of a URDF document, reduced to links' shapes and joints.
+
+    Raises:
+        BadSyntax: not XML, not URDF, or a xacro file.
     """
     root = robot_element(data, "a URDF file")
     checked_name(root.get("name") or "")
     _reduce(root)
+    return root
+
+
+def without_empty_shapes(root: Element, measured: str) -> list[str]:
+    """What is taken out of a reduced document since it has no size: no shape, or one whose dimensions are all 0.
+
+    A shape that is flat or a line is left to be refused, since something may come near it.
+
+    Args:
+        measured: "collision", "visual" or both in one word; others are taken out without being named.
+    """
+    names = []
+    for link in root.iterfind("link"):
+        for kind in ("collision", "visual"):
+            for i, element in enumerate(link.findall(kind)):
+                if _has_no_size(element):
+                    names += [f"link {link.get('name')!r} {kind}[{i}]"] * (kind in measured)
+                    link.remove(element)
+    return names
+
+
+def _has_no_size(element: Element) -> bool:
+    geometry = element.find("geometry")
+    if geometry is None or not len(geometry):
+        return True
+    sizes = geometry[0].attrib.values() if geometry[0].tag in _PRIMITIVES else ()
+    words = [word for size in sizes for word in size.split()]
+    return bool(words) and all(re.fullmatch(r"[+-]?(0+\.?0*|\.0+)", word) for word in words)
+
+
+def checked_document(root: Element) -> Element:
+    """The root element of a reduced document, which can be read.
+
+    Raises:
+        MissingKey, BadShape, NotFinite, DuplicateName, BadInput: an element that cannot be used, with its place.
+    """
     for kind in ("link", "joint"):
         _check_names(root, kind)
         for element in root.findall(kind):

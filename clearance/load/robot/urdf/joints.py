@@ -13,6 +13,7 @@ from clearance.load.robot.urdf.elements import number, numbers, pose_of
 from clearance.tolerance import REACH
 from clearance.world.mimics import masters_of
 from clearance.world.names import require_own_names
+from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     require_own_names("joint", [joint.name for joint in joints])
     masters = masters_of(joints)
     fixed = {joint.name for joint in joints if joint.kind is JointKind.FIXED}
-    notes = notes_on_parts(joints)
+    notes = [*notes_on_parts(joints), *_on_no_limits(joints)]
     for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
         if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
@@ -107,6 +108,18 @@ def _limits(element: Element | None, kind: JointKind) -> tuple[float, float]:
     if lower > upper:
         raise BadInput(f"lower limit {lower:g} is above upper limit {upper:g}")
     return lower, upper
+
+
+def _on_no_limits(joints: list[Joint]) -> list[str]:
+    """A note on joints that should have limits, and have none."""
+    needed = (JointKind.REVOLUTE, JointKind.PRISMATIC)
+    names = [
+        repr(joint.name)
+        for joint in joints
+        if joint.kind in needed and joint.part_of is None and joint.upper == np.inf
+    ]
+    told = f"joints without <limit>, which may go anywhere: {listed(names, 8)}"
+    return [told] if names else []
 
 
 def _velocity(element: Element | None) -> float:

@@ -24,11 +24,17 @@ from clearance.load.robot.robot_element import ALLOW_XACRO, XACRO
 from clearance.load.robot.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.load.robot.tree import links_from_root
 from clearance.load.robot.urdf.axis_check import axis_notices
-from clearance.load.robot.urdf.elements import odd_origins, parse_document
+from clearance.load.robot.urdf.elements import (
+    checked_document,
+    odd_origins,
+    reduced_document,
+    without_empty_shapes,
+)
 from clearance.load.robot.urdf.joints import joints_of
 from clearance.load.robot.urdf.shapes import ShapeReader
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
+from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
@@ -66,7 +72,9 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
     """
     data, made = _document(request, meshes.files)
     with at(meshes.files.shown(request.path)):
-        root = parse_document(data)
+        root = reduced_document(data)
+        empty = without_empty_shapes(root, request.geometry)
+        checked_document(root)
         joints, notes = joints_of(root)
         by_name = {link.get("name"): link for link in root.iterfind("link")}
         frames = frames_between(joints)
@@ -82,6 +90,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
             *reader.notices(),
             *axis_notices(links, bodies, ordered, reader),
             *unseen(kinds, request.geometry),
+            *_on_empty(empty),
         ]
     notes = [f"{request.path.name}: {note}" for note in (*notes, *notes_on_bare(kinds))]
     return Robot(
@@ -92,6 +101,14 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         (*made, *reader.notes(), *notes),
         tuple(notices),
     )
+
+
+def _on_empty(empty: list[str]) -> list[Notice]:
+    """A warning on shapes that are left out."""
+    if not empty:
+        return []
+    text = f"without any size, and not measured: {listed(empty, 6)}"
+    return [Notice(Severity.WARNING, "geometry", text)]
 
 
 def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
