@@ -87,9 +87,9 @@ class Limits:
     @overload
     def below(self, clearance: float, level: float) -> bool: ...
     @overload
-    def below(self, clearance: np.ndarray, level: float) -> np.ndarray: ...
+    def below(self, clearance: np.ndarray, level: float | np.ndarray) -> np.ndarray: ...
 
-    def below(self, clearance: float | np.ndarray, level: float) -> bool | np.ndarray:
+    def below(self, clearance: float | np.ndarray, level: float | np.ndarray) -> bool | np.ndarray:
         """True where a clearance [m] is below a level [m] by more than rounding."""
         return clearance < level - self.rounding
 

@@ -139,7 +139,8 @@ class NewRobot:
         if zero:
             yield f"joints that nothing moves rest at 0: {listed(zero, 8)}"
         own = self.placed.robot.reference
-        placed, other = [], []
+        placed: list[str] = []
+        other: list[str] = []
         for name, position in at_rest.items():
             if position != 0.0:
                 (placed if position == own.get(name) else other).append(f"{name} {position:g}")
