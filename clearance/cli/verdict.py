@@ -34,8 +34,10 @@ from clearance.report.wording import (
     other_time,
     seconds,
     span_text,
+    step_text,
 )
 from clearance.run import Run
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.world.notice import KINDS, Notice, listed
@@ -74,7 +76,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
-    nearest = record.pair_minima[:_MOST_PAIRS]
+    nearest = motion_minima(record, _MOST_PAIRS)
     if nearest:
         lines.append(_pair_table(record, nearest))
     lines += [_row("profile", profile_text(answer)) for answer in record.profiles]
@@ -258,7 +260,8 @@ def _interval_text(record: Record, level: str) -> str:
 def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 2))
     first, second = HEADS[record.sides[0]]
-    table.add_column(f"  closest at the samples: {first.lower()}")
+    proven = all(pair.proven is not None for pair in nearest)
+    table.add_column(f"  closest{'' if proven else ' at the samples'}: {first.lower()}")
     table.add_column(second.lower())
     for name in ("clearance mm", "step", "time s"):
         table.add_column(name, justify="right")
@@ -269,7 +272,7 @@ def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:
             f"  {_not_a_command(pair.link)}",
             pair.obstacle,
             mm(pair.clearance),
-            str(pair.step),
+            step_text(pair),
             f"{pair.time:.3f}",
         ]
         cells += [pair.rule] if record.case.limits.rules else []

@@ -71,12 +71,12 @@ class Finding:
             a pair that keeps it has one finding, 0.
         status: one of `ORDER`; "not proven" of `OF_TOLERANCES` alone.
         clearance: [m] the least, less padding; of a profile its gap; None where nothing was measured.
-        proven: [m] a lower bound for the motion over the stretch, that of all pairs of the rule; None at the
-            samples only. Of `OF_TOLERANCES` the least that is proven with all errors.
+        proven: [m] a lower bound for the motion over the stretch, of the pair if it is proven by itself, else of
+            all pairs of the rule; None at the samples only. Of `OF_TOLERANCES` the least with all errors.
         fail, warn: [m] the limits.
         time: [s] of the least. time_b: [s] when the second body is there, where its clock is another.
         step: of that moment, or before it if it is `between` two.
-        start, end: [s] the stretch, from its first step to its last, or the next where it ends between two.
+        start, end: [s] the stretch, proven from outside; of samples from its first step to its last.
             first_step, last_step: inside it.
         point_a, point_b: [m] witness points in the world. joints: [rad] or [m] by name, at that moment.
         text: what else is to say, one line.

@@ -19,19 +19,22 @@ from clearance.findings.standing import why_undecided
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
+from clearance.simulate.pairs_alone import can_be_alone, near_alone
 from clearance.simulate.record import Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.rule_pairs import NearRows
 from clearance.simulate.status import Status, status_of
+from clearance.simulate.stretches import RuleStretches
 from clearance.world.case import Limits
 
 
 @dataclass(frozen=True, eq=False)
 class RuleFindings:
-    """The findings of a rule of a record."""
+    """The findings of a rule of a record; `alone` where the rule is told of one pair only."""
 
     record: Record
     rule: RuleAnswer
+    alone: bool = False
 
     def __iter__(self) -> Iterator[Finding]:
         of_pairs = list(self._of_pairs()) if self._anything_near else []
@@ -51,6 +54,15 @@ class RuleFindings:
         return limits.below(worst.clearance, limits.warn) or worst.clearance <= 0.0
 
     def _of_pairs(self) -> Iterator[Finding]:
+        """Those of pairs; each by itself where that can be proven, so that none is hidden by another."""
+        level = release_level(self.rule.limits)
+        if self.alone or not can_be_alone(self.rule, level):
+            yield from self._of_known_pairs()
+            return
+        for answer in near_alone(self.rule, level).values():
+            yield from RuleFindings(self.record, answer, alone=True)._of_known_pairs()
+
+    def _of_known_pairs(self) -> Iterator[Finding]:
         limits = self.rule.limits
         for pair in sorted({*self._rows.pairs.tolist(), *self._seen_pairs.tolist()}):
             course = self._course(pair)
@@ -126,7 +138,7 @@ class RuleFindings:
 
     def _at(self, moment: Moment, first: int, last: int, occurrence: int = 0) -> Finding:
         """A finding with its worst moment and its stretch, from one position to another."""
-        times = self.record.motions[0].times
+        start, end = self._span(moment.time, first, last)
         return self._named(
             CLEARANCE,
             (moment.link, moment.obstacle),
@@ -138,14 +150,28 @@ class RuleFindings:
             time_b=moment.time_b,
             step=int(moment.step),
             between=moment.between,
-            start=float(times[first // 2]),
-            end=float(times[min(last // 2 + last % 2, len(times) - 1)]),
+            start=start,
+            end=end,
             first_step=first // 2,
             last_step=last // 2,
             point_a=_point(moment.point_link),
             point_b=_point(moment.point_obstacle),
             joints=joints_of(self.record, moment),
         )
+
+    def _span(self, time: float, first: int, last: int) -> tuple[float, float]:
+        """[s] The stretch about a time: of the motion where that is proven, else from a position to another."""
+        if self.alone:
+            for start, end in self._released.spans.tolist():
+                if start <= time <= end:
+                    return start, end
+        times = self.record.motions[0].times
+        return float(times[first // 2]), float(times[min(last // 2 + last % 2, len(times) - 1)])
+
+    @cached_property
+    def _released(self) -> RuleStretches:
+        """When the pairs of the rule are below the level at which an occurrence ends."""
+        return RuleStretches(self.rule, release_level(self.rule.limits))
 
     def _proven(self, intervals: slice) -> float | None:
         """[m] What is proven of all pairs of the rule over some intervals."""

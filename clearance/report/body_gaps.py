@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import count, limit_mm, mm, seconds
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import Record
 from clearance.simulate.standing import standing_bodies
 
@@ -49,7 +50,7 @@ def body_gaps_of(record: Record) -> list[dict[str, Any]]:
             "time": one.time,
             "may_catch": [part for part, width in WIDTHS.items() if one.clearance < width],
         }
-        for one in record.pair_minima
+        for one in motion_minima(record)
         if one.clearance < max(WIDTHS.values())
         and (one.link in standing) != (one.obstacle in standing)
     ]

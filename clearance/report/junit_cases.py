@@ -33,7 +33,9 @@ from clearance.report.wording import (
     moment_text,
     of_rule,
     seconds,
+    step_text,
 )
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import PairMinimum, Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
@@ -124,7 +126,7 @@ def _of_pairs(record: Record, judgement: Judgement) -> Iterator[TestResult]:
             told.add((finding.body_a, finding.body_b, finding.rule))
             yield _of_finding(finding)
     judge = PairJudge.of(record)
-    for minimum in record.pair_minima:
+    for minimum in motion_minima(record):
         if (minimum.link, minimum.obstacle, minimum.rule) not in told:
             yield _of_minimum(judge, minimum)
 
@@ -168,9 +170,8 @@ def _of_minimum(judge: PairJudge, minimum: PairMinimum) -> TestResult:
     by = "" if minimum.rule == DEFAULT else f" [{minimum.rule}]"
     name = f"{minimum.link} - {minimum.obstacle}{by}"
     status = Status(judge.status_of(minimum))
-    at = (
-        f"at the samples {mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
-    )
+    over = "at the samples " if minimum.proven is None else ""
+    at = f"{over}{mm(minimum.clearance)} mm at {seconds(minimum.time)}, step {step_text(minimum)}"
     if status in (Status.VIOLATED, Status.CONTACT):
         fail = judge.limits[minimum.rule].fail
         limit = f"the fail limit{of_rule(minimum.rule)} is {limit_mm(fail)} mm"

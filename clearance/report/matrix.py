@@ -73,8 +73,9 @@ def matrix(summary: dict[str, Any]) -> Markup:
 
 def _meaning(summary: dict[str, Any]) -> list[str]:
     shown = _PAIR_SHOWN[summary["need"] == "pairs"]
+    when = "Over the motion" if summary["certified"] else "At the steps"
     told = [
-        "At the steps, rounded down. A click moves the replay to the step where that pair comes closest, with its "
+        f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
         f"line and {shown}; \N{EN DASH} marks a pair that was not measured."
     ]
     if summary["paddings"]:
@@ -161,6 +162,7 @@ def _cell(found: list[tuple[int, dict[str, Any]]] | None, fail: dict[str, float]
         mm(pair["clearance"]),
         class_=f"cell {_shade(pair)}",
         data_step=pair["step"],
+        data_time=pair["time"] if pair["between"] else None,
         data_pair=place,
         tabindex=0,
         title="\n".join(_title(one) for _, one in found),
@@ -176,8 +178,8 @@ def _standing(pair: dict[str, Any], fail: dict[str, float]) -> tuple[int, float]
 def _title(pair: dict[str, Any]) -> str:
     by = "" if pair["rule"] == DEFAULT else f", rule {pair['rule']}: {pair['status']}"
     return (
-        f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, step {pair['step']}, "
-        f"{seconds(pair['time'])}{by}"
+        f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, "
+        f"step {pair['step']}{'+' * pair['between']}, {seconds(pair['time'])}{by}"
     )
 
 

@@ -20,6 +20,7 @@ from clearance.report.actors import paddings_of
 from clearance.report.pair_judge import PairJudge
 from clearance.report.verdict import verdict_of
 from clearance.simulate.moment import Moment
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import PairMinimum, Record
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
@@ -77,7 +78,7 @@ def _entries(record: Record) -> list[_Entry]:
             one = _of_moment(record, rule.worst)
             found.setdefault(one.is_of, one)
     judge = PairJudge.of(record)
-    for minimum in record.pair_minima:
+    for minimum in motion_minima(record):
         one = _of_pair(record, minimum, judge.status_of(minimum))
         found.setdefault(one.is_of, one)
     limits = {rule.name: rule.limits.fail for rule in record.rules}
@@ -117,8 +118,8 @@ def _of_pair(record: Record, minimum: PairMinimum, status: str) -> _Entry:
         minimum.time,
         None,
         minimum.step,
-        False,
-        tuple(motion.positions[minimum.step] for motion in record.motions),
+        minimum.between,
+        tuple(motion.positions_at(minimum.time) for motion in record.motions),
     )
 
 

@@ -7,7 +7,8 @@ from markupsafe import Markup
 from clearance.report.contact import HEADS
 from clearance.report.markup import element, table
 from clearance.report.verdict import verdict_of
-from clearance.report.wording import depth_text, limits_text, mm, moment_text
+from clearance.report.wording import depth_text, limits_text, mm, moment_text, step_text
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import PairMinimum, Record
 
 MOST_PAIRS = 5
@@ -40,7 +41,7 @@ def run_html(record: Record) -> str:
         element("ul", *[element("li", line) for line in beside]),
         table(
             (*HEADS[record.sides[0]], ">mm", ">Step", ">s", *(["Rule"] if several else [])),
-            [_row(p, several=several) for p in record.pair_minima[:MOST_PAIRS]],
+            [_row(p, several=several) for p in motion_minima(record, MOST_PAIRS)],
         ),
     )
 
@@ -53,6 +54,6 @@ def _worst(record: Record) -> str:
 
 
 def _row(pair: PairMinimum, *, several: bool) -> Markup:
-    cells = [pair.link, pair.obstacle, mm(pair.clearance), pair.step, f"{pair.time:.3f}"]
+    cells = [pair.link, pair.obstacle, mm(pair.clearance), step_text(pair), f"{pair.time:.3f}"]
     cells += [pair.rule] if several else []
     return element("tr", *[element("td", cell) for cell in cells])

@@ -44,10 +44,9 @@
     return best;
   }
 
-  const stepText = (i) => {
-    const step = data.steps[i], shown = (k) => k.toLocaleString("en");
-    return data.between[i] ? `between the steps ${shown(step)} and ${shown(step + 1)}` : `step ${shown(step)}`;
-  };
+  const shown = (k) => k.toLocaleString("en");
+  const betweenSteps = (step) => `between the steps ${shown(step)} and ${shown(step + 1)}`;
+  const stepText = (i) => data.between[i] ? betweenSteps(data.steps[i]) : `step ${shown(data.steps[i])}`;
 
   // The rules: with one, nothing is said of it; with several, each frame names its own.
   const several = data.rules.length > 1 || data.rules[0].name !== data.default_rule;
@@ -61,7 +60,7 @@
   // What is shown at this frame: the nearest pair, or the chosen one at the step where it comes closest.
   function told() {
     const pair = chosen === null ? null : data.pairs[chosen];
-    if (pair === null || frame !== frameOfStep(pair.step)) return null;
+    if (pair === null || frame !== (pair.between ? frameOfTime(pair.time) : frameOfStep(pair.step))) return null;
     return pair;
   }
 
@@ -74,7 +73,8 @@
     strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
     strong.style.color = colours[pair ? pair.status : data.status[frame]];
     byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
-      pair ? nameOf(pair) : between(frame), document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
+      pair ? nameOf(pair) : between(frame), document.createElement("br"), pair && pair.between ? `${pair.time.toFixed(3)} s, ${betweenSteps(pair.step)}`
+        : `${times[frame].toFixed(3)} s, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
     if (several) byId("readout").append(document.createElement("br"), ruleText(pair ? pair.rule : ruleOf(frame).name));
     for (const one of inHand(frame)) byId("readout").append(document.createElement("br"), `${one.by} holds ${one.part}`);
     for (const contact of data.contacts) if (contact.frame === frame) {

@@ -143,6 +143,7 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
             "bodies": [first[pair["link"]], second[pair["obstacle"]]],
             "step": pair["step"],
             "time": pair["time"],
+            "between": pair["between"],
             "clearance": pair["clearance"],
             "status": STATUSES.index(Status(pair["status"])),
             "rule": pair["rule"],

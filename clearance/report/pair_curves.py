@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.late_dataclass import dataclass
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import Record
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
@@ -21,7 +22,7 @@ class PairCurves:
 
     Attributes:
         times: (k,) [s] the middle of each stretch; of each step where there are no more.
-        clearances: (p, k) float32 [m], rounded down; pairs as in `Record.pair_minima`; NaN while one is not
+        clearances: (p, k) float32 [m], rounded down; pairs as in `motion_minima`; NaN while one is not
             measured.
     """
 
@@ -42,7 +43,7 @@ def pair_curves(record: Record, kept: MeasuredRows = IN_MEMORY) -> PairCurves | 
     times = record.motions[0].times
     middles = 0.5 * (times[starts] + times[np.append(starts[1:], n_steps) - 1])
     places = {pair: i for i, pair in enumerate(zip(every.links, every.obstacles, strict=True))}
-    order = [places[minimum.link, minimum.obstacle] for minimum in record.pair_minima]
+    order = [places[minimum.link, minimum.obstacle] for minimum in motion_minima(record)]
     return PairCurves(middles, _rounded_down(least.T[order]))
 
 

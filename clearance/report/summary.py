@@ -27,6 +27,7 @@ from clearance.report.verdict import Verdict, verdict_of
 from clearance.report.wording import count
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
+from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.standing import standing_hint
@@ -130,7 +131,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
 def _pairs(record: Record) -> list[dict[str, Any]]:
     """The least clearance of each pair by each rule that judges it, with its status."""
     judge = PairJudge.of(record)
-    return [asdict(one) | {"status": judge.status_of(one)} for one in record.pair_minima]
+    return [asdict(one) | {"status": judge.status_of(one)} for one in motion_minima(record)]
 
 
 def _worst(record: Record, worst: Moment) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from clearance.simulate.moment import Depth, Moment
+from clearance.simulate.record import PairMinimum
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
@@ -187,3 +188,8 @@ def certified_text(certified: dict) -> str:
         return proven
     moment = f"from {seconds(certified['start'])} to {seconds(certified['end'])}"
     return f"{proven}; least {moment}, where {mm(certified['upper_bound'])} mm occurs"
+
+
+def step_text(minimum: PairMinimum) -> str:
+    """The step of a pair's least clearance; with + the one before the moment between two."""
+    return f"{minimum.step}{'+' if minimum.between else ''}"

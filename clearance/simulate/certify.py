@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from clearance.compile.kernel_table import call
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.certify import (
     CertificateGoal,
     CertifiedMotion,
@@ -23,7 +24,7 @@ from clearance.kernels.motion.world import World
 from clearance.late_dataclass import dataclass
 from clearance.ordered import ascending
 from clearance.simulate.certificate import Certificate
-from clearance.simulate.layout import Layout, PairsInMotion
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import HELD
 from clearance.simulate.measurement import COUNTERS, Measurement
 from clearance.simulate.moment import Moment, MomentQuery
@@ -208,17 +209,18 @@ class _Work:
             self.what.layout.world.links, self.what.case, self.what.motions, slice(step, step + 2)
         )
         first = np.maximum(self.question.found.pair[step : step + 1], 0)
-        return prove_path(self.what.layout, path, CertifiedSteps(0, 1, first, asked), aim)
+        layout, steps = self.what.layout, CertifiedSteps(0, 1, first, asked)
+        return prove_path(layout.whole_faces, layout.world, path, steps, aim)
 
 
 def prove_path(
-    layout: Layout, path: JointPath, steps: CertifiedSteps, aim: CertificateGoal
+    surface: Surface, world: World, path: JointPath, steps: CertifiedSteps, aim: CertificateGoal
 ) -> tuple[IntervalBounds, np.ndarray]:
-    """What is proven of all pairs of a layout along a path, and counters as `COUNTERS`."""
+    """What is proven of all pairs of a world along a path, and counters as `COUNTERS`."""
     n, counts = len(path.times) - 1, _no_counts()
     bounds = IntervalBounds(np.empty(n), np.empty(n), np.empty(n), np.empty(n, dtype=np.int64))
-    motion = CertifiedMotion(with_turning_balls(layout.world), path)  # no two threads share it
-    call(certify, layout.whole_faces, motion, steps, aim, bounds, counts)
+    motion = CertifiedMotion(with_turning_balls(world), path)  # no two threads share it
+    call(certify, surface, motion, steps, aim, bounds, counts)
     return bounds, counts
 
 

@@ -47,7 +47,8 @@ class PairMeasurer(Protocol):
 class PairMinimum:
     """The least clearance of one pair over the whole run, as far as one rule judges it.
 
-    `link` and `obstacle` are its two bodies, whatever they are: a link, a part, an obstacle.
+    `link` and `obstacle` are its two bodies, whatever they are: a link, a part, an obstacle. Where it is `between`
+    two steps, `step` is the one before. `proven`: a bound for the motion [m], or None.
     """
 
     link: str
@@ -58,6 +59,8 @@ class PairMinimum:
     point_link: tuple[float, float, float]  # world frame [m]
     point_obstacle: tuple[float, float, float]
     rule: str = DEFAULT
+    between: bool = False
+    proven: float | None = None
 
 
 @dataclass(frozen=True)

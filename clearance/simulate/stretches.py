@@ -78,10 +78,10 @@ class Parts(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RuleStretches:
-    """When the pairs of a rule of a certified run are below one of `LEVELS`."""
+    """When the pairs of a rule of a certified run are below one of `LEVELS`, or below a clearance [m]."""
 
     rule: RuleAnswer
-    level: str
+    level: str | float
 
     @cached_property
     def parts(self) -> Parts:
@@ -152,16 +152,18 @@ def joined_spans(spans: np.ndarray) -> np.ndarray:
     return np.column_stack([spans[first, 0], np.append(reached[first[1:] - 1], reached[-1])])
 
 
-def threshold_of(section: Section, level: str) -> Threshold:
+def threshold_of(section: Section, level: str | float) -> Threshold:
     """What distances of a section, paddings left out, are held against."""
     if level == "contact":
         return Threshold(0.0, strict=True)
     limits = section.limits
-    held = (limits.fail if level == "below_fail" else limits.warn) - limits.rounding
+    named = {"below_fail": limits.fail, "below_warn": limits.warn}
+    distance = named[level] if isinstance(level, str) else level + section.padding
+    held = distance - limits.rounding
     return Threshold(section.padding, True) if held <= section.padding else Threshold(held, False)
 
 
-def _parts_of(i_answer: int, answer: SectionAnswer, level: str) -> Parts:
+def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts:
     """The parts of a section."""
     assert answer.certificate is not None, "the run is certified"
     own = _Intervals(answer, answer.certificate, threshold_of(answer.section, level))
@@ -246,4 +248,5 @@ class _Intervals:
         first = max(self.certificate.pair[step], self.answer.found.pair[step], 0)
         order = np.full(n_parts, first)
         aim = CertificateGoal(PART_GAP, level, MOST_PARTS)
-        return prove_path(what.layout, path, CertifiedSteps(0, n_parts, order, asked), aim)[0]
+        steps = CertifiedSteps(0, n_parts, order, asked)
+        return prove_path(what.layout.whole_faces, what.layout.world, path, steps, aim)[0]

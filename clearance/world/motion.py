@@ -53,6 +53,16 @@ class Motion:
         cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
         return position_on(cubics, np.array(share))[0]
 
+    def positions_at(self, time: float) -> np.ndarray:
+        """(k,) [rad] or [m] where the joints are at a time [s] of the motion."""
+        step = int(
+            np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, self.n_steps - 1)
+        )
+        if self.times[step] == time or step == self.n_steps - 1:
+            return self.positions[step]
+        length = self.times[step + 1] - self.times[step]
+        return self.positions_after(step, float((time - self.times[step]) / length))
+
     def velocities_after(self, step: int, share: float) -> np.ndarray:
         """(k,) [rad/s] or [m/s] how fast the joints then are on their cubics; zeros where they move linearly."""
         if self.velocities is None:

@@ -1,0 +1,114 @@
+"""The least clearance of each pair over the motion, where that is certified; else over the samples.
+
+Not for: the least at the samples (`Record.pair_minima`), which all this begins with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from weakref import WeakKeyDictionary
+
+from clearance.late_dataclass import dataclass
+from clearance.simulate.moment import Moment
+from clearance.simulate.pairs_alone import can_be_alone, least_between, near_alone, near_between
+from clearance.simulate.record import PairMinimum, Record
+from clearance.simulate.rule_answer import RuleAnswer
+
+MOST_INTERVALS = 2**18
+"""Intervals times pairs up to which pairs that do not come near are proven as well, one by one: some seconds."""
+
+_KNOWN: WeakKeyDictionary[Record, dict[int | None, tuple[PairMinimum, ...]]] = WeakKeyDictionary()
+
+
+def motion_minima(record: Record, most: int | None = None) -> tuple[PairMinimum, ...]:
+    """As `Record.pair_minima`, of the motion; the first `most` of them if that is given.
+
+    Pairs that do not come near are of the samples where there are too many to prove each by itself.
+    """
+    known = _KNOWN.setdefault(record, {})
+    if most not in known:
+        known[most] = _found(record, most)
+    return known[most]
+
+
+def _found(record: Record, most: int | None) -> tuple[PairMinimum, ...]:
+    sampled = record.pair_minima[:most]
+    found: list[PairMinimum] = []
+    for rule in record.rules:
+        own = [one for one in sampled if one.rule == rule.name]
+        within = max(rule.limits.warn, rule.limits.fail)
+        if rule.pairs is None or not can_be_alone(rule, within):
+            found += own
+        else:
+            found += _RuleMinima(rule, within).of(own, most)
+    return tuple(sorted(found, key=lambda one: one.clearance)[:most])
+
+
+@dataclass(frozen=True, eq=False)
+class _RuleMinima:
+    """The pairs of a rule; those within [m] are near."""
+
+    rule: RuleAnswer
+    within: float
+
+    def of(self, sampled: Sequence[PairMinimum], most: int | None) -> list[PairMinimum]:
+        """The least of the pairs that are given, and of all others that are among the first `most`."""
+        assert self.rule.pairs is not None
+        near = near_alone(self.rule, self.within)
+        known = {self._places[one.link, one.obstacle]: one for one in sampled}
+        far = {pair: one.clearance for pair, one in known.items() if pair not in near}
+        n_steps = len(self.rule.measurement.clearance)
+        if most is None and n_steps * len(far) > MOST_INTERVALS:
+            far = {}
+        found = dict(known)
+        for pair, answer in near.items():
+            if pair in known or most is not None:
+                assert answer.certificate is not None
+                proven = float(answer.certificate.lower_bound.min())
+                found[pair] = _lesser(known.get(pair), answer.worst, proven)
+        found |= self._proven(far, known)
+        while most is not None and len(found) >= most:
+            level = sorted(one.clearance for one in found.values())[most - 1]
+            new = {p for one in self.rule.pairs.answers for p in near_between(one, level, {*found})}
+            if new <= set(found):
+                break
+            found |= self._proven(dict.fromkeys(new - set(found), level), {})
+        return list(found.values())
+
+    def _proven(
+        self, asked: dict[int, float], known: dict[int, PairMinimum]
+    ) -> dict[int, PairMinimum]:
+        """The least of some pairs, asked about a clearance [m] each, that of the steps where it is known."""
+        told = least_between(self.rule, asked) if asked else {}
+        return {
+            pair: _lesser(known.get(pair), moment, proven)
+            for pair, (proven, moment) in told.items()
+        }
+
+    @cached_property
+    def _places(self) -> dict[tuple[str, str], int]:
+        """The place of each pair among those of the run, by its names."""
+        assert self.rule.pairs is not None
+        places = [place for one in self.rule.pairs.answers for place in one.section.places.tolist()]
+        return dict(zip(self.rule.pairs.names, places, strict=True))
+
+
+def _lesser(sampled: PairMinimum | None, moment: Moment | None, proven: float) -> PairMinimum:
+    """The least of a pair: at a step, if that is known and no moment is nearer."""
+    if sampled is not None and (moment is None or sampled.clearance <= moment.clearance):
+        return replace(sampled, proven=proven)
+    assert moment is not None
+    return PairMinimum(
+        link=moment.link,
+        obstacle=moment.obstacle,
+        clearance=moment.clearance,
+        step=moment.step,
+        time=moment.time,
+        point_link=moment.point_link,
+        point_obstacle=moment.point_obstacle,
+        rule=moment.rule,
+        between=moment.between,
+        proven=proven,
+    )

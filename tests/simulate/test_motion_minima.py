@@ -1,0 +1,100 @@
+"""The least of each pair is of the motion, however coarse the samples; none is hidden by a nearer one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.report.pair_judge import PairJudge
+from clearance.simulate import motion_minima as room
+from clearance.simulate.motion_minima import motion_minima
+from clearance.simulate.pairs_alone import least_between, near_alone
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case
+from tests.made_cases import at
+from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
+from tests.simulate.test_stretches import TWICE, finer
+
+
+def two_posts(post: float = PAST) -> Case:
+    """The arm passes 3 mm above the first post, and 4 mm above another beside it a little later."""
+    one = sweeping(THROUGH, post)
+    other = Obstacle(Body("other", cl.box((0.05, 0.05, 0.476))), at(0.745, 0.06, 0.238))
+    return replace(one, obstacles=(*one.obstacles, other))
+
+
+def statuses(case: Case) -> dict[tuple[str, str], tuple[float, str]]:
+    """The least clearance [m] and the status of each pair."""
+    record = cl.check(case).record
+    judge = PairJudge.of(record)
+    return {
+        (one.link, one.obstacle): (one.clearance, judge.status_of(one))
+        for one in motion_minima(record)
+    }
+
+
+@pytest.mark.parametrize("case", [two_posts(), sweeping(TWICE, 0.47), sweeping(TWICE)])
+def test_pairs_stand_as_at_a_hundred_times_as_many_samples(case):
+    coarse, fine = statuses(case), statuses(finer(case, 100))
+    assert coarse.keys() == fine.keys()
+    for pair, (clearance, status) in coarse.items():
+        assert status == fine[pair][1]
+        assert clearance == pytest.approx(fine[pair][0], rel=0.01, abs=1.1e-4)
+
+
+def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
+    run = cl.check(two_posts())
+    assert {one.body_b for one in run.findings if one.broken} == {"post", "other"}
+    nearest = motion_minima(run.record, 2)
+    assert [one.obstacle for one in nearest] == ["post", "other"]
+    assert nearest[1].between and 0.0038 < nearest[1].proven <= nearest[1].clearance < 0.0041
+    sampled = {one.obstacle: one.clearance for one in run.record.pair_minima}
+    assert sampled["other"] > 0.5
+
+
+def test_the_first_few_are_those_of_all():
+    record = cl.check(sweeping(TWICE, PAST)).record
+    every = motion_minima(record)
+    assert [one.clearance for one in every] == sorted(one.clearance for one in every)
+    for most in (1, 2, 3):
+        few = motion_minima(record, most)
+        assert [(a.link, a.obstacle) for a in few] == [(a.link, a.obstacle) for a in every[:most]]
+
+
+def test_what_is_proven_of_each_pair_is_never_above_many_samples():
+    case = sweeping(TWICE, 0.47)
+    record, dense = cl.check(case).record, cl.check(finer(case, 2000), certify=False).record
+    least = {(one.link, one.obstacle): one.clearance for one in dense.pair_minima}
+    for one in motion_minima(record):
+        assert one.proven <= least[one.link, one.obstacle] <= one.clearance + 1e-12
+
+
+def test_where_pairs_are_too_many_those_that_are_far_are_of_the_samples(monkeypatch):
+    monkeypatch.setattr(room, "MOST_INTERVALS", 0)
+    minima = motion_minima(cl.check(two_posts()).record)
+    found = {one.obstacle: one for one in minima if one.link == "fore"}
+    assert found["other"].proven is not None and found["wall"].proven is None
+
+
+def test_without_a_proof_they_are_of_the_samples():
+    record = cl.check(two_posts(), certify=False).record
+    assert motion_minima(record) == tuple(record.pair_minima)
+
+
+def test_a_pair_alone_has_the_certificate_of_the_rule_where_it_is_the_nearest():
+    rule = cl.check(sweeping(TWICE, PAST)).record.rules[0]
+    for pair, answer in near_alone(rule, 0.02).items():
+        own = rule.certificate.pair == pair
+        assert np.array_equal(
+            answer.certificate.upper_bound[own], rule.certificate.upper_bound[own]
+        )
+        assert (answer.certificate.lower_bound >= rule.certificate.lower_bound).all()
+
+
+def test_a_pair_that_is_not_nearer_than_asked_has_no_moment():
+    rule = cl.check(two_posts()).record.rules[0]
+    for proven, moment in least_between(rule, {0: 0.001, 1: 0.001}).values():
+        assert moment is None and proven > 0.0009
