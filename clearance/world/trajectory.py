@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -102,6 +103,22 @@ class Trajectory:
     def n_steps(self) -> int:
         """Number of samples."""
         return len(self.times)
+
+    def of_columns(self, kept: Sequence[int]) -> Trajectory:
+        """The same of some of its joints, by their columns."""
+        velocities = None if self.velocities is None else self.velocities[:, kept]
+        names = tuple(self.joint_names[i] for i in kept)
+        points = self.points
+        if points is not None:
+            values = (points.positions, points.velocities, points.accelerations)
+            points = Points(points.times, *(one[:, kept] for one in values))
+        return replace(
+            self,
+            joint_names=names,
+            positions=self.positions[:, kept],
+            velocities=velocities,
+            points=points,
+        )
 
     @property
     def written(self) -> Points | Trajectory:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -58,15 +57,10 @@ def without_followers(robot: Robot, found: Trajectory) -> tuple[Trajectory, list
         return found, []
     names = [one.joint.name for one in following]
     kept = [i for i, name in enumerate(found.joint_names) if name not in names]
-    velocities = None if found.velocities is None else found.velocities[:, kept]
-    trajectory = replace(
-        found,
-        joint_names=tuple(found.joint_names[i] for i in kept),
-        positions=found.positions[:, kept],
-        velocities=velocities,
-    )
     told = listed([repr(name) for name in names], 8)
-    return trajectory, [f"columns of joints that follow others agree with these: {told}"]
+    return found.of_columns(kept), [
+        f"columns of joints that follow others agree with these: {told}"
+    ]
 
 
 def _following(robot: Robot, joints: Sequence[str]) -> list[Follower]:

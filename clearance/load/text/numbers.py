@@ -32,6 +32,14 @@ def integers(words: Sequence[AnyStr]) -> np.ndarray:
     return _numbers(words, np.int64, "a whole number")
 
 
+def is_zero(word: str) -> bool:
+    """True for a word that is the number 0."""
+    try:
+        return float(floats([word])[0]) == 0.0
+    except BadSyntax:
+        return False
+
+
 def _numbers(words: Sequence[AnyStr], kind: type[np.generic], wanted: str) -> np.ndarray:
     if not len(words):
         return np.empty(0, dtype=kind)

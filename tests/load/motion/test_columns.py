@@ -172,6 +172,18 @@ def test_a_column_of_a_joint_that_follows_is_taken_where_it_agrees(tmp_path):
         load_small(tmp_path, urdf=FINGERS, trajectory=alone)
 
 
+def test_a_message_with_accelerations_may_tell_of_a_joint_that_follows(tmp_path):
+    """Its own points are those of the joints that are left, as the samples between them are."""
+    point = "{positions: %s, velocities: [0, 0], accelerations: [0.1, -0.2], time_from_start: %d}"
+    points = [point % ([0.01 * i, 0.01 - 0.02 * i], i) for i in range(2)]
+    text = f"joint_names: [lift, other]\npoints: [{', '.join(points)}]\n"
+    case = changed("path.csv", "path.yaml")
+    made = load_small(tmp_path, case, urdf=FINGERS, path__yaml=text).robots[0].trajectory
+    assert made.joint_names == ("lift",) and made.positions.shape == (made.n_steps, 1)
+    assert made.written.positions.tolist() == [[0.0], [0.01]]
+    assert made.written.accelerations.tolist() == [[0.1], [0.1]]
+
+
 FREE = ARM.replace('type="revolute"', 'type="floating"')
 WAY = [
     (0.0, [0, 0, 1], [0, 0, 0, 1]),

@@ -123,6 +123,18 @@ def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(tmp_path
     assert len(told) == 1 and "1 quaternion is rounded to three digits" in told[0]
 
 
+@pytest.mark.parametrize(
+    "shape",
+    ["", "<sphere><radius>0</radius></sphere>", "<box><size>0 0.0 0</size></box>"],
+)
+def test_collisions_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, shape):
+    document = sdf(model(link(collision(), collision(shape, name="d"), "<collision name='e'/>")))
+    assert [*obstacles_of(tmp_path, document)] == ["m/l/c"]
+    (notice,) = content_of(tmp_path, document).notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
+    assert notice.text == "without any size, and not measured: 'm/l/d', 'm/l/e'"
+
+
 def library(folder, name="post", document=None, config=True):
     place = folder / name
     place.mkdir(parents=True)
@@ -242,7 +254,7 @@ def test_a_case_names_it_as_its_scene(tmp_path):
         ('<!DOCTYPE x [<!ENTITY a "b">]>' + "<sdf/>", "a document type or an entity"),
         (sdf(world(), world()), "2 worlds are given"),
         (sdf("<model/>"), "model None: <model> has no name"),
-        (sdf(model(link("<collision name='c'/>"))), "collision 'c': geometry: nothing is given"),
+        (sdf(model(link(collision("<box/><sphere/>")))), "geometry: <box>, <sphere> is given"),
         (
             sdf(model(link(collision("<heightmap/>")))),
             "<heightmap>: it is not read: its surface is a picture",

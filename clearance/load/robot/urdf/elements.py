@@ -7,7 +7,6 @@ Elements that say nothing about shape or motion (inertia, colour, transmission, 
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +16,7 @@ from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles
 from clearance.load.robot.robot_element import robot_element
+from clearance.load.text.numbers import is_zero
 from clearance.world.names import checked_name, require_own_names
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def _has_no_size(element: Element) -> bool:
         return True
     sizes = geometry[0].attrib.values() if geometry[0].tag in _PRIMITIVES else ()
     words = [word for size in sizes for word in size.split()]
-    return bool(words) and all(re.fullmatch(r"[+-]?(0+\.?0*|\.0+)", word) for word in words)
+    return bool(words) and all(is_zero(word) for word in words)
 
 
 def checked_document(root: Element) -> Element:

@@ -13,6 +13,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, at, nearest_name
 from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.scene.sdf.document import numbers_of, text_of
+from clearance.load.text.numbers import is_zero
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -38,12 +39,27 @@ class Geometry(NamedTuple):
     pose: np.ndarray = np.eye(4)
 
 
+def has_no_size(collision: Element) -> bool:
+    """True for a collision without a shape, or with one whose dimensions are all 0.
+
+    One that is flat or a line is left to be refused, since something may come near it.
+    """
+    geometry = collision.find("geometry")
+    if geometry is None or not len(geometry):
+        return True
+    sizes = () if geometry[0].tag in ("mesh", "plane") else geometry[0]
+    words = [word for size in sizes for word in (size.text or "").split()]
+    return bool(words) and all(is_zero(word) for word in words)
+
+
 def geometry_of(collision: Element) -> Geometry | None:
-    """The shape of a collision; None for `<empty>`.
+    """The shape of a collision; None for `<empty>`, and for what `has_no_size`.
 
     Raises:
         BadInput: a shape that is not read, and why; a dimension that no solid has.
     """
+    if has_no_size(collision):
+        return None
     geometry = collision.find("geometry")
     shapes = [] if geometry is None else [str(child.tag) for child in geometry]
     if geometry is None or len(shapes) != 1:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from clearance.load.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
 from clearance.load.scene.sdf.document import n_rounded
+from clearance.load.scene.sdf.geometry import has_no_size
 from clearance.load.scene.sdf.scope import SdfShape
 from clearance.load.text.notes import note_on_rounded
 from clearance.world.notice import Notice, Severity, listed
@@ -70,6 +71,21 @@ def unseen(documents: Sequence[Element]) -> list[Notice]:
         return []
     have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
     text = f"{have} a visual but no collision shape and {are} not measured: {listed(names, 6)}"
+    return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def empty(documents: Sequence[Element]) -> list[Notice]:
+    """A warning on collisions that have no size and are left out."""
+    links = [link for document in documents for link in document.iter("link")]
+    names = [
+        repr(f"{_path(link)}/{collision.get('name')}")
+        for link in links
+        for collision in link.iterfind("collision")
+        if has_no_size(collision)
+    ]
+    if not names:
+        return []
+    text = f"without any size, and not measured: {listed(names, 6)}"
     return [Notice(Severity.WARNING, "geometry", text)]
 
 

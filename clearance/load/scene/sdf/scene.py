@@ -20,7 +20,7 @@ from clearance.load.scene.pose_row import pose_row
 from clearance.load.scene.request import SceneContent, SceneRequest
 from clearance.load.scene.sdf.document import angles_of
 from clearance.load.scene.sdf.include import IncludeReader
-from clearance.load.scene.sdf.notes import notes_on, unseen
+from clearance.load.scene.sdf.notes import empty, notes_on, unseen
 from clearance.load.scene.sdf.scope import Scope, SdfShape
 from clearance.load.scene.sdf.state import require_state_as_placed
 
@@ -47,7 +47,12 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
     return SceneContent(
         {"obstacles": obstacles},
         (*(f"{asked.shown}: {note}" for note in notes), *reader.found.notes()),
-        (*angle_notices(odd), *reader.found.notices(), *unseen(reader.documents)),
+        (
+            *angle_notices(odd),
+            *reader.found.notices(),
+            *unseen(reader.documents),
+            *empty(reader.documents),
+        ),
     )
 
 
