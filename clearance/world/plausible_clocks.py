@@ -1,4 +1,4 @@
-"""Tables of one case that have no time in common: they may be of two clocks, and then never meet in a run.
+"""Tables of one case that may be of two clocks: they never meet in a run, or began apart by their stamps.
 
 Not for: clocks that are said not to be tied (`clocks`).
 """
@@ -11,9 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.notice import Notice, Severity
 from clearance.world.timing import Timing
+
+SKEW = 1e-3
+"""[s] Recordings that begin within it begin together."""
 
 
 class _Table(NamedTuple):
@@ -31,7 +34,9 @@ class _Table(NamedTuple):
 
 
 def notices_on_clocks(case: Case) -> list[Notice]:
-    """The tables that end before others begin, where neither `after` nor `start` of them says so."""
+    """Tables that end before others begin, and recordings that began at other times than they are taken to, where
+    the case does not say so.
+    """
     if case.clock.slack == math.inf:
         return []
     tables, found = sorted(_tables(case)), []
@@ -44,7 +49,30 @@ def notices_on_clocks(case: Case) -> list[Notice]:
                 "one clock? `start:` of the later table, or `after: hold` of the earlier, says that this is meant"
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
-    return found
+    return [*found, *_recordings_apart(case)]
+
+
+def _recordings_apart(case: Case) -> Iterator[Notice]:
+    """The recordings that are taken to begin together, where their stamps say otherwise."""
+    recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
+    recorded.sort(key=_clock_at_start)
+    for later in recorded[1:]:
+        apart = _clock_at_start(later) - _clock_at_start(recorded[0])
+        if apart > SKEW and not later.timing.says_start:
+            start = f"{apart / later.timing.rate:.6g}"
+            text = (
+                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} is {start} s later "
+                f"than that of {recorded[0].robot.name!r}, and is taken from 0 s; `start: {start}` beside its "
+                "file takes it so, `start: 0` says that this is meant"
+            )
+            yield Notice(Severity.SUSPECT, "clocks", text)
+
+
+def _clock_at_start(placed: PlacedRobot) -> float:
+    """[s] What the clock of a recording showed at the run's time 0."""
+    began = placed.given_trajectory.began
+    assert began is not None
+    return began - placed.timing.start * placed.timing.rate
 
 
 def _tables(case: Case) -> Iterator[_Table]:

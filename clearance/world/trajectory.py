@@ -69,6 +69,7 @@ class Trajectory:
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
         path_error: [rad or m] how far joints may be off between samples, and at those that the file does not have.
+        began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
         wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
@@ -88,6 +89,7 @@ class Trajectory:
     wrap: str | None = None
     path_error: float = 0.0
     points: Points | None = None
+    began: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
@@ -143,7 +145,8 @@ class Trajectory:
         holes = (
             replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.holes
         )
-        return replace(self, times=times, holes=tuple(holes), points=own)
+        began = None if self.began is None else self.began - seconds
+        return replace(self, times=times, holes=tuple(holes), points=own, began=began)
 
     def _refuse_bad_samples(self) -> None:
         wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))

@@ -77,3 +77,37 @@ def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
     )
     obstacles = [replace(one, moves=moves) if one is door else one for one in case.obstacles]
     assert not told(replace(case, obstacles=tuple(obstacles)))
+
+
+def two_recordings(folder, apart, *changes):
+    """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
+    files = "joints: {shoulder: 0.2}", "trajectory: path.csv"
+    case = load_cell(folder, *files, *changes)
+    left, right = (
+        replace(one, trajectory=replace(one.given_trajectory, began=EPOCH + late))
+        for one, late in zip(case.robots, (0.0, apart), strict=True)
+    )
+    return replace(case, robots=(left, right))
+
+
+def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
+    assert told(two_recordings(tmp_path, 3.25)) == [
+        "CHECK CLOCKS: by its stamps the recording of robot 'right' is 3.25 s later than that of 'left', and is "
+        "taken from 0 s; `start: 3.25` beside its file takes it so, `start: 0` says that this is meant"
+    ]
+    assert "robot 'left' is 3.25 s later" in told(two_recordings(tmp_path, -3.25))[0]
+    assert not told(two_recordings(tmp_path, 5e-4))
+
+
+@pytest.mark.parametrize("start", [0, 0.5, 3.25])
+def test_a_recording_begins_when_the_case_says(tmp_path, start):
+    said = (
+        "trajectory: path.csv}\nscene",
+        f"trajectory: {{file: path.csv, start: {start}}}}}\nscene",
+    )
+    assert not told(two_recordings(tmp_path, 3.25, *said))
+
+
+def test_a_recording_that_is_shifted_keeps_its_clock(tmp_path):
+    (asked, _) = (one.given_trajectory for one in two_recordings(tmp_path, 0.0).robots)
+    assert asked.shifted(2.0).began == EPOCH - 2.0

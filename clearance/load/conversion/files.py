@@ -95,7 +95,8 @@ def _trajectory(asked: Conversion) -> ConvertedFiles:
         _refuse_holes(trajectory)
         content, changes = trajectory_writer.written(trajectory, asked.target.name)
     n_joints = counted(len(trajectory.joint_names), "joint")
-    told = f"{counted(trajectory.n_steps, 'sample')} of {n_joints}"
+    samples = trajectory_writer.samples_in(trajectory, asked.target.name)
+    told = f"{counted(len(samples.times), 'sample')} of {n_joints}"
     return ConvertedFiles({asked.target.name: content}, told, (*notes, *_of_target(asked, changes)))
 
 

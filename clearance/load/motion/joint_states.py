@@ -96,8 +96,9 @@ def trajectory_of_states(
         for name, track in tracks.items()
     ]
     trajectory = Trajectory(
-        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes, wrap=SHORTEST
-    )
+        (times - start) / NANO, tuple(kept), np.column_stack(positions), holes=holes, wrap=SHORTEST,
+        began=start / NANO,
+    )  # fmt: skip
     return ReadTrajectory(trajectory, tuple(_notes(states, joints, kept, (start, end))))
 
 

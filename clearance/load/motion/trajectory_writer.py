@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from clearance.load.motion.trajectory_file import parse_trajectory
 from clearance.load.table.column_units import VELOCITY
 from clearance.load.table.csv_table import TIME
 from clearance.load.text.yaml_text import flow
-from clearance.world.trajectory import Trajectory
+from clearance.world.trajectory import Points, Trajectory
 
 
 class WrittenTrajectory(NamedTuple):
@@ -42,10 +42,15 @@ def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
         raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
     to_text, in_nanoseconds = WRITERS[suffix]
     content = to_text(trajectory).encode()
-    whole = whole_times(trajectory.times.tolist()) if in_nanoseconds else None
+    whole = whole_times(trajectory.written.times.tolist()) if in_nanoseconds else None
     is_rounded = whole is not None and whole.n_rounded > 0
     _refuse_other(trajectory, content, shown, is_rounded)
     return WrittenTrajectory(content, (whole.note(),) if whole and is_rounded else ())
+
+
+def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:
+    """The samples that a file of this name holds: a message has accelerations, a table the samples between."""
+    return trajectory.written if WRITERS[PurePath(shown).suffix.lower()][1] else trajectory
 
 
 def _csv(trajectory: Trajectory) -> str:
@@ -66,23 +71,36 @@ def _csv(trajectory: Trajectory) -> str:
 def _yaml(trajectory: Trajectory) -> str:
     names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
     lines = [f"joint_names: [{names}]", "points:"]
-    for i, (seconds, nanoseconds) in enumerate(map(split_time, trajectory.times.tolist())):
-        lines.append(f"- positions: {flow(trajectory.positions[i].tolist())}")
-        if trajectory.velocities is not None:
-            lines.append(f"  velocities: {flow(trajectory.velocities[i].tolist())}")
-        lines.append(f"  time_from_start: {{sec: {seconds}, nanosec: {nanoseconds}}}")
+    for point, (seconds, nanoseconds) in _points(trajectory):
+        rows = [f"{key}: {flow(values)}" for key, values in point.items()]
+        rows.append(f"time_from_start: {{sec: {seconds}, nanosec: {nanoseconds}}}")
+        lines += [f"- {rows[0]}", *(f"  {row}" for row in rows[1:])]
     return "\n".join([*lines, ""])
 
 
 def _json(trajectory: Trajectory) -> str:
-    points = []
-    for i, (seconds, nanoseconds) in enumerate(map(split_time, trajectory.times.tolist())):
-        point: dict[str, object] = {"positions": trajectory.positions[i].tolist()}
-        if trajectory.velocities is not None:
-            point["velocities"] = trajectory.velocities[i].tolist()
-        points.append({**point, "time_from_start": {"sec": seconds, "nanosec": nanoseconds}})
+    points = [
+        {**point, "time_from_start": {"sec": seconds, "nanosec": nanoseconds}}
+        for point, (seconds, nanoseconds) in _points(trajectory)
+    ]
     message = {"joint_names": list(trajectory.joint_names), "points": points}
     return json.dumps(message, ensure_ascii=False) + "\n"
+
+
+def _points(trajectory: Trajectory) -> Iterator[tuple[dict[str, list[float]], tuple[int, int]]]:
+    """The values of each point of a message, and its time in seconds and nanoseconds."""
+    columns = {k: v for k, v in _columns(trajectory.written).items() if v is not None}
+    for i, time in enumerate(trajectory.written.times.tolist()):
+        yield {key: values[i].tolist() for key, values in columns.items()}, split_time(time)
+
+
+def _columns(samples: Points | Trajectory) -> dict[str, np.ndarray | None]:
+    accelerations = samples.accelerations if isinstance(samples, Points) else None
+    return {
+        "positions": samples.positions,
+        "velocities": samples.velocities,
+        "accelerations": accelerations,
+    }
 
 
 WRITERS: dict[str, tuple[Callable[[Trajectory], str], bool]] = {
@@ -100,11 +118,12 @@ def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded
         back = parse_trajectory(content, shown)
     except ClearanceError as error:
         raise BadInput(f"the trajectory cannot be written as {shown!r}: {error}") from None
-    same = back.joint_names == trajectory.joint_names and _same(
-        back.positions, trajectory.positions
+    asked = samples_in(trajectory, shown)
+    told, read = _columns(asked), _columns(back.written)
+    same = back.joint_names == trajectory.joint_names and all(
+        _same(told[key], read[key]) for key in told
     )
-    same = same and _same(back.velocities, trajectory.velocities)
-    if not (same and (is_rounded or np.array_equal(back.times, trajectory.times))):
+    if not (same and (is_rounded or np.array_equal(back.written.times, asked.times))):
         raise BadInput(
             f"the names {', '.join(trajectory.joint_names)!r:.80} would be read otherwise from {shown!r}",
             valid="another format",

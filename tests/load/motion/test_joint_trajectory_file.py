@@ -3,7 +3,6 @@
 import json
 from io import BytesIO
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -24,7 +23,6 @@ from clearance.errors import (
 )
 from clearance.load.motion.trajectory_file import parse_trajectory, read_trajectory
 from clearance.load.motion.trajectory_request import Choice, TrajectoryRequest
-from clearance.world.cubic import positions_along
 from tests.examples import examples, some_slow
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small
@@ -366,24 +364,3 @@ def test_the_command_line_says_it_in_one_line(tmp_path, capsys, given, says):
     assert run(["check", str(path)]) == 2
     told = capsys.readouterr().err.strip()
     assert says in told and told.count("\n") == 0
-
-
-def test_accelerations_without_velocities_are_refused():
-    points = [
-        {key: value for key, value in point.items() if key != "velocities"}
-        | {"accelerations": [0, 1]}
-        for point in POINTS
-    ]
-    with pytest.raises(MissingKey, match="points: accelerations without velocities; velocities in"):
-        parse_trajectory(dumped(with_points(*points)).encode(), "path.json")
-
-
-def test_accelerations_of_zero_are_followed_and_not_left_out():
-    """From 0 to 1 in 1 s, at rest and unaccelerated at both ends: 10 s^3 - 15 s^4 + 6 s^5."""
-    rest = {"velocities": [0, 0], "accelerations": [0, 0]}
-    points = [{"positions": [i, 0], "time_from_start": i, **rest} for i in range(2)]
-    found = parse_trajectory(dumped(with_points(*points)).encode(), "path.json")
-    s = np.array([0.1, 0.25, 0.5, 0.9])
-    right = 10 * s**3 - 15 * s**4 + 6 * s**5
-    assert positions_along(found, s)[:, 0] == pytest.approx(right, abs=1e-8)
-    assert 0.0 < found.path_error <= 1.01e-8
