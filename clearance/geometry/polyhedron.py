@@ -25,14 +25,10 @@ from clearance.geometry.faces import (
     flat_faces,
 )
 from clearance.geometry.file_reader import file_reader
+from clearance.geometry.nesting import inside_out_components
 from clearance.geometry.planes import Planes, planes_of
 from clearance.geometry.pose import validated_pose
-from clearance.geometry.topology import (
-    Topology,
-    component_volumes,
-    inside_out_components,
-    topology_of,
-)
+from clearance.geometry.topology import Topology, component_volumes, topology_of
 from clearance.late_dataclass import dataclass
 
 
@@ -295,7 +291,7 @@ class Polyhedron:
         return inside_out_components(self.vertices, self.triangles(), component, holds)
 
     def outward(self) -> Polyhedron:
-        """The surface with closed components that are inside out turned round; cavities stay as they are."""
+        """The surface with closed components that are inside out turned round, as they nest (`nesting`)."""
         wrong = self.component_inside_out
         return self._with_reversed(wrong[self.face_component]) if wrong.any() else self
 

@@ -276,6 +276,13 @@ def test_a_cavity_stays_a_cavity():
     assert mesh.notes == ()
 
 
+def test_a_hollow_mesh_that_is_inside_out_is_turned_with_its_cavity():
+    hollow = np.concatenate([CUBE_CORNERS * 4 - 1.5, CUBE_CORNERS[:, ::-1]])
+    mesh = mesh_from_bytes(binary_stl(hollow[:, ::-1]), "m.stl")
+    assert signed_volume(mesh.shape) == pytest.approx(63)
+    assert mesh.notes == ("2 of its 2 parts were inside out and are turned round",)
+
+
 def test_of_several_parts_those_that_are_inside_out_are_counted():
     corners = np.concatenate(
         [CUBE_CORNERS, CUBE_CORNERS[:, ::-1] + 3.0, CUBE_CORNERS[:, ::-1] + 6.0]
