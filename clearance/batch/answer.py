@@ -36,6 +36,13 @@ STALE = "stale waiver"
 STATUSES = ("clear", "near", STALE, NOT_PROVEN, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
+BASES = {
+    "motion": "proven for the motion",
+    "samples": "looked at the samples only",
+    "pose": "of a single pose",
+}
+"""What verdicts can rest on, in words."""
+
 MOST_WORST = 10
 """Failing cases that a summary names."""
 
@@ -93,9 +100,9 @@ class BatchAnswer:
 
     @property
     def bases(self) -> dict[str, int]:
-        """What verdicts rest on: how many on the motion, how many on the samples only."""
+        """What verdicts rest on: how many on the motion, on the samples only, on a single pose."""
         found = self._summary.bases
-        return {basis: found[basis] for basis in ("motion", "samples") if found[basis]}
+        return {basis: found[basis] for basis in BASES if found[basis]}
 
     @property
     def n_waived(self) -> int:

@@ -14,7 +14,7 @@ from string import Template
 from markupsafe import escape
 
 from clearance import __version__
-from clearance.batch.answer import BatchAnswer
+from clearance.batch.answer import BASES, BatchAnswer
 from clearance.batch.page_data import object_of, page_data
 from clearance.findings.finding import NOT_PROVEN
 from clearance.report.head import head_of
@@ -68,8 +68,7 @@ def _counted(answer: BatchAnswer) -> str:
 
 
 def _basis(answer: BatchAnswer) -> str:
-    told = {"motion": "proven for the motion", "samples": "looked at the samples only"}
-    parts = [f"{n:,} {told[basis]}" for basis, n in answer.bases.items()] or ["nothing measured"]
+    parts = [f"{n:,} {BASES[basis]}" for basis, n in answer.bases.items()] or ["nothing measured"]
     for n, what in ((answer.n_waived, "with waivers"), (answer.n_warned, "with warnings")):
         if n:
             parts.append(f"{n:,} {what}")

@@ -6,14 +6,12 @@ from typing import Any
 
 import click
 
-from clearance.batch.answer import BatchAnswer
+from clearance.batch.answer import BASES, BatchAnswer
 from clearance.batch.output import PAGE
 from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
 from clearance.errors import shown
 from clearance.report.wording import count, depth_mm, mm
-
-_BASES = {"motion": "proven for the motion", "samples": "looked at the samples only"}
 
 
 def print_answer(
@@ -72,7 +70,7 @@ def _print_facts(answer: BatchAnswer) -> None:
     if n_warned := answer.n_warned:
         click.echo(f"  warnings    {count(n_warned, 'case')}, see the page")
     for basis, n in answer.bases.items():
-        click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
+        click.echo(f"  basis       {count(n, 'case')} {BASES[basis]}")
     least = answer.least
     if least is not None:
         near = f"{mm(least['clearance'])} mm"

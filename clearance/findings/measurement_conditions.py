@@ -61,7 +61,7 @@ class MeasurementConditions:
     """How a run was measured.
 
     Attributes:
-        need, method, motion: as in `run.Question`. basis: "motion" or "samples", what the verdict rests on.
+        need, method, motion: as in `run.Question`. basis: as `Record.basis`.
         certify_gap: [m] how far the bound may be below a distance that occurs; None at the samples only.
         clock_slack: [s] how far the actors' clocks may be apart; "not tied" where nothing bounds that.
         pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
@@ -102,7 +102,7 @@ def conditions_of(record: Record) -> MeasurementConditions:
         need=record.need,
         method=record.method,
         motion=record.motion_kind,
-        basis="samples" if certificate is None else "motion",
+        basis=record.basis,
         certify_gap=None if certificate is None else float(certificate.gap),
         clock_slack="not tied" if math.isinf(slack) else float(slack),
         robots=tuple(_robot(record, placed) for placed in record.case.robots),

@@ -13,7 +13,7 @@ from pathlib import Path
 from clearance.findings.finding import Finding
 from clearance.report.finding_text import finding_line
 from clearance.report.trajectory_row import row_of
-from clearance.report.verdict import ACCEPTED, SAMPLES, Verdict
+from clearance.report.verdict import ACCEPTED, POSE, SAMPLES, Verdict
 from clearance.simulate.record import Record
 
 MOST = 10
@@ -50,8 +50,9 @@ def _beside(verdict: Verdict) -> list[str]:
     told = [*verdict.warnings, *(f"waived: {line}" for line in verdict.waived)]
     if verdict.tolerances == ACCEPTED:
         told += [f"not proven, which is accepted: {line}" for line in verdict.with_tolerances]
-    if verdict.basis == SAMPLES:
-        told.append(f"{verdict.text()}: nothing is said about the motion between the samples")
+    for basis, of in ((SAMPLES, "the motion between the samples"), (POSE, "any motion")):
+        if verdict.basis == basis:
+            told.append(f"{verdict.text()}: nothing is said about {of}")
     return told
 
 

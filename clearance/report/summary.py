@@ -205,6 +205,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         "allowed_gap": certificate.gap,
         "greatest_gap": _greatest_gap(certificate),
         "not_measured": [[*span] for span in not_measured(record.case)],
+        "is_pose": record.basis == "pose",
         "tally": dict(certificate.tally),
     }
 

@@ -41,8 +41,8 @@ from clearance.world.rules import DEFAULT
 if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
 
-MOTION, SAMPLES = "motion", "samples"
-"""What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
+MOTION, SAMPLES, POSE = "motion", "samples", "pose"
+"""What a verdict rests on: a proof for the continuous motion, the samples of the trajectory only, or one pose."""
 
 STALE = "stale waiver"
 """The status where all would be well, but for a waiver that has expired or that nothing needs."""
@@ -62,7 +62,7 @@ class Verdict:
             "stale waiver" where a waiver has expired, or is not needed, and all else is well; "not proven" where
             all limits are kept as measured and one is not proven to be with the case's tolerances.
         measured: the status by what was measured alone, less what is waived.
-        basis: "motion" or "samples".
+        basis: "motion", "samples" or "pose", of a run of one step.
         reasons: why it is not clear, one line each.
         unproven: the one of them that says that a limit could not be proven though nothing below it occurs.
         suspects: the notices that make it suspect.
@@ -154,6 +154,8 @@ def verdict_text(
         passing = tolerances == KEPT
     if basis == SAMPLES:
         text += " at the samples only" if passing else ", looked at the samples only"
+    elif basis == POSE:
+        text += " at a single pose"
     if clocks:
         text += f", {clocks}"
     if status in (SUSPECT, STALE):
@@ -195,7 +197,7 @@ def verdict_of(record: Record) -> Verdict:
     return Verdict(
         status=SUSPECT if suspects else _less_open(measured, open_limits, stale),
         measured=measured,
-        basis=SAMPLES if record.certificate is None else MOTION,
+        basis=record.basis,
         reasons=tuple(reasons),
         unproven=unproven,
         suspects=suspects,

@@ -173,6 +173,7 @@ def span_text(start: float, end: float) -> str:
 def least_proven(certified: dict) -> str:
     """The least proven clearance, and of which moments."""
     when = "at every moment that is measured" if certified["not_measured"] else "at every moment"
+    when = "at this pose" if certified["is_pose"] else when
     return f"at least {mm(certified['lower_bound'])} mm {when}"
 
 
@@ -183,6 +184,8 @@ def certified_text(certified: dict) -> str:
         "cubic": "on cubics through the given velocities",
         "quintic": "on quintics through the given velocities and accelerations",
     }[certified["joints"]]
+    if certified["is_pose"]:
+        return least_proven(certified)
     proven = f"{least_proven(certified)}, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven

@@ -238,6 +238,13 @@ class Record(Samples):
     body_gaps: bool = False
     budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 
+    @property
+    def basis(self) -> str:
+        """What the answer is of: "motion" where that is proven, else "samples"; "pose" where nothing moves."""
+        if self.motions[0].n_steps == 1:
+            return "pose"
+        return "samples" if self.certificate is None else "motion"
+
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
         if isinstance(self.contacts, ContactSequence) and len(self.contacts):

@@ -78,6 +78,18 @@ def test_less_that_is_known_and_new_suspect_input_alarm(folder, capsys):
     assert lines[1] == f"{known} (t000 and 3 more)"
 
 
+def test_a_pose_in_place_of_a_motion_is_less(folder, capsys):
+    path = folder / "t000.csv"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:2]))
+    assert run(["batch", "batch.yaml", "--out", "new", "--jobs", "1"]) == 1
+    assert "  basis       1 case of a single pose" in capsys.readouterr().out.splitlines()
+    assert "1 of a single pose" in (folder / "new" / "batch.html").read_text()
+    code, lines = compared(capsys)
+    assert (code, lines[1]) == (
+        1, "less is known: a motion was looked at, and only a single pose is (t000)"
+    )  # fmt: skip
+
+
 def test_cases_that_one_batch_has(folder, capsys):
     write_path(folder / "t004.csv", 0.4)
     write_path(folder / "t005.csv", -0.1)
