@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointExtent, joint_extents, turns
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.notice import START, Notice, Severity, listed
 from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 
@@ -40,7 +40,7 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 def notices_on_motion(
     placed: PlacedRobot, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
-    """What of a robot's motion looks like another unit.
+    """What of a robot's motion looks like another unit, and that it is a goal without a start.
 
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
@@ -49,7 +49,21 @@ def notices_on_motion(
     return [
         *notices_on_positions(joint_extents(placed) if extents is None else extents, before),
         *_suspect(told),
+        *_goal_alone(placed),
     ]
+
+
+def _goal_alone(placed: PlacedRobot) -> list[Notice]:
+    """That all which is asked is to be somewhere at a time after 0: nobody says which way that is."""
+    asked = placed.given_trajectory
+    if asked.n_steps > 1 or asked.times[0] <= 0.0:
+        return []
+    text = (
+        f"the trajectory of robot {placed.robot.name!r} is one goal at {asked.times[0]:.6g} s, and the motion "
+        "there is not measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is "
+        "a single pose"
+    )
+    return [Notice(Severity.SUSPECT, START, text, placed.robot.name)]
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:

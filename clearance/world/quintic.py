@@ -69,8 +69,9 @@ def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajecto
     """
     assert asked.velocities is not None
     _refuse_large(asked, accelerations)
+    points = Points(asked.times, asked.positions, asked.velocities, accelerations)
     if asked.n_steps < 2:
-        return asked
+        return replace(asked, points=points)
     quintics = quintics_of(asked.times, asked.positions, asked.velocities, accelerations)
     fourth = quintics.fourth.max(axis=1, initial=0.0)
     times, interval = _parted(asked.times, np.ceil((fourth / (384.0 * PATH_ERROR)) ** 0.25))
@@ -84,7 +85,7 @@ def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajecto
         positions=np.vstack([positions, asked.positions[-1:]]),
         velocities=np.vstack([velocities, asked.velocities[-1:]]),
         path_error=float(off.max() * (1.0 + 1e-9) + ROUNDING * _size(asked, accelerations)),
-        points=Points(asked.times, asked.positions, asked.velocities, accelerations),
+        points=points,
     )
 
 

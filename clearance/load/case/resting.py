@@ -39,16 +39,26 @@ def resting_positions(
     if not names:
         return StatePositions(dict(by_value), ())
     with at(f"{field}.state"):
-        if given.srdf is None and not robot.states:
-            raise MissingKey(
-                f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file"
-            )
-        srdf = None if given.srdf is None else resolved(given.srdf, folder)
-        known = states_known(srdf, robot, resolved(given.urdf, folder), files)
-        found, notes = positions_in_states(known, names, robot)
+        shown, (found, notes) = positions_asked(entry, names, robot, folder, files)
     taken = {name: found[name] for name in found if name not in by_value and name not in moved}
     others = [name for name in found if name not in taken]
-    return StatePositions({**by_value, **taken}, (*notes, _note(known.shown, names, taken, others)))
+    return StatePositions({**by_value, **taken}, (*notes, _note(shown, names, taken, others)))
+
+
+def positions_asked(
+    entry: schema.RobotEntry, names: Sequence[str], robot: Robot, folder: Path, files: InputFiles
+) -> tuple[str, StatePositions]:
+    """The positions that states give, and the file that they are from, as it is shown.
+
+    Raises:
+        MissingKey: no file names states. BadInput: no such state, or two that do not agree.
+    """
+    given = entry.robot
+    if given.srdf is None and not robot.states:
+        raise MissingKey(f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file")
+    srdf = None if given.srdf is None else resolved(given.srdf, folder)
+    known = states_known(srdf, robot, resolved(given.urdf, folder), files)
+    return known.shown, positions_in_states(known, names, robot)
 
 
 def _note(shown: str, names: Sequence[str], taken: dict[str, float], others: Sequence[str]) -> str:

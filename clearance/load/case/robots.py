@@ -12,6 +12,7 @@ from typing import Any
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load.case.allow import checked_links
 from clearance.load.case.resting import resting_positions
+from clearance.load.case.start_state import with_start
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.formats import read_robot
@@ -73,7 +74,7 @@ class RobotReader:
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
-            self_clearance=self._self_clearance(given, field, robot),
+            self_clearance=self._self_clearance(entry, robot),
             padding=padding,
             motion_limits=limits.motion_limits,
             path_tolerances=limits.path_tolerances,
@@ -123,11 +124,10 @@ class RobotReader:
         robot = self._read[request]
         return robot if name is None else replace(robot, name=name)
 
-    def _self_clearance(
-        self, given: schema.Robot, field: str, robot: Robot
-    ) -> SelfClearance | None:
+    def _self_clearance(self, entry: schema.RobotEntry, robot: Robot) -> SelfClearance | None:
         """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses."""
-        _refuse_idle_excuses(given, field)
+        given, field = entry.robot, entry.field
+        _refuse_idle_excuses(entry)
         if not given.self_clearance:
             return None
         if given.srdf is None:
@@ -154,6 +154,8 @@ def in_motion(
     if asked is not None:
         field = entry.trajectory_field
         trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+        trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)
+        notes = (*notes, *on_start)
         path = str(resolved(asked.file, folder))
         moves = {"trajectory": trajectory, "timing": asked.timing, "trajectory_path": path}
     moved = trajectory.joint_names if trajectory else ()
@@ -163,11 +165,13 @@ def in_motion(
     return replace(placed, **moves), (*notes, *resting.notes, *on_limits)
 
 
-def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:
+def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:
     """Refuses fields about excused pairs where they would excuse nothing."""
+    given, field = entry.robot, entry.field
+    starts = entry.trajectory is not None and isinstance(entry.trajectory.start_state, str | list)
     if not given.self_clearance:
         for key in ("srdf", "trust_never"):
-            if getattr(given, key) and not (key == "srdf" and states_of(given.joints)):
+            if getattr(given, key) and not (key == "srdf" and (states_of(given.joints) or starts)):
                 raise BadInput(
                     "it excuses pairs of links, which are not measured",
                     where=f"{field}.{key}",

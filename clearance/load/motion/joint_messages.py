@@ -24,6 +24,12 @@ _HOLDERS = (
 )
 """Keys under which a message holds another one, or a list of them, that may be a trajectory."""
 
+_OF_BASES = ("multi_dof_joint_trajectory", "multi_dof_trajectory")
+"""Keys of what joints with several degrees of freedom do, beside what the others do."""
+
+READ = (*_HOLDERS, *_OF_BASES)
+"""Keys around a trajectory that are looked into."""
+
 _SHOWN = 8
 """Trajectories listed where one must be chosen."""
 
@@ -33,17 +39,27 @@ class JointMessage(NamedTuple):
 
     Attributes:
         place: the keys that lead to it. trajectory: its keys and values.
-        n_other_points: of joints with several degrees of freedom, beside it.
+        around: the messages that hold it, from the outermost in, each with the keys that lead to it.
     """
 
     place: str
     trajectory: Fields
-    n_other_points: int
+    around: tuple[tuple[str, Fields], ...] = ()
 
     @property
     def n_points(self) -> int:
         """Its points."""
         return _n_points(self.trajectory)
+
+    @property
+    def others(self) -> dict[str, int]:
+        """How many points of joints with several degrees of freedom are beside it, by the keys that lead there."""
+        return {
+            f"{place}.{key}".lstrip("."): _n_points(holder[key])
+            for place, holder in self.around
+            for key in _OF_BASES
+            if isinstance(holder.get(key), Fields) and _n_points(holder[key])
+        }
 
 
 def messages_in(documents: Sequence[Any], most: int) -> list[JointMessage]:
@@ -66,7 +82,7 @@ def messages_in(documents: Sequence[Any], most: int) -> list[JointMessage]:
                 raise BadShape("aliases repeat more than the file holds")
     if not found:
         raise _nothing_found(documents)
-    moving = [one for one in found if one.n_points or one.n_other_points]
+    moving = [one for one in found if one.n_points or one.others]
     if not moving:
         raise BadShape("the trajectory has no points", valid="at least one point is needed")
     return moving
@@ -93,25 +109,25 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
     return messages[which - 1]
 
 
-def _within(given: Any, place: str, level: int = 0) -> Iterator[JointMessage | None]:
+def _within(
+    given: Any, place: str, around: tuple[tuple[str, Fields], ...] = (), level: int = 0
+) -> Iterator[JointMessage | None]:
     """Every trajectory in a message, and nothing for each list, mapping or value looked at on the way."""
     yield None
     if level > DEPTH:
         raise BadShape("aliases nest deeper than the file")
     if isinstance(given, list):
         for i, one in enumerate(given):
-            yield from _within(one, f"{place}[{i}]", level + 1)
+            yield from _within(one, f"{place}[{i}]", around, level + 1)
     if not isinstance(given, Fields):
         return
     if {"joint_names", "points"} <= set(given):
-        yield JointMessage(place, given, 0)
+        yield JointMessage(place, given, around)
         return
-    other = given.get("multi_dof_joint_trajectory")
-    n_other = _n_points(other) if isinstance(other, Fields) else 0
+    around = (*around, (place, given))
     for key in _HOLDERS:
         if key in given:
-            for one in _within(given[key], f"{place}.{key}".lstrip("."), level + 1):
-                yield one if one is None else one._replace(n_other_points=n_other)
+            yield from _within(given[key], f"{place}.{key}".lstrip("."), around, level + 1)
 
 
 def _n_points(message: Fields) -> int:

@@ -25,6 +25,7 @@ from clearance.errors import (
 from clearance.load.message.documents import Fields, told
 from clearance.load.message.times import NANO, nanoseconds_in
 from clearance.load.motion.joint_messages import JointMessage
+from clearance.load.motion.message_beside import notes_on_unread, start_of, with_start
 from clearance.load.motion.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.quintic import with_accelerations
@@ -52,10 +53,10 @@ def trajectory_of_message(
         BadInput: with the line and the keys that lead to what is wrong.
     """
     given = message.trajectory
-    if message.n_other_points:
+    for where, n_points in message.others.items():
         raise BadInput(
-            f"{message.n_other_points} points of joints with several degrees of freedom",
-            where=_place(given, message.place.rpartition(".")[0], "multi_dof_joint_trajectory"),
+            f"{n_points} points of joints with several degrees of freedom",
+            where=_place(given, where),
             valid="robots have joints that turn or slide; a base that moves goes as a joint of the URDF",
         )
     with at(_place(given, message.place, "joint_names")):
@@ -72,8 +73,12 @@ def trajectory_of_message(
             points.append(_point(one, len(names)))
             if i:
                 _refuse_standing(points[-2].time, points[-1].time)
+    start = start_of(message)
     with at(where):
-        return _assembled(names, points)
+        trajectory = _assembled(names, points)
+    trajectory, on_start = with_start(trajectory, start)
+    notes = (*_notes(points, trajectory), *on_start, *notes_on_unread(message, start))
+    return ReadTrajectory(trajectory, notes)
 
 
 def _place(nearest: Any, *keys: str) -> str:
@@ -158,7 +163,7 @@ def _refuse_standing(before: float, time: float) -> None:
         )
 
 
-def _assembled(names: tuple[str, ...], points: list[_Point]) -> ReadTrajectory:
+def _assembled(names: tuple[str, ...], points: list[_Point]) -> Trajectory:
     for key in ("velocities", "accelerations"):
         without = [i for i, point in enumerate(points) if key not in point.values]
         if 0 < len(without) < len(points):
@@ -182,7 +187,7 @@ def _assembled(names: tuple[str, ...], points: list[_Point]) -> ReadTrajectory:
     trajectory = Trajectory(times, names, positions, columns.get("velocities"))
     if "accelerations" in columns:
         trajectory = with_accelerations(trajectory, columns["accelerations"])
-    return ReadTrajectory(trajectory, tuple(_notes(points, trajectory)))
+    return trajectory
 
 
 def _notes(points: list[_Point], trajectory: Trajectory) -> list[str]:
@@ -200,10 +205,6 @@ def _notes(points: list[_Point], trajectory: Trajectory) -> list[str]:
     n_whole = sum(point.lacks_nanoseconds for point in points)
     if n_whole:
         notes.append(f"{n_whole} times are seconds without nanoseconds, which are taken as 0")
-    if first.time > 0.0:
-        notes.append(
-            f"the first point is at {first.time:g} s; how the robot gets there is not in the file"
-        )
     return notes
 
 

@@ -24,9 +24,11 @@ from clearance.load.new_case.scene import NewScene, new_scene
 from clearance.load.new_case.text import TOUCHING, CaseText, text_of
 from clearance.load.robot.srdf_states import NamedStates, names_of, states_known
 from clearance.load.text.notes import counted
+from clearance.load.text.yaml_text import flow
 from clearance.world.case import Case, Source
 from clearance.world.names import checked_name
-from clearance.world.notice import listed
+from clearance.world.notice import START, listed
+from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.trajectory import Trajectory
 
@@ -191,7 +193,10 @@ def _text(
 def _open_keys(robot: NewRobot, trajectory: Trajectory) -> list[tuple[str, str]]:
     """Keys of the trajectory that would answer what is suspect about it, and what that is."""
     moving = replace(robot.placed, trajectory=trajectory)
-    return [("wrap: shortest", f"or as_written: {one.text}") for one in notices_on_wrap(moving)]
+    found = [("wrap: shortest", f"or as_written: {one.text}") for one in notices_on_wrap(moving)]
+    start = flow(dict.fromkeys(trajectory.joint_names, 0.0))
+    goals = (one for one in notices_on_motion(moving) if one.kind == START)
+    return [*found, *((f"start_state: {start}", f"or elsewhere: {one.text}") for one in goals)]
 
 
 def _states(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> NamedStates:

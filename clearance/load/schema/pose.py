@@ -124,10 +124,16 @@ class TrajectoryFile(TimedFile):
     Of a table with other columns besides, `columns` names those that are meant, `{joint: column}` where they are
     called otherwise. `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go
     straight (linear), or are not measured. `wrap` says which way round a continuous joint goes in a step of more
-    than half a turn.
+    than half a turn. `start_state` says where a motion begins at 0 s whose first sample is later: positions, or
+    names of states.
     """
 
-    FILLED = frozenset({"which", "units", "joints", "period", "topic", "gaps", "columns", "wrap"})
+    FILLED = frozenset(
+        (
+            *("which", "units", "joints", "period", "columns", "topic"),
+            *("gaps", "wrap", "start_state"),
+        )
+    )
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None
@@ -139,6 +145,7 @@ class TrajectoryFile(TimedFile):
     columns: (
         Annotated[dict[Name, Name], BeforeValidator(_by_itself), Field(min_length=1)] | None
     ) = None
+    start_state: dict[Name, float] | Name | list[Name] | None = None
 
     @property
     def choice(self) -> Choice:

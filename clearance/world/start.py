@@ -1,0 +1,35 @@
+"""A motion that begins somewhere before the samples of its file. Not for: who says where (`load`)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.world.quintic import with_accelerations
+from clearance.world.trajectory import Points, Trajectory
+
+
+def started(
+    asked: Trajectory, positions: np.ndarray, velocities: np.ndarray | None = None
+) -> Trajectory:
+    """The trajectory after a sample at 0 s, from which joints go to the first as they go between samples.
+
+    Args:
+        positions: (k,) [rad] or [m]. velocities: (k,) where it has some; at rest if not given.
+
+    Raises:
+        BadTime: it begins at 0 s or before.
+    """
+    own, at_rest = asked.written, np.zeros_like(positions)
+    rates = own.velocities
+    if rates is not None:
+        rates = np.vstack([at_rest if velocities is None else velocities, rates])
+    times = np.concatenate(([0.0], own.times))
+    made = replace(
+        asked, times=times, positions=np.vstack([positions, own.positions]), velocities=rates,
+        path_error=0.0, points=None,
+    )  # fmt: skip
+    if not isinstance(own, Points):
+        return made
+    return with_accelerations(made, np.vstack([at_rest, own.accelerations]))
