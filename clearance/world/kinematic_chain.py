@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.late_dataclass import dataclass
-from clearance.world.mimics import followers
+from clearance.world.mimics import followers, range_of
 from clearance.world.robot import Joint, JointKind, Robot
 
 
@@ -41,20 +41,20 @@ class KinematicChain:
         joints: in order from the first link to the second.
         end: (4, 4) the second link in the frame of the last joint [m].
         masters: the joints that are free to move; others follow them.
+        ranges: (k, 2) from where to where each of these can be [rad or m], all that follow it within their limits.
     """
 
     joints: tuple[ChainJoint, ...]
     end: np.ndarray
     masters: tuple[Joint, ...]
+    ranges: np.ndarray
 
     @property
-    def sliding(self) -> tuple[Joint, ...]:
-        """Those of the masters that slide between finite limits."""
-        return tuple(
-            joint
-            for joint in self.masters
-            if joint.kind is JointKind.PRISMATIC and np.isfinite(joint.upper - joint.lower)
-        )
+    def longest_slides(self) -> float:
+        """[m] how far the masters that slide between finite limits can be from their zero, added up."""
+        slides = [joint.kind is JointKind.PRISMATIC for joint in self.masters]
+        ranges = self.ranges[np.array(slides, dtype=bool)]
+        return float(np.abs(ranges[np.isfinite(ranges).all(axis=1)]).sum())
 
     def frames(self, positions: np.ndarray) -> np.ndarray:
         """(n, joints + 1, 4, 4) poses in the frame of the first link [m]: of each joint, then of the second link.
@@ -100,7 +100,8 @@ def chain_between(robot: Robot, link_a: str, link_b: str) -> KinematicChain:
             before = np.eye(4)
         if goes_up:
             before = before @ np.linalg.inv(joint.parent_from_joint)
-    return KinematicChain(tuple(joints), before, tuple(by_name[name] for name in masters))
+    ranges = np.array([range_of(robot, name) for name in masters]).reshape(-1, 2)
+    return KinematicChain(tuple(joints), before, tuple(by_name[name] for name in masters), ranges)
 
 
 def _ways_to_root(above: dict[str, Joint], link: str) -> list[Joint]:

@@ -5,6 +5,7 @@ Not for: what a file may say (`load.robot.urdf.joints`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -36,6 +37,27 @@ def followers(robot: Robot) -> tuple[Follower, ...]:
     """
     found = masters_of(robot.joints)
     return tuple(found[joint.name] for joint in robot.joints if joint.kind is not JointKind.FIXED)
+
+
+def range_of(robot: Robot, master: str) -> tuple[float, float]:
+    """From where to where a joint [rad or m] and all that follow it keep their limits.
+
+    Infinite where nothing limits it; the first is above the second where no position keeps all limits.
+
+    Raises:
+        UnknownJoint, BadInput: as `masters_of`.
+    """
+    low, high = -math.inf, math.inf
+    for joint, leader, factor, offset in followers(robot):
+        if leader != master or joint.kind is JointKind.CONTINUOUS:
+            continue
+        if factor == 0.0:
+            if not joint.lower <= offset <= joint.upper:
+                return math.inf, -math.inf
+            continue
+        ends = sorted((end - offset) / factor for end in (joint.lower, joint.upper))
+        low, high = max(low, ends[0]), min(high, ends[1])
+    return low, high
 
 
 @lru_cache(maxsize=8)

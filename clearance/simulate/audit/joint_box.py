@@ -109,7 +109,7 @@ class JointBox:
         poses = [*(joint.before for joint in chain.joints), chain.end]
         size = sum(float(np.linalg.norm(pose[:3, 3])) for pose in poses)
         size += sum(float(np.abs(shape.bounds).sum()) for shape in (shape_a, shape_b))
-        size += sum(abs(joint.upper) + abs(joint.lower) for joint in chain.sliding)
+        size += chain.longest_slides
         corners = _hull_corners(shape_a), _hull_corners(shape_b)
         return cls(chain, *corners, _box_corners(shape_b.bounds), SLACK * size)
 

@@ -17,7 +17,7 @@ from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
 from clearance.simulate.audit.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
 from clearance.world.kinematic_chain import KinematicChain, chain_between
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind, Robot
 
 GAP = 1e-4
 """[m] Links that come nearer than this without being seen to meet may stay undecided."""
@@ -77,7 +77,8 @@ class PairFinding:
 def audit_pair(robot: Robot, link_a: str, link_b: str, most_boxes: int = MOST_BOXES) -> PairFinding:
     """Whether two links with geometry can meet, at any positions of the joints between them.
 
-    Joints that follow others are where these take them. Joints that turn without limits are looked at over a turn.
+    Joints that follow others are where these take them, all within their limits. Joints without limits are looked at
+    over a turn.
     """
     search = _Search(robot, link_a, link_b)
     status, lower_bound, why = search.answer(most_boxes)
@@ -102,10 +103,10 @@ class _Search:
 
     def answer(self, most_boxes: int) -> tuple[PairStatus, float, str]:
         """What is known of the pair, [m] a proven lower bound, and why it is undecided."""
-        ranges = _ranges(self.chain)
-        if not np.isfinite(ranges).all():
+        ranges, why = _ranges(self.chain)
+        if why:
             self._look(np.zeros((1, len(ranges))))
-            return PairStatus.UNDECIDED, 0.0, "a joint between them slides without limits"
+            return PairStatus.UNDECIDED, 0.0, why
         whole = PositionBoxes(ranges.mean(axis=1)[None], 0.5 * np.ptp(ranges, axis=1)[None])
         self._look_around(whole)
         lower_bound, why = self._proven(whole, most_boxes) if self.least > 0.0 else (0.0, "")
@@ -189,16 +190,28 @@ class _Search:
         return bounds, motion
 
 
-def _ranges(chain: KinematicChain) -> np.ndarray:
-    """(k, 2) from where to where each free joint can be; a turn where it turns without limits."""
-    return np.array([_range(joint) for joint in chain.masters]).reshape(-1, 2)
+def _ranges(chain: KinematicChain) -> tuple[np.ndarray, str]:
+    """(k, 2) from where to where each free joint is looked at, and why that is not known."""
+    ranges = chain.ranges.copy()
+    for column, joint in enumerate(chain.masters):
+        low, high = ranges[column]
+        if low > high:
+            return (
+                ranges,
+                f"no position of {joint.name!r} keeps the limits of all joints that follow it",
+            )
+        if not math.isfinite(high - low):
+            if not _is_round(chain, column):
+                how = "slides" if joint.kind is JointKind.PRISMATIC else "moves others"
+                return ranges, f"a joint between them {how} without limits"
+            ranges[column] = -math.pi, math.pi
+    return ranges, ""
 
 
-def _range(joint: Joint) -> tuple[float, float]:
-    turns = joint.kind is not JointKind.PRISMATIC
-    if turns and not math.isfinite(joint.upper - joint.lower):
-        return -math.pi, math.pi
-    return joint.lower, joint.upper
+def _is_round(chain: KinematicChain, column: int) -> bool:
+    """True if all that a free joint moves is as it was after a turn of it."""
+    own = [joint for joint in chain.joints if joint.column == column]
+    return all(joint.turns and joint.factor == round(joint.factor) for joint in own)
 
 
 def _spread(whole: PositionBoxes, n: int) -> np.ndarray:
