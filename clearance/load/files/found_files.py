@@ -17,6 +17,7 @@ class FoundFiles:
     def __init__(self) -> None:
         self._by_variable: dict[str, dict[str, str]] = {}
         self._stand_ins: dict[str, dict[str, str]] = {}
+        self._elsewhere: dict[str, str] = {}
 
     def add(self, given: str, found: MeshPath, shown: str) -> None:
         """Keeps where a file was found, where that is to be told.
@@ -26,12 +27,18 @@ class FoundFiles:
         """
         if found.variable:
             self._by_variable.setdefault(found.variable, {}).setdefault(given, shown)
+        if found.elsewhere and not found.package:
+            self._elsewhere[given] = shown
         if found.package:
             self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
 
     def notes(self) -> list[str]:
-        """A line for each variable of the environment that led to files."""
-        return notes_on_variables(self._by_variable)
+        """A line for each variable of the environment that led to files, and on paths of another machine."""
+        notes = notes_on_variables(self._by_variable)
+        if self._elsewhere:
+            told = _first(self._elsewhere, "is read from ")
+            notes.append(f"a path of another machine, in the same package here: {told}")
+        return notes
 
     def notices(self) -> list[Notice]:
         """Suspect input for each package that is not there: the files that stand in for its own."""

@@ -93,6 +93,7 @@ class InputFiles:
             n_bytes = os.fstat(file.fileno()).st_size
             if n_bytes <= SHORT:
                 content = file.read()
+                _refuse_pointer(content, self.shown(path))
                 digest, n_bytes = hashlib.sha256(content).hexdigest(), len(content)
             else:
                 digest = hashlib.file_digest(file, "sha256").hexdigest()
@@ -128,6 +129,9 @@ class InputFiles:
         return _below(whole, self._place) or relative_path(Path(whole), self.folder)
 
 
+_POINTER = b"version https://git-lfs.github.com/spec/"
+
+
 def read_bytes(path: Path, shown: str) -> bytes:
     """The content of the file at `path`, called `shown` in the error.
 
@@ -135,7 +139,16 @@ def read_bytes(path: Path, shown: str) -> bytes:
         MissingFile: it is not there, is no file on disk, or cannot be read.
     """
     with _openable(shown), regular_file(path) as file:
-        return file.read()
+        data = file.read()
+    _refuse_pointer(data, shown)
+    return data
+
+
+def _refuse_pointer(data: bytes, shown: str) -> None:
+    if data.startswith(_POINTER):
+        raise MissingFile(
+            f"{shown!r} is a pointer of git LFS, the file itself is not there", valid="git lfs pull"
+        )
 
 
 def require_file(path: Path, shown: str) -> None:

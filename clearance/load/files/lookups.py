@@ -32,7 +32,8 @@ def note_lookup(
     found: Path | None,
 ) -> None:
     """Keeps among the files of a case what a name led to; None for nothing. A plain path needs no search."""
-    if kind not in (PACKAGE, OPTIONAL) and "://" not in given:
+    moved = Path(given).is_absolute() and found is not None and found != Path(given)
+    if kind not in (PACKAGE, OPTIONAL) and "://" not in given and not moved:
         return
     dirs = [os.path.abspath(one) for one in package_dirs]
     asked = json.dumps([kind, given, os.path.abspath(folder), dirs])

@@ -28,39 +28,94 @@ _VARIABLES = {
 """Variables that list folders with packages, and the folder in each of these in which the packages are."""
 
 
+_BUILT = ("build", "log")
+"""What colcon and catkin leave in a workspace beside the packages."""
+
+MOST_FOLDERS = 20_000
+"""Below a folder that is given; some 0.3 s."""
+
+
 class MeshPath(NamedTuple):
     """A mesh file.
 
     Attributes:
         package: the package that the file was asked of and is not in; empty where it is.
         variable: the variable of the environment that led to it, if one did.
+        elsewhere: it was asked of a path on another machine, and is in the same package here.
     """
 
     path: Path
     package: str = ""
     variable: str = ""
+    elsewhere: bool = False
 
 
 def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     """The file that `given` means.
 
-    `package://x/y` is y in the package x, which is looked for in each of the package folders, in the file's
-    folder and those above it, and where the variables of ROS and Gazebo say. Without the package, y and then y
-    without its leading parts is looked for in the package folders and the file's folder: the longest match stands
-    in.
+    `package://x/y` is y in the package x, which is looked for in each of the package folders and all below them,
+    in the file's folder and those above it, and where the variables of ROS and Gazebo say. An absolute path that
+    is not there is looked for in the same way, by each of its folders as the package. Without the package, y and
+    then y without its leading parts is looked for in the package folders and the file's folder: the longest match
+    stands in.
 
     Raises:
         MissingFile: no such file, with the places tried. BadSyntax: a scheme that is not known.
     """
     scheme, separator, rest = given.partition("://")
-    if not separator:
-        return _existing(given, [urdf_folder / given.replace("\\", "/")])
-    if scheme in _PACKAGE_SCHEMES:
+    if separator and scheme in _PACKAGE_SCHEMES:
         return _in_package(given, rest, urdf_folder, package_dirs)
-    if scheme == "file":
-        path = unquote(urlsplit(given).path)
-        return _existing(given, [Path(path), urdf_folder / path.lstrip("/")])
-    raise BadSyntax(f"{given!r} is given", valid="package://, file:// or a path is needed")
+    if separator and scheme != "file":
+        raise BadSyntax(f"{given!r} is given", valid="package://, file:// or a path is needed")
+    if not separator:
+        places = [(urdf_folder / given.replace("\\", "/"), "")]
+    else:
+        places = [*_file_places(given, urdf_folder, package_dirs)]
+    for place, variable in places:
+        if _is_file(place):
+            return MeshPath(place, variable=variable)
+    return _on_another_machine(given, _file_path(given), urdf_folder, package_dirs)
+
+
+def _file_path(given: str) -> str:
+    """The path in `file://…`, which has no host of its own, or the path that is given."""
+    if "://" not in given:
+        return given.replace("\\", "/")
+    parts = urlsplit(given)
+    return unquote(parts.path if parts.netloc in ("", "localhost") else parts.netloc + parts.path)
+
+
+def _file_places(
+    given: str, folder: Path, package_dirs: Sequence[Path]
+) -> Iterator[tuple[Path, str]]:
+    """Where `file://…` may lie, and the variable that names each: a path that does not begin with / is of a
+    resource, as Gazebo has it.
+    """
+    path = _file_path(given)
+    if path.startswith("/"):
+        yield Path(path), ""
+    near = [(one, "") for one in (folder, *package_dirs)]
+    for place, variable in (*near, *_from_variables()):
+        yield place / path.lstrip("/"), variable
+
+
+def _on_another_machine(
+    given: str, path: str, folder: Path, package_dirs: Sequence[Path]
+) -> MeshPath:
+    """The file of the same package, for an absolute path that is of another machine.
+
+    Raises:
+        MissingFile: no folder of the path is a package that is here.
+    """
+    parts = PurePosixPath(path).parts[1:] if path.startswith("/") else ()
+    for i, package in enumerate(parts[:-1]):
+        for place, variable in _package_folders(package, folder, package_dirs):
+            if _is_file(place.joinpath(*parts[i + 1 :])):
+                proven = (place / "package.xml").is_file()
+                found = place.joinpath(*parts[i + 1 :])
+                return MeshPath(found, "" if proven else package, variable, elsewhere=True)
+    remedy = "give the folder of its package in robot.package_dirs" if parts else ""
+    raise MissingFile(f"there is no mesh {given!r}", valid=remedy)
 
 
 def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
@@ -86,10 +141,13 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
         raise BadSyntax(
             f"{given!r} is given", valid="model://, file:// or a path; nothing is fetched"
         )
-    path = Path(unquote(urlsplit(given).path)) if separator else folder / given
-    if not _is_there(path):
-        raise MissingFile(f"there is no model {given!r}")
-    return MeshPath(path)
+    places = [(folder / given, "")]
+    if separator:
+        places = [*_file_places(given, folder, package_dirs)]
+    for place, variable in places:
+        if _is_there(place):
+            return MeshPath(place, variable=variable)
+    raise MissingFile(f"there is no model {given!r}")
 
 
 def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
@@ -101,9 +159,14 @@ def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> 
     Raises:
         MissingFile: no such folder, with the places tried.
     """
-    for place, variable in _package_folders(package or " ", folder, package_dirs):
-        if _is_there(place) and place.is_dir():
-            return MeshPath(place, variable=variable)
+    found = [
+        (place, variable)
+        for place, variable in _package_folders(package or " ", folder, package_dirs)
+        if _is_there(place) and place.is_dir()
+    ]
+    with_manifest = [one for one in found if (one[0] / "package.xml").is_file()]
+    for place, variable in (*with_manifest, *found):
+        return MeshPath(place, variable=variable)
     raise MissingFile(
         f"there is no package {package!r}; looked for it {_places(folder, package_dirs)}",
         valid="give its folder in robot.package_dirs",
@@ -153,15 +216,26 @@ def _package_folders(
         if _is_package(folder, package):
             yield folder, variable
         if folder in package_dirs:
-            yield from (
-                (below, "") for below in _packages_in(folder) if _is_package(below, package)
-            )
+            yield from ((below, "") for below in _below(folder) if _is_package(below, package))
 
 
-def _packages_in(folder: Path) -> list[Path]:
-    """The packages in a folder, as a workspace has them, whatever their folders are called."""
+def _below(folder: Path) -> Iterator[Path]:
+    """The folders below one, the highest first, at most `MOST_FOLDERS`: of a workspace, its `src` or `install`."""
+    level, n_left = [folder], MOST_FOLDERS
+    while level and n_left > 0:
+        level = [below for place in level for below in _folders_in(place)][:n_left]
+        n_left -= len(level)
+        yield from level
+
+
+def _folders_in(folder: Path) -> list[Path]:
+    """What may hold packages: nothing that is hidden, or that building leaves behind."""
     try:
-        return sorted(below for below in folder.iterdir() if (below / "package.xml").is_file())
+        return sorted(
+            below
+            for below in folder.iterdir()
+            if below.is_dir() and not below.name.startswith(".") and below.name not in _BUILT
+        )
     except OSError:
         return []
 
@@ -203,10 +277,3 @@ def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:
         f"in robot.package_dirs ({dirs}), in the file's folder and the {n_above} above it, "
         f"in {' and '.join([*ros, *others])}"
     )
-
-
-def _existing(given: str, candidates: list[Path]) -> MeshPath:
-    for candidate in candidates:
-        if _is_file(candidate):
-            return MeshPath(candidate)
-    raise MissingFile(f"there is no mesh {given!r}")

@@ -4,6 +4,7 @@ import pytest
 
 from clearance.errors import MissingFile
 from clearance.load.files import mesh_paths
+from clearance.load.files.input_files import InputFiles
 from clearance.world.notice import Severity
 from tests.load.making import cube_stl
 from tests.load.making_urdf import collision, link, load_urdf, robot
@@ -99,3 +100,79 @@ def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     assert f"robot.package_dirs ('given'), in the file's folder and the {n_above} above it" in told
     assert "$ROS_PACKAGE_PATH (/opt/ws/src) and $AMENT_PREFIX_PATH (not set)" in told
     assert "\n" not in told
+
+
+def package(folder, name="arms"):
+    """A package with its manifest and a mesh."""
+    part(folder / "meshes" / "part.stl")
+    (folder / "package.xml").write_text(f"<package><name>{name}</name></package>")
+
+
+WORKSPACES = [
+    ("ws", "ws/src/robots/arm_files"),
+    ("ws/src", "ws/src/robots/arm_files"),
+    ("ws", "ws/install/arms/share/arms"),
+    ("ws/install", "ws/install/arms/share/arms"),
+    ("ws/install", "ws/install/share/arms"),
+    ("ws", "ws/a/b/c/d/arms"),
+]
+
+
+@pytest.mark.parametrize(("given", "place"), WORKSPACES)
+def test_a_workspace_is_searched_all_the_way_down(tmp_path, given, place):
+    (tmp_path / "case").mkdir()
+    package(tmp_path / place)
+    part(tmp_path / "ws" / "build" / "arms" / "meshes" / "part.stl")
+    (tmp_path / "ws" / "install" / "other").mkdir(parents=True, exist_ok=True)
+    found = load_urdf(tmp_path / "case", ASKED, [tmp_path / given])
+    assert found.bodies[0].origin == f"../{place}/meshes/part.stl" and found.notices == ()
+    asked = "arms", tmp_path / "case", [tmp_path / given]
+    assert mesh_paths.package_folder(*asked).path == tmp_path / place
+
+
+def test_the_highest_folder_of_a_name_comes_first(tmp_path):
+    (tmp_path / "case").mkdir()
+    package(tmp_path / "ws" / "src" / "arms")
+    package(tmp_path / "ws" / "a" / "test" / "arms")
+    found = load_urdf(tmp_path / "case", ASKED, [tmp_path / "ws"])
+    assert found.bodies[0].origin == "../ws/src/arms/meshes/part.stl"
+
+
+@pytest.mark.parametrize(
+    "before", ["file:///home/jane/ws/src", "/home/jane/ws/src", "file://localhost/opt"]
+)
+def test_a_path_of_another_machine_is_looked_for_by_its_package(tmp_path, before):
+    given = f"{before}/arms/meshes/part.stl"
+    asked = robot(link(collision(f'<mesh filename="{given}"/>')))
+    folder = tmp_path / "case"
+    folder.mkdir()
+    with pytest.raises(MissingFile, match=r"there is no mesh .*; give the folder of its package"):
+        load_urdf(folder, asked)
+    package(tmp_path / "here" / "arms-2")
+    (tmp_path / "here" / "arms-2" / "package.xml").write_text(
+        "<package><name>arms</name></package>"
+    )
+    found = load_urdf(folder, asked, [tmp_path / "here"])
+    shown = "../here/arms-2/meshes/part.stl"
+    assert found.bodies[0].origin == shown and found.notices == ()
+    told = f"a path of another machine, in the same package here: {given} is read from {shown}"
+    assert found.notes == (told,)
+
+
+def test_a_folder_that_is_only_called_as_on_another_machine_is_suspect(tmp_path):
+    part(tmp_path / "meshes" / "part.stl")
+    asked = robot(link(collision('<mesh filename="file:///home/jane/arms/meshes/part.stl"/>')))
+    (notice,) = load_urdf(tmp_path, asked).notices
+    assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
+    assert "file:///home/jane/arms/meshes/part.stl is taken from meshes/part.stl" in notice.text
+
+
+def test_a_pointer_of_git_lfs_is_named_as_such(tmp_path):
+    part(tmp_path / "arms" / "meshes" / "part.stl")
+    pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+    (tmp_path / "arms" / "meshes" / "part.stl").write_bytes(pointer)
+    with pytest.raises(MissingFile, match=r"part\.stl' is a pointer of git LFS.*; git lfs pull"):
+        load_urdf(tmp_path, ASKED)
+    (tmp_path / "path.csv").write_bytes(pointer)
+    with pytest.raises(MissingFile, match=r"'path\.csv' is a pointer of git LFS"):
+        InputFiles(tmp_path).unread(tmp_path / "path.csv")

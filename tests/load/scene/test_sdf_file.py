@@ -164,6 +164,26 @@ def test_included_models_are_found_and_placed(tmp_path):
     assert content_of(tmp_path, document, [tmp_path / "models"]).notes == ()
 
 
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "file://models/post",
+        "file://post",
+        "file://{}/models/post",
+        "file://localhost{}/models/post",
+    ],
+)
+def test_a_model_and_a_mesh_may_be_named_as_a_file(tmp_path, uri):
+    library(tmp_path / "models")
+    (tmp_path / "models" / "cube.stl").write_bytes(cube_stl())
+    mesh = link(
+        collision(f"<mesh><uri>{uri.format(tmp_path).replace('post', 'cube.stl')}</uri></mesh>")
+    )
+    document = sdf(world(include(uri=uri.format(tmp_path)), model(at(2), mesh)))
+    places = places_of(tmp_path, document, [tmp_path / "models"])
+    assert places == {"post/l/c": 1, "m/l/c": 2}
+
+
 def test_a_merged_model_gives_its_links_to_what_includes_it(tmp_path):
     library(tmp_path)
     document = sdf(
