@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.budget.expected import expected_of_steps
+from clearance.budget.expected import expected_between, expected_of_steps
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
@@ -95,12 +95,13 @@ def _of_section(
     what, found = answer.section.in_motion, answer.found
     pairs = PairsWithErrors(what, budget, resources.n_threads, rooms)
     steps = proven_of_steps(pairs, found)
-    between = None
+    between = expected_there = None
+    expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
     if answer.certificate is not None:
         between = proven_between(pairs, steps, answer.certificate.gap)
-    expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
+        expected_there = expected_between(found, answer.certificate, expected)
     expected = np.maximum(expected, steps.proven)  # no estimate says less than a proof
-    return SectionBudget(answer, pairs, steps, between, expected)
+    return SectionBudget(answer, pairs, steps, between, expected, expected_there)
 
 
 def _of_rule(
@@ -108,6 +109,7 @@ def _of_rule(
 ) -> RuleBudget:
     proven, expected = np.full(n_steps, np.inf), np.full(n_steps, np.nan)
     between = None if any(s.between is None for s in sections) else np.full(n_steps, np.inf)
+    there = np.full(n_steps, np.nan)
     for one in sections:
         rows = one.section.steps
         padding = one.section.padding
@@ -118,8 +120,10 @@ def _of_rule(
             last = one.section.phase.last == n_steps - 1
             held = slice(rows.start, rows.stop if last else rows.stop - 1)
             np.minimum(between[held], own if last else own[:-1], out=between[held])
+            np.fmin(there[rows], one.expected_between - padding, out=there[rows])
     limits = rule_limits(case, rule, [one.section for one in sections])
-    return RuleBudget(name, limits, proven, expected, between, WorstMoments(name, limits, sections))
+    worst = WorstMoments(name, limits, sections)
+    return RuleBudget(name, limits, proven, expected, between, worst, there)
 
 
 def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from clearance.budget.sources import Slope, Witness, slopes
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.measurement import Measurement
 from clearance.simulate.parts import blocks
 from clearance.world.budget import Budget
@@ -62,6 +63,21 @@ def expected_of_steps(
             taken = budget.coverage * deviations(case, budget, witness)
             expected[steps] = found.clearance[steps] - taken
     return expected
+
+
+def expected_between(
+    found: Measurement, certificate: Certificate, expected: np.ndarray
+) -> np.ndarray:
+    """(n,) [m] the same of the least moment after each step, NaN where none is nearer than the steps.
+
+    Errors take as much there as at the nearer end, as far as that is known. It is never more than what occurs.
+    """
+    clearance = np.where(np.isnan(found.clearance), np.inf, found.clearance)
+    taken = np.nan_to_num(clearance - expected, nan=0.0, posinf=0.0)
+    after = np.append(np.arange(1, len(clearance)), len(clearance) - 1)
+    nearer = np.where(clearance[after] < clearance, taken[after], taken)
+    left = certificate.upper_bound - np.where(certificate.touches(slice(None)), 0.0, nearer)
+    return np.where(certificate.pair >= 0, left, np.nan)
 
 
 def witness_of(

@@ -18,7 +18,8 @@ class SectionBudget:
     Attributes:
         answer: what was measured. pairs: with their errors.
         steps: proven at each step. between: of the motion from each to the next; None where nothing is certified.
-        expected: (n,) [m].
+        expected: (n,) [m]. expected_between: of the least moment after each, NaN where the steps are nearer; None
+            as `between`.
     """
 
     answer: SectionAnswer
@@ -26,6 +27,7 @@ class SectionBudget:
     steps: BudgetRows
     between: BudgetRows | None
     expected: np.ndarray
+    expected_between: np.ndarray | None
 
     @property
     def section(self) -> Section:

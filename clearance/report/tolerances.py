@@ -58,16 +58,18 @@ def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
         left = "contact is not ruled out"  # a number below 0 says no depth
     told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
     if expected is not None:
-        spread = f"{budget.coverage:g} sigma, estimate at the samples"
+        spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
         told += f" Expected ({spread}): {mm(expected)} mm."
     return told
 
 
 def least_expected(one: RuleBudget) -> float | None:
-    """[m] The least expected clearance of all steps, never told below what is proven: three deviations of a single
-    uniform error are more than its worst. None where it is not worked out.
+    """[m] The least expected clearance, of the motion where that is certified. None where it is not worked out.
+
+    Never told below what is proven: three deviations of a single uniform error are more than its worst.
     """
-    known = one.expected[np.isfinite(one.expected)]
+    found = np.append(one.expected, [] if one.expected_between is None else one.expected_between)
+    known = found[np.isfinite(found)]
     return max(float(known.min()), one.least) if len(known) else None
 
 

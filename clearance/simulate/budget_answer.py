@@ -75,6 +75,8 @@ class RuleBudget:
         between: (n,) [m] as `proven`, of the motion from each step to the next; None where nothing is certified.
         worst: the moments that the errors bring nearest, the worst first; worked out when first
             looked at.
+        expected_between: (n,) [m] as `expected`, of the least moment after each step; NaN where no moment is
+            nearer than the steps, or nothing is certified.
     """
 
     rule: str
@@ -83,6 +85,7 @@ class RuleBudget:
     expected: np.ndarray
     between: np.ndarray | None
     worst: Sequence[BudgetMoment]
+    expected_between: np.ndarray | None = None
 
     @cached_property
     def least(self) -> float:

@@ -22,8 +22,9 @@ def least_between(budget: Sequence[RuleBudget]) -> np.ndarray | None:
 
 
 def least_expected(budget: Sequence[RuleBudget]) -> np.ndarray:
-    """(n,) [m] what is expected at each step, of all rules; NaN where it is not worked out."""
-    return np.fmin.reduce([one.expected for one in budget])
+    """(n,) [m] what is expected from each step to the next, of all rules; NaN where it is not worked out."""
+    between = [one.expected_between for one in budget if one.expected_between is not None]
+    return np.fmin.reduce([*(one.expected for one in budget), *between])
 
 
 def with_proven_between(

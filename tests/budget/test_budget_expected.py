@@ -7,12 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.budget.expected import deviations, expected_of_steps, witness_of
 from clearance.budget.sources import slopes, units_of
+from clearance.report.tolerances import least_expected
 from clearance.simulate.measure import measure
-from clearance.world.budget import Budget
+from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
 from tests.oracle.perturbed import Perturbed, Size, sizes
+from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
 
 COVERAGE = 3.0
 N_SAMPLES = 2000
@@ -173,3 +176,17 @@ def test_without_errors_the_clearance_is_expected():
     assert (
         expected_of_steps(case, loose, section.phase.motions, section.pairs, found) < expected
     ).all()
+
+
+@pytest.mark.parametrize("height", [1.0, PAST, 0.47])
+def test_what_is_expected_of_a_motion_is_never_more_than_what_occurs_in_it(height):
+    """Of two samples half a metre away from what the arm passes between them, and of 401."""
+    joints = {"shoulder": JointTolerance(1e-3), "elbow": JointTolerance(1e-3)}
+    budget = Budget({"arm": RobotTolerance(joints, PlacementTolerance(1e-3))})
+    coarse, fine = (
+        cl.check(sweeping(positions, height), tolerance=budget).record
+        for positions in (THROUGH, np.linspace(*THROUGH, 401))
+    )
+    found, truth = (least_expected(record.budget[0]) for record in (coarse, fine))
+    assert found <= coarse.worst.clearance < 0.02
+    assert found == pytest.approx(truth, abs=1e-3)

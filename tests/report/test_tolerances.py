@@ -74,7 +74,7 @@ def test_what_is_left_is_told_in_words_that_can_be_signed():
     kept = with_budget(NEAR, 0.0001, between=True)
     assert verdict_of(kept).with_tolerances == (
         "With every error at its worst at once at least 0.176 mm are left; proven for the motion. "
-        "Expected (3 sigma, estimate at the samples): 0.342 mm.",
+        "Expected (3 sigma, estimate): 0.342 mm.",
     )
     (line,) = verdict_of(OPEN).with_tolerances
     assert "contact is not ruled out; proven for the samples only" in line
