@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from markupsafe import Markup
 
 from clearance.gains.answer import Gain
@@ -18,12 +19,14 @@ from clearance.gains.change_parts import (
     proven_bound,
 )
 from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
-from clearance.report.comparison_chart import chart
+from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
 from clearance.report.plain_page import plain_page
 from clearance.report.wording import limit_mm, mm, moment_text, seconds
 from clearance.run import Run
+from clearance.simulate.record import Record
+from clearance.simulate.replay.curve_moments import curve_moments
 
 NAMES = ("before", "after")
 
@@ -65,7 +68,7 @@ def _badge(gain: Gain) -> str:
 def _curves(gain: Gain) -> Markup:
     letters = ("a", "b")
     runs = (gain.before, gain.after)
-    curves = [curve_of(name, run.record.steps) for name, run in zip(NAMES, runs, strict=True)]
+    curves = [motion_curve(name, run.record) for name, run in zip(NAMES, runs, strict=True)]
     key = [
         element("span", element("i"), name, class_=letter)
         for letter, name in zip(letters, NAMES, strict=True)
@@ -78,12 +81,21 @@ def _curves(gain: Gain) -> Markup:
     )
     what = element(
         "p",
-        "The least clearance of each step"
+        "The least clearance at the steps, and between them where it is less or they are far apart"
         + (f"; the line is the limit with the margin of {limit_mm(gain.request.margin)} mm."
            if gain.request.margin else "; the line is the limit."),
         class_="faint",
     )  # fmt: skip
     return section("Clearance over time", picture, element("div", *key, class_="key"), what)
+
+
+def motion_curve(name: str, record: Record) -> ClearanceCurve:
+    """The curve of a record, with the moments between its steps that are known."""
+    steps, moments = curve_of(name, record.steps), curve_moments(record)
+    times = np.append(steps.times, [moment.time for moment in moments])
+    clearances = np.append(steps.clearances, [moment.clearance for moment in moments])
+    order = np.argsort(times, kind="stable")
+    return ClearanceCurve(name, times[order], clearances[order])
 
 
 def _moved(gain: Gain) -> Markup:

@@ -215,6 +215,24 @@ def measure(
     return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
+def nearest_at(what: PairsInMotion, positions: np.ndarray) -> StepRows:
+    """The nearest pair at any positions (k, columns) [rad or m], columns as `world.forest` has them."""
+    n_rows, n_pairs, layout = len(positions), len(what.pairs), what.layout
+    rows, counts = _rows_of(None, slice(0, n_rows)), np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
+    call(
+        sweep,
+        layout.surface,
+        layout.world,
+        SweptSteps(np.ascontiguousarray(positions), np.arange(n_rows), _NO_STEPS),
+        Goal(np.full(n_pairs, np.inf), False, False),
+        FirstLook(_NO_STEPS, FIRST_EFFORT),
+        SweepRows(rows, _no_pair_rows(n_pairs, 0)),
+        counts,
+    )
+    layout.to_world(positions, rows.pair, rows.points)
+    return rows
+
+
 class NearestPairs(NamedTuple):
     """The nearest pair of some steps (n,), -1 where none is known, and how far apart it is (n,) [m]."""
 

@@ -318,8 +318,8 @@ def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_pa
     run.save(tmp_path / "out")
     json.loads((tmp_path / "out" / "summary.json").read_text())
     replay = replay_of(run.record)
-    assert [i for i, known in enumerate(replay.known) if not known] == [2]
-    assert replay.nearest[2].tolist() == [-1, -1]
+    assert replay.steps[replay.known == 0].tolist() == [2]
+    assert replay.nearest[replay.known == 0].tolist() == [[-1, -1]]
     assert (
         "Infinity"
         not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]

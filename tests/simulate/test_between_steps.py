@@ -153,13 +153,25 @@ def test_a_step_below_a_limit_makes_no_other_step_of_a_minimum_violated():
 def test_the_replay_stops_at_the_moment_with_the_right_bodies():
     run = cl.check(sweeping([[-1.2, 0.0], *THROUGH]))
     replay = replay_of(run.record)
-    assert replay.steps.tolist() == [0, 1, 1, 2] and replay.between.tolist() == [0, 0, 1, 0]
-    assert replay.i_worst == 2 and replay.times[2] == run.worst["time"]
-    assert [replay.bodies[i].name for i in replay.nearest[2]] == ["fore", "post"]
+    worst = replay.i_worst
+    assert (replay.steps[worst], replay.between[worst]) == (1, 1)
+    assert replay.times[worst] == run.worst["time"] and replay.status[worst] == 3
+    assert [replay.bodies[i].name for i in replay.nearest[worst]] == ["fore", "post"]
     shoulder = run.record.worst.positions[0][0]
-    turn = replay.poses[1][2]
+    turn = replay.poses[1][worst]
     assert 2.0 * np.arctan2(turn[5], turn[6]) == pytest.approx(shoulder, abs=1e-6)
-    assert replay.status.tolist() == [0, 0, 3, 0]
+
+
+def test_the_replay_goes_the_way_between_far_samples_with_what_is_measured_there():
+    case = sweeping([[-1.2, 0.0], *THROUGH], PAST)
+    replay, record = replay_of(cl.check(case).record), cl.check(case).record
+    assert (np.diff(replay.times) > 0.0).all() and np.diff(replay.times).max() <= 4.0 / 199
+    shoulders = np.interp(replay.times, [0.0, 2.0, 4.0], [-1.2, -1.0, 1.0])
+    there = cl.check(sweeping(np.column_stack([shoulders, 0.0 * shoulders]), PAST), certify=False)
+    assert replay.clearances == pytest.approx(there.record.clearances, abs=1e-12)
+    assert replay.steps[replay.between == 0].tolist() == [0, 1, 2]
+    lowest = replay.clearances[(replay.times > 3.0 - 0.01) & (replay.times < 3.0 + 0.01)]
+    assert lowest.min() == pytest.approx(record.worst.clearance, abs=1e-9) and len(lowest)
 
 
 def test_two_robots_name_the_one_that_comes_near():

@@ -22,28 +22,8 @@ from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.simulate.status import STATUSES
 from clearance.simulate.steps import between_of
 
-MOST_MOMENTS = 500
-"""Most moments between steps that are frames of their own, the least first."""
-
 FEW_RUNS = 64
 """Runs of rows that are taken by slices."""
-
-
-def kept_moments(record: Record) -> list[Moment]:
-    """The moments between steps at which the motion is worse than at both, that which stands worst, and the
-    nearest of all."""
-    if record.certificate is None:
-        return []
-    rows = RowStatus(record)
-    seen = [one.certificate.pair for one in record.rules if one.certificate is not None]
-    seen_there = np.array(seen)[rows.rule_between, np.arange(record.steps.num_rows)] >= 0
-    steps = np.flatnonzero(rows.between & seen_there)
-    least_first = steps[np.argsort(rows.margin[steps], kind="stable")][:MOST_MOMENTS]
-    found = {int(step): rows.moment_between(int(step)) for step in least_first}
-    for moment in (record.nearest, record.worst):
-        if moment.between:
-            found[moment.step] = moment
-    return [found[step] for step in sorted(found)]
 
 
 @dataclass(frozen=True, eq=False)

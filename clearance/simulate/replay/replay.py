@@ -31,7 +31,8 @@ from clearance.simulate.replay.bodies import (
     shape_index,
 )
 from clearance.simulate.replay.contact import DrawnContact, drawn_contacts
-from clearance.simulate.replay.frames import ReplayFrames, kept_moments, least_of
+from clearance.simulate.replay.curve_moments import curve_moments
+from clearance.simulate.replay.frames import ReplayFrames, least_of
 from clearance.simulate.row_status import rule_places
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.world.case import Case
@@ -187,10 +188,10 @@ def replay_of(
 ) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
-    the deepest contact, and where something changes hands, comes or goes; and moments between them
-    where the motion is worse."""
+    the deepest contact, and where something changes hands, comes or goes; and moments between them:
+    where the motion is nearer, and on the way where steps are far apart."""
     kept = kept_steps(record, max_frames)
-    moments = kept_moments(record)
+    moments = curve_moments(record)
     contacts, regions = drawn_contacts(record, kept)
     frames = ReplayFrames.of(record, kept, moments, rows)
     indices = bodies_of(record.case)
@@ -225,9 +226,9 @@ def _once(values: np.ndarray) -> np.ndarray:
 
 def _frame_of(moment: Moment, frames: ReplayFrames) -> int:
     """The frame of a moment."""
-    is_it = (frames.arrays["steps"] == moment.step) & (
-        frames.arrays["between"] == int(moment.between)
-    )
+    arrays = frames.arrays
+    is_it = (arrays["steps"] == moment.step) & (arrays["between"] == int(moment.between))
+    is_it &= ~np.array(moment.between) | (arrays["times"] == moment.time)
     return int(np.argmax(is_it))
 
 
