@@ -40,21 +40,23 @@ def answer_profiles(case: Case, timeline: Timeline) -> tuple[ProfileAnswer, ...]
                 links=space.links or None,
                 section=space.section,
             )
-            found.append(_answer(space, swept))
+            found.append(_answer(space, swept, timeline.path_error))
     return tuple(found)
 
 
-def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
+def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> ProfileAnswer:
+    """The answer; a gap is less by what paths may be off [m]."""
     curve = space.sketch.curves()
     require_closed(curve, "sketch")
     sketch, outline = ClosedContours.of_curve(curve), ClosedContours.of(swept.contours)
     if space.mode == "nearest":
         whole = hausdorff(curve, swept.curve)
         gap, ends = whole.distance, np.stack([whole.point_b, whole.point_a])
-        passed, contained = gap + whole.error_bound <= space.limit, False
+        passed, contained = gap + whole.error_bound + path_error <= space.limit, False
     else:
         around = space.mode == "outside"
         gap, least = proven_gap(sketch, outline, around=around)
+        gap -= path_error
         contained, ends = gap > 0.0, np.stack([least.point_b, least.point_a])
         passed = contained and gap >= space.limit
         if not contained:

@@ -9,15 +9,18 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import UnknownLink, UnknownObstacle
+from clearance.profiles.answer import answer_profiles
 from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.swept_bodies import over_time, swept_bodies
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot, ReservedSpace
+from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.rules import matches
+from clearance.world.timeline import timeline_of
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
 from tests import cells
@@ -282,6 +285,11 @@ def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
     assert answer.passed == answer.contained == kept
     assert (answer.link, answer.step) in {("part", 1), ("part", 2)}
     assert answer.gap == pytest.approx(top - 1.1, abs=1e-3)
+    line = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    off = [replace(phase, case=replace(phase.case, path_error=1e-3)) for phase in line.phases]
+    (lessened,) = answer_profiles(case, replace(line, phases=tuple(off)))
+    if kept:
+        assert lessened.gap == pytest.approx(answer.gap - 1e-3, abs=1e-12)
 
 
 def test_patterns_of_links_and_what_they_carry():

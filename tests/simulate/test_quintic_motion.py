@@ -12,6 +12,8 @@ from clearance.load.case.case_file import load_case
 from clearance.simulate.checker import Checker
 from clearance.tolerance import CERTIFY_GAP, PATH_ERROR
 from clearance.world.cubic import positions_along
+from clearance.world.joint_positions import joint_courses
+from clearance.world.joint_speeds import greatest_rates
 from clearance.world.pairs import selected_pairs
 from clearance.world.path_error import path_error_of
 from clearance.world.plausibility import notices_of
@@ -168,6 +170,7 @@ def pose_in(phase, step, name):
     return BodyIndex(OBSTACLE, names.index(name)).poses_in(phase.case, poses)[0]
 
 
+@pytest.mark.slow
 def test_a_receipt_proves_it_again(tmp_path):
     found = there_and_back(tmp_path)
     run = cl.check(found)
@@ -176,17 +179,27 @@ def test_a_receipt_proves_it_again(tmp_path):
     assert cl.verify(folder, found).proven
 
 
-def test_joints_at_their_limits_are_not_beyond_them_for_the_way_they_are_followed(tmp_path):
-    """The cart goes to 0.1 m exactly, at 0.308 m/s and 3.2 m/s^2 at most."""
-    fastest = 1.6 * 2.0 / 3.0**1.5 * 0.5  # of s^2 (1 - s)^2, at s = (1 - 1 / sqrt(3)) / 2
-    limit = URDF.replace('upper="5"', 'upper="0.1"').replace(
-        'velocity="9"', f'velocity="{fastest!r}"'
-    )
-    rest = np.zeros((2, 1))
-    path = message(["rail"], [0.0, 1.0], rest, rest, np.full((2, 1), 3.2))
+def test_a_joint_that_goes_to_its_limit_is_not_beyond_it_for_the_way_it_is_followed(tmp_path):
+    """s - s^4 is greatest at s^3 = 1/4, where the cubics are above it by up to the path error."""
+    highest = 0.25 ** (1.0 / 3.0) * 0.75
+    ends = np.array([[0.0], [0.0]]), np.array([[1.0], [-3.0]]), np.array([[0.0], [-12.0]])
+    path = message(["rail"], [0.0, 1.0], *ends)
+    limit = URDF.replace('upper="5"', f'upper="{highest!r}"')
     assert not [
         one for one in notices_of(case(tmp_path, CART, limit, path)) if one.kind == "limits"
     ]
+    lower = URDF.replace('upper="5"', f'upper="{highest - 2e-8!r}"')
+    assert [one for one in notices_of(case(tmp_path, CART, lower, path)) if one.kind == "limits"]
+
+
+def test_a_joint_is_no_faster_and_accelerates_no_more_than_its_quintic(tmp_path):
+    """10 s^3 - 15 s^4 + 6 s^5: 15/8 in the middle, 10 / sqrt(3) where its fourth derivative has another sign."""
+    ends = np.array([[0.0], [1.0]]), np.zeros((2, 1)), np.zeros((2, 1))
+    (placed,) = case(tmp_path, CART, URDF, message(["rail"], [0.0, 1.0], *ends)).robots
+    (course,) = joint_courses(placed)
+    speed, acceleration = (one.max() for one in greatest_rates(course, placed.given_trajectory))
+    assert 0.999 * 15 / 8 <= speed <= 15 / 8
+    assert 0.99 * 10 / 3**0.5 <= acceleration <= 10 / 3**0.5
 
 
 @pytest.mark.parametrize(
