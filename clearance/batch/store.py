@@ -26,7 +26,7 @@ from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
 from clearance.late_dataclass import dataclass
-from clearance.report.folder import write_file, written_file
+from clearance.report.folder import is_partial, write_file, written_file
 
 FORMAT = 1
 _SEGMENTS, _HASHES, _LOCK = "segments", "files.parquet", ".lock"
@@ -218,8 +218,9 @@ def _require_store(place: Path, make: bool) -> None:
             fault, where=str(place), valid="a folder that `clearance batch` keeps rows in"
         )
     mark = place / MARK
-    if not mark.exists():
-        if make and not any(path.name != _SEGMENTS for path in place.iterdir()):
+    nothing_else = all(_is_of_beginning(path.name) for path in place.iterdir())
+    if not mark.exists():  # asked last: what other batches write, they write once it is there
+        if make and nothing_else:
             return
         raise Unwritable(
             "is a folder of something else", where=str(place), valid="a new folder, or a store"
@@ -234,6 +235,11 @@ def _require_store(place: Path, make: bool) -> None:
             where=str(place),
             valid=f"one of format {FORMAT}, or a new folder",
         )
+
+
+def _is_of_beginning(name: str) -> bool:
+    """True for what is in a store before its mark is: the folder of segments, and marks that are being written."""
+    return name == _SEGMENTS or is_partial(name, MARK)
 
 
 def _make(place: Path) -> None:

@@ -25,6 +25,7 @@ from clearance.errors import unwritable
 LAST = "summary.json"
 _EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
 _HERE = -100  # AT_FDCWD
+_PARTIAL = ".partial"
 
 
 def fill_folder(
@@ -46,7 +47,7 @@ def fill_folder(
         as_a_whole = not folder.is_dir() or _is_only_a_report(folder, own)
         beside = room or (folder.parent if as_a_whole else folder)
         beside.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".report-", suffix=".partial", dir=beside))
+        staging = Path(tempfile.mkdtemp(prefix=".report-", suffix=_PARTIAL, dir=beside))
         try:
             fresh = staging / "fresh"
             fresh.mkdir()
@@ -85,6 +86,11 @@ def write_file(path: Path, content: bytes) -> None:
         file.write(content)
 
 
+def is_partial(name: str, of: str) -> bool:
+    """True for the name of a file that `written_file` has begun and not put in the place of the file `of`."""
+    return name.startswith(f".{of}-") and name.endswith(_PARTIAL)
+
+
 @contextmanager
 def written_file(path: Path) -> Iterator[BinaryIO]:
     """A file to be written part by part, which is there once it is closed; whole or not at all.
@@ -95,7 +101,7 @@ def written_file(path: Path) -> Iterator[BinaryIO]:
     with unwritable(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, partial = tempfile.mkstemp(
-            prefix=f".{path.name}-", suffix=".partial", dir=path.parent
+            prefix=f".{path.name}-", suffix=_PARTIAL, dir=path.parent
         )
         try:
             with os.fdopen(handle, "wb") as file:
