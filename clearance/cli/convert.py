@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath, package_dir_option
+from clearance.cli.options import INCLUDE_OPTION, OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
@@ -33,6 +33,7 @@ _KINDS = ("trajectory", "scene", "poses")
 )
 @click.option("--topic", help="Which topic of a bag.")
 @package_dir_option("package:// and model:// of a scene are")
+@INCLUDE_OPTION
 @click.option(
     "--force", is_flag=True, help="Overwrite OUT, and meshes beside it, where they are there."
 )
@@ -43,6 +44,7 @@ def convert(
     which: int | None,
     topic: str | None,
     package_dirs: tuple[Path, ...],
+    includes: tuple[tuple[str, str], ...],
     force: bool,
 ) -> int:
     """IN as OUT, by suffix: a trajectory as a CSV table or a JointTrajectory message in YAML or JSON; poses as a
@@ -58,12 +60,13 @@ def convert(
     from clearance.load.conversion.files import Conversion, converted
     from clearance.load.files.input_files import InputFiles
     from clearance.load.motion.trajectory_request import Choice
+    from clearance.load.scene.request import includes_of
 
     _require_place(in_file, out_file)
     refuse_there([out_file], force=force)
-    asked = Conversion(
-        in_file, out_file, InputFiles(in_file.parent), Choice(which, topic=topic), package_dirs
-    )
+    files, choice = InputFiles(in_file.parent), Choice(which, topic=topic)
+    said = includes_of(dict(includes), Path())
+    asked = Conversion(in_file, out_file, files, choice, package_dirs, said)
     found = kind_of(in_file, asked.files) if kind is None else FileKind(kind)
     made = converted(asked, found)
     read: list[str | Path] = [in_file, *(one.read_from for one in asked.files.sources)]

@@ -11,7 +11,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
-from clearance.cli.options import XACRO_OPTIONS, ColumnsParamType, OutputPath
+from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, ColumnsParamType, OutputPath
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
 
@@ -82,6 +82,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
 )
 @click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
+@INCLUDE_OPTION
 @click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
 @click.option(
     "--rest",
@@ -118,6 +119,7 @@ def new(
     columns: dict[str, str] | None,
     states: list[str] | None,
     scene: str | None,
+    includes: tuple[tuple[str, str], ...],
     srdf: str | None,
     rest: tuple[str, ...],
     joint_limits: str | None,
@@ -160,7 +162,7 @@ def new(
     asked = _given(motion)
     if asked and (states or trajectory is None):
         raise click.UsageError(_only_one(states, [*asked]))
-    given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene)
+    given = NewCaseRequest(_given(keys), asked or None, states or (), rest, scene, dict(includes))
     made = _proposing(new_case(given, out_dir))
     _write(made, out_dir, force)
     _print(made, out_dir, at_once)

@@ -94,6 +94,31 @@ def package_dir_option(told: str) -> Callable[..., Any]:
     )
 
 
+class IncludeParamType(click.ParamType):
+    """A model that a scene includes, and what is taken for it: `URI=skip`, `URI=PATH`."""
+
+    name = "include"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Both; the URI may hold the sign too."""
+        uri, _, model = value.rpartition("=")
+        if not uri or not model:
+            self.fail(f"{value!r} is not URI=skip or URI=PATH", param, ctx)
+        return uri, model
+
+
+INCLUDE_OPTION = click.option(
+    "--include",
+    "includes",
+    metavar="URI=skip|PATH",
+    multiple=True,
+    type=IncludeParamType(),
+    help="Leave a model out that an SDF scene includes, or take another for it; may be given again.",
+)
+
+
 def accept_option(which: str) -> Callable[..., Any]:
     """The option that takes kinds of suspect input as they are; `which` verdict they then do not decide."""
     return click.option(

@@ -17,7 +17,7 @@ from clearance.errors import BadInput
 from clearance.gains.answer import Gain
 from clearance.gains.shift import first_pose
 from clearance.gains.turn import ARM, Pivot
-from clearance.load.case.case_document import ScenePlace, read_schema
+from clearance.load.case.case_document import ScenePlace, read_schema, scene_request
 from clearance.load.case.case_file import read_case
 from clearance.load.case.rewritten_case import Node, rewritten_case, robot_node, robots_of
 from clearance.load.files.input_files import InputFiles, resolved
@@ -235,11 +235,12 @@ class _Files:
 
         raw = parse_yaml(self.read.read(self.file), self.file.name)
         assert isinstance(raw, dict)
-        return SceneRequest(resolved(str(raw["scene"]), self.file.parent), self.read)
+        return scene_request(raw, self.file.parent, self.read)
 
     def _with_scene(self, node: Node) -> None:
         """Names the scene's new file, and says what the old one said of robots and of what may touch."""
         node["scene"] = SCENE
+        node.pop("includes", None)  # the new file has what they say
         for key, rows in _of_scene(self.gain, self.given, self.scene_at):
             node[key] = [*node.get(key, ()), *rows]
         for robot, given, placed in zip(

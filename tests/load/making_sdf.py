@@ -59,3 +59,16 @@ def places_of(folder, document, package_dirs=()):
     """The x [m] of each obstacle, by name."""
     made = obstacles_of(folder, document, package_dirs)
     return {name: round(float(one.world_from_body[0, 3]), 12) for name, one in made.items()}
+
+
+def library(folder, name="post", document=None, config=True):
+    place = folder / name
+    place.mkdir(parents=True)
+    (place / "model.sdf").write_text(document or sdf(model(at(1), link(collision()), name=name)))
+    if config:
+        rows = '<sdf version="1.12">new.sdf</sdf><sdf version="1.5">model.sdf</sdf>'
+        (place / "model.config").write_text(f"<model>{rows}<sdf>old.sdf</sdf></model>")
+
+
+def include(*parts, uri="model://post", attributes=""):
+    return f"<include{attributes}><uri>{uri}</uri>{''.join(parts)}</include>"

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from clearance.errors import at
+from clearance.errors import BadInput, at
 from clearance.late_dataclass import dataclass
 from clearance.load.files.foreign_files import refuse_foreign
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.scene.formats import read_scene, with_own_words
-from clearance.load.scene.request import SceneContent, SceneRequest
+from clearance.load.scene.request import SceneContent, SceneRequest, includes_of
 from clearance.load.schema import case as schema
 from clearance.load.schema.errors import validated
 from clearance.load.text.yaml_file import parse_yaml
@@ -52,24 +52,40 @@ def read_schema(
         raw = {**raw, "scene": scene_at.content.scene}
         return validated(model, raw, path.name), scene_at
     case = validated(model, raw, path.name)
+    if case.includes:
+        raise BadInput(
+            "the scene stands in the case itself, and includes nothing",
+            where=f"{path.name}: includes",
+            valid="includes of a scene in an SDF file",
+        )
     return case, replace(scene_at, content=with_own_words(scene_at.content, case.scene))
 
 
 def _scene_of(raw: dict[str, object], path: Path, files: InputFiles) -> ScenePlace:
     with at(f"{path.name}: scene"):
-        scene_path = resolved(str(raw["scene"]), path.parent)
-        package_dirs = tuple(resolved(text, path.parent) for text in _package_dirs(raw))
-        asked = SceneRequest(scene_path, files, package_dirs)
+        asked = scene_request(raw, path.parent, files)
         content = read_scene(asked)
     return ScenePlace(
         f"{path.name}: scene: {asked.shown}",
-        scene_path.parent,
+        asked.path.parent,
         f"scene: {asked.shown}: ",
         content,
     )
 
 
-def _package_dirs(raw: dict[str, object]) -> Iterator[str]:
+def scene_request(raw: Mapping[str, object], folder: Path, files: InputFiles) -> SceneRequest:
+    """What is asked of the reader of the scene that a case names; the case is not checked yet.
+
+    Args:
+        folder: of the case file.
+    """
+    package_dirs = tuple(resolved(text, folder) for text in _package_dirs(raw))
+    includes = raw.get("includes")
+    said = includes_of(includes, folder) if isinstance(includes, dict) else {}
+    return SceneRequest(resolved(str(raw["scene"]), folder), files, package_dirs, said)
+
+
+def _package_dirs(raw: Mapping[str, object]) -> Iterator[str]:
     """The package folders of all robots in a case that is not checked yet, each once."""
     robots = [raw.get("robot"), *_list(raw.get("robots"))]
     given = [_list(robot.get("package_dirs")) for robot in robots if isinstance(robot, dict)]

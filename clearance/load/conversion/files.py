@@ -6,6 +6,7 @@ Not for: which of these a file is (`file_kind`), nor writing the files.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import field
 from pathlib import Path, PurePath
 from typing import NamedTuple
 
@@ -28,7 +29,7 @@ class Conversion:
 
     Attributes:
         source: the file to read, through `files`. target: the file to be made.
-        choice: of a trajectory. package_dirs: of a scene, where `package://` is looked for first.
+        choice: of a trajectory. package_dirs, includes: of a scene, as in `SceneRequest`.
     """
 
     source: Path
@@ -36,6 +37,7 @@ class Conversion:
     files: InputFiles
     choice: Choice
     package_dirs: tuple[Path, ...] = ()
+    includes: Mapping[str, str] = field(default_factory=dict)
 
 
 class ConvertedFiles(NamedTuple):
@@ -80,6 +82,7 @@ def _refuse_idle(asked: Conversion, kind: FileKind) -> None:
         ("--which", asked.choice.which is not None, is_motion),
         ("--topic", asked.choice.topic is not None, is_motion),
         ("--package-dir", bool(asked.package_dirs), is_scene),
+        ("--include", bool(asked.includes), is_scene),
     ):
         if is_given and not is_used:
             raise BadInput(
@@ -127,7 +130,7 @@ def _poses(asked: Conversion) -> ConvertedFiles:
 
 
 def _scene(asked: Conversion) -> ConvertedFiles:
-    request = SceneRequest(asked.source, asked.files, asked.package_dirs)
+    request = SceneRequest(asked.source, asked.files, asked.package_dirs, asked.includes)
     made = converted_scene(request, asked.target)
     return ConvertedFiles(
         made.files, counted(made.n_obstacles, "obstacle"), made.notes, made.warnings

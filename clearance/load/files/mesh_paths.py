@@ -131,7 +131,7 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
     if separator and scheme in _PACKAGE_SCHEMES:
         package, *parts = _parts(rest)
         for place, variable in _package_folders(package, folder, package_dirs):
-            if _is_there(place.joinpath(*parts)):
+            if _is_model(place.joinpath(*parts)):
                 return MeshPath(place.joinpath(*parts), variable=variable)
         raise MissingFile(
             f"there is no model {given!r}; looked for it {_places(folder, package_dirs)}",
@@ -145,7 +145,7 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
     if separator:
         places = [*_file_places(given, folder, package_dirs)]
     for place, variable in places:
-        if _is_there(place):
+        if _is_model(place):
             return MeshPath(place, variable=variable)
     raise MissingFile(f"there is no model {given!r}")
 
@@ -186,6 +186,11 @@ def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence
         f"there is no mesh {given!r}; looked for it {_places(urdf_folder, package_dirs)}",
         valid="give its package's folder in robot.package_dirs",
     )
+
+
+def _is_model(path: Path) -> bool:
+    """True for a file, and for the folder of a model: `model://bin` is not /bin."""
+    return _is_file(path) or any(_is_file(path / name) for name in ("model.config", "model.sdf"))
 
 
 def _is_file(path: Path) -> bool:

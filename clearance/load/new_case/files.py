@@ -81,7 +81,7 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
     trajectory, source = _motion(given, robot, files)
     with at("scene"):
         moving = replace(robot.placed, trajectory=trajectory)
-        scene = new_scene(given.scene, given.package_dirs, moving, meshes, folder)
+        scene = new_scene(given, moving, meshes, folder)
     motion = _Motion(
         trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
     )
@@ -180,6 +180,7 @@ def _text(
         resting=resting,
         states=states,
         scene=scene.name,
+        includes=scene.includes,
         trajectory=TRAJECTORY,
         motion=motion.source,
         motion_notes=motion.notes,

@@ -6,6 +6,7 @@ Not for: its motion and its scene (`files`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,8 @@ class NewCaseRequest:
     Attributes:
         keys: of a robot in a case file, but for its trajectory and joints.
         trajectory: keys of a trajectory. states: to move between where there is none.
-        rest: states for the joints that the motion leaves alone. scene: a file.
+        rest: states for the joints that the motion leaves alone. scene: a file. includes: of it, as in a
+            case.
     """
 
     keys: Mapping[str, Any]
@@ -53,6 +55,7 @@ class NewCaseRequest:
     states: Sequence[str] = ()
     rest: Sequence[str] = ()
     scene: str | None = None
+    includes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def srdf(self) -> str | None:

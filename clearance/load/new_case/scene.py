@@ -16,9 +16,10 @@ from clearance.load.case.scene_rows import with_scene_rows
 from clearance.load.files.input_files import resolved
 from clearance.load.files.written_paths import path_from
 from clearance.load.mesh_store import MeshStore
+from clearance.load.new_case.robot import NewCaseRequest
 from clearance.load.scene.formats import read_scene
 from clearance.load.scene.obstacles import make_obstacles
-from clearance.load.scene.request import SceneContent, SceneRequest
+from clearance.load.scene.request import SKIP, SceneContent, SceneRequest, includes_of
 from clearance.load.scene.writer import written_scene
 from clearance.load.schema.errors import validated
 from clearance.load.schema.obstacle import Scene
@@ -36,7 +37,7 @@ class NewScene:
     Attributes:
         name: the scene's file; None where nothing stands around the robot. remark: beside it.
         contents: of the files to write, by name.
-        carry, allow, padding: what its file says of links. taken, notes: a line each.
+        carry, allow, padding: what its file says of links. taken, notes: a line each. includes: as in a case.
     """
 
     name: str | None
@@ -47,11 +48,11 @@ class NewScene:
     padding: Mapping[str, float] = field(default_factory=dict)
     taken: Sequence[str] = ()
     notes: Sequence[str] = ()
+    includes: Mapping[str, str] = field(default_factory=dict)
 
 
 def new_scene(
-    given: str | None,
-    package_dirs: Sequence[str],
+    given: NewCaseRequest,
     placed: PlacedRobot,
     meshes: MeshStore,
     folder: Path,
@@ -63,17 +64,23 @@ def new_scene(
     Raises:
         BadInput: as its reader says.
     """
-    if given is None:
+    if given.scene is None:
         return NewScene(None, "assumed: nothing stands around the robot")
-    path = resolved(given, Path())
-    asked = SceneRequest(path, meshes.files, tuple(Path(one) for one in package_dirs))
+    package_dirs = tuple(Path(one) for one in given.package_dirs)
+    said = includes_of(given.includes, Path())
+    asked = SceneRequest(resolved(given.scene, Path()), meshes.files, package_dirs, said)
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
     taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
     case, notes = _with_rows(content, asked, placed, meshes)
     if content.notices or case.notices:
         told = (f"{taken}; it stays the file that it is, since it brings a warning",)
-        return NewScene(path_from(folder, given), "as it is, since it brings a warning", taken=told)
+        return NewScene(
+            path_from(folder, given.scene),
+            "as it is, since it brings a warning",
+            taken=told,
+            includes=_seen_from(folder, given.includes),
+        )
     made = written_scene(content, asked, folder, "clearance new")
     return NewScene(
         SCENE,
@@ -96,6 +103,14 @@ def _with_rows(
     case, row_notes = with_scene_rows(Case("new", (placed,), obstacles), content)
     case, held_notes = with_held_parts(case, content)
     return case, [*row_notes, *held_notes]
+
+
+def _seen_from(folder: Path, includes: Mapping[str, str]) -> dict[str, str]:
+    """What is taken for models, paths as a case in a folder has them."""
+    return {
+        uri: model if model == SKIP or "://" in model else path_from(folder, model)
+        for uri, model in includes.items()
+    }
 
 
 def _carried(carry: Carry) -> dict[str, Any]:

@@ -30,7 +30,7 @@ class CaseText:
             read. motion_keys: keys that the trajectory needs but that only the reader knows, as YAML, and why.
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
         touching: pairs that touch at every step, to be allowed where that is meant.
-        remarks: why a key is as it is, by key.
+        remarks: why a key is as it is, by key. includes: models that the scene includes, as they are taken.
     """
 
     name: str
@@ -48,6 +48,7 @@ class CaseText:
     allow: Sequence[tuple[str, str]] = ()
     touching: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
+    includes: Mapping[str, str] = field(default_factory=dict)
 
 
 def text_of(case: CaseText) -> str:
@@ -105,6 +106,8 @@ def _resting(case: CaseText) -> Iterator[str]:
 def _scene(case: CaseText) -> Iterator[str]:
     if case.scene is not None:
         yield f"scene: {flow(case.scene)}" + _remark(case, "scene")
+        if case.includes:
+            yield f"includes: {flow(case.includes)}"
         return
     yield "scene:"
     yield f"  obstacles: []{_remark(case, 'scene')}; in place of []:"

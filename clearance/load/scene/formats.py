@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from clearance.errors import BadInput
 from clearance.load.scene.request import SceneContent, SceneRequest
 from clearance.load.scene.scene_yaml import read_scene_yaml
 from clearance.load.schema.errors import validated
@@ -50,7 +51,12 @@ def read_scene(asked: SceneRequest) -> SceneContent:
     Raises:
         BadInput: as the reader says, with the place in the file.
     """
-    content = READERS.get(asked.path.suffix.lower(), read_scene_yaml)(asked)
+    reader = READERS.get(asked.path.suffix.lower(), read_scene_yaml)
+    if asked.includes and reader is not _sdf:
+        raise BadInput(
+            f"includes are given, and {asked.shown} is no SDF file", valid="no includes in the case"
+        )
+    content = reader(asked)
     return with_own_words(content, validated(Scene, content.scene, asked.shown))
 
 

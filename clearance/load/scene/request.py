@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from dataclasses import field
 from pathlib import Path
 from typing import NamedTuple
 
 from clearance.late_dataclass import dataclass
-from clearance.load.files.input_files import InputFiles
+from clearance.load.files.input_files import InputFiles, resolved
 from clearance.world.notice import Notice
+
+SKIP = "skip"
+"""In place of an included model: nothing."""
 
 
 @dataclass(frozen=True)
@@ -18,16 +23,27 @@ class SceneRequest:
     Attributes:
         path: the scene's file. package_dirs: where `model://` and `package://` are looked up first.
         files: reads the file, and all that it names.
+        includes: by URI of a model that an SDF file includes: `SKIP`, or the path or URI of one to take for it.
     """
 
     path: Path
     files: InputFiles
     package_dirs: tuple[Path, ...] = ()
+    includes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def shown(self) -> str:
         """The file's name in messages."""
         return self.files.shown(self.path)
+
+
+def includes_of(given: Mapping[str, str], folder: Path) -> dict[str, str]:
+    """The same for a `SceneRequest`: paths as seen from a folder are whole; what is no text is left out."""
+    return {
+        uri: model if model == SKIP or "://" in model else os.path.abspath(resolved(model, folder))
+        for uri, model in given.items()
+        if isinstance(uri, str) and isinstance(model, str)
+    }
 
 
 class HeldPart(NamedTuple):

@@ -147,6 +147,7 @@ class Case(StrictModel):
     robot: Robot | None = None
     robots: Annotated[list[Robot], Field(min_length=1)] | None = None
     scene: Scene
+    includes: dict[Name, Name] = {}
     trajectory: TrajectoryFile | None = None
     carry: list[Carry] = []
     limits: Limits = Limits()

@@ -59,6 +59,8 @@ def test_what_is_not_there_is_a_search_too(tmp_path):
     assert leads_to(one.read_from) == leads_to(two.read_from) == one.sha256 == ""
     (tmp_path / "sun").mkdir()
     (tmp_path / "model.config").write_text("")
+    assert leads_to(one.read_from) == ""  # the folder alone is no model
+    (tmp_path / "sun" / "model.sdf").write_text("")
     assert leads_to(one.read_from) and leads_to(two.read_from)
 
 

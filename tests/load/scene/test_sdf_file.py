@@ -14,6 +14,8 @@ from tests.load.making_sdf import (
     at,
     collision,
     content_of,
+    include,
+    library,
     link,
     model,
     obstacles_of,
@@ -133,19 +135,6 @@ def test_collisions_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_p
     (notice,) = content_of(tmp_path, document).notices
     assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
     assert notice.text == "without any size, and not measured: 'm/l/d', 'm/l/e'"
-
-
-def library(folder, name="post", document=None, config=True):
-    place = folder / name
-    place.mkdir(parents=True)
-    (place / "model.sdf").write_text(document or sdf(model(at(1), link(collision()), name=name)))
-    if config:
-        rows = '<sdf version="1.12">new.sdf</sdf><sdf version="1.5">model.sdf</sdf>'
-        (place / "model.config").write_text(f"<model>{rows}<sdf>old.sdf</sdf></model>")
-
-
-def include(*parts, uri="model://post", attributes=""):
-    return f"<include{attributes}><uri>{uri}</uri>{''.join(parts)}</include>"
 
 
 def test_included_models_are_found_and_placed(tmp_path):

@@ -8,13 +8,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadInput, MissingFile, at
+from clearance.errors import BadInput, UnknownKey, at, nearest_name
 from clearance.load.files.found_files import FoundFiles
 from clearance.load.files.lookups import MODEL, OPTIONAL, note_lookup
 from clearance.load.files.mesh_paths import model_path
-from clearance.load.scene.request import SceneRequest
+from clearance.load.scene.request import SKIP, SceneRequest
 from clearance.load.scene.sdf.document import NEWEST, sdf_element, text_of
 from clearance.load.scene.sdf.scope import IncludedModel
+from clearance.load.text.yaml_text import flow
+from clearance.world.notice import Notice, Severity, listed
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -34,6 +36,7 @@ class IncludeReader:
         self._roots: dict[Path, Element] = {}
         self._n_elements = 0
         self.missing_suns = 0
+        self._said: dict[str, None] = {}
         self.found = FoundFiles()
 
     @property
@@ -62,11 +65,18 @@ class IncludeReader:
             chain: the files that lead here, as they are shown.
         """
         uri = text_of(element, "uri")
-        asked = uri, folder, self._asked.package_dirs
+        said = self._asked.includes.get(uri)
+        if said is not None:
+            self._said[uri] = None
+        if said == SKIP:
+            return IncludedModel(None, folder, uri)
+        asked = said or uri, folder, self._asked.package_dirs
         try:
             found = model_path(*asked)
-        except MissingFile:
+        except BadInput as error:
             if uri.rstrip("/") != SUN:
+                ways = f"includes: {{{flow(uri)}: {SKIP}}} in the case leaves it out, a path takes another model"
+                error.valid = f"{error.valid}; {ways}".removeprefix("; ")
                 raise
             note_lookup(self._asked.files, MODEL, *asked, None)
             self.missing_suns += 1
@@ -74,11 +84,41 @@ class IncludeReader:
         note_lookup(self._asked.files, MODEL, *asked, found.path)
         path = _file_of(found.path, self._asked)
         shown = self._asked.files.shown(path)
-        self.found.add(uri, found, shown)
+        self.found.add(asked[0], found, shown)
         if shown in chain:
             raise BadInput(f"{shown} includes itself", valid="no ring of files")
         with at(shown):
             return IncludedModel(_only_model(self.root(path)), path.parent, shown)
+
+    def notices(self) -> list[Notice]:
+        """A warning on models that are left out or taken for others, as the case says.
+
+        Raises:
+            UnknownKey: the case speaks of a model that is not included.
+        """
+        for uri in self._asked.includes:
+            if uri not in self._said:
+                raise UnknownKey(
+                    f"includes speak of {uri!r}, which is not included",
+                    valid=nearest_name(uri, self._uris()),
+                )
+        left = [repr(uri) for uri in self._said if self._asked.includes[uri] == SKIP]
+        taken = [
+            f"{Path(self._asked.includes[uri]).name} for {uri!r}"
+            for uri in self._said
+            if self._asked.includes[uri] != SKIP
+        ]
+        told = [
+            f"models that are included and not measured, as the case says: {listed(left, 6)}"
+        ] * bool(left)
+        told += [f"models that are taken for others, as the case says: {listed(taken, 6)}"] * bool(
+            taken
+        )
+        return [Notice(Severity.WARNING, "scene", text) for text in told]
+
+    def _uris(self) -> set[str]:
+        includes = (one for root in self.documents for one in root.iter("include"))
+        return {(one.findtext("uri") or "").strip() for one in includes}
 
 
 def _file_of(path: Path, asked: SceneRequest) -> Path:

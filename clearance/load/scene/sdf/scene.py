@@ -41,13 +41,14 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
         shapes = [shape for place in _places(root) for shape in _shapes(place, scope)]
         files = _Files(asked, reader.found)
         obstacles = [files.obstacle(shape) for shape in shapes]
-        renamed = _make_unique(obstacles)
+        renamed, said = _make_unique(obstacles), reader.notices()
     notes = [*notes_on(reader.documents, reader.missing_suns, shapes), *renamed]
     odd = [text for document in reader.documents for text in _odd(document)]
     return SceneContent(
         {"obstacles": obstacles},
         (*(f"{asked.shown}: {note}" for note in notes), *reader.found.notes()),
         (
+            *said,
             *angle_notices(odd),
             *reader.found.notices(),
             *unseen(reader.documents),
