@@ -69,7 +69,20 @@ def with_planning_scene(folder):
     return path
 
 
+def with_turn(folder):
+    """The slot with a hub on the bar that turns by 4 rad in a step, the way that its table says."""
+    path = write_cell(folder, SLOT.replace("start: 0.5", "start: 0.5, wrap: as_written"))
+    urdf, table = folder / "robots" / "bar.urdf", folder / "path.csv"
+    hub = '<link name="hub"/><joint name="turn" type="continuous"><parent link="tool"/><child link="hub"/></joint>'
+    urdf.write_text(urdf.read_text().replace("</robot>", f"{hub}</robot>"))
+    header, *rows = table.read_text().splitlines()
+    rows = [f"{row},{4.0 * (i > 20)}" for i, row in enumerate(rows)]
+    table.write_text("\n".join([f"{header},turn", *rows, ""]))
+    return path
+
+
 CASES = {
+    "a turn as written": (with_turn, "waypoints", {}),
     "waypoints": (lambda folder: write_cell(folder, SLOT), "waypoints", {}),
     "base": (lambda folder: write_cell(folder, SLOT), "base", {}),
     "obstacle": (lambda folder: write_cell(folder, SLOT), "obstacle", {"obstacle": "left"}),
