@@ -115,7 +115,7 @@ def _of_rule(
         padding = one.section.padding
         np.minimum(proven[rows], one.steps.proven - padding, out=proven[rows])
         np.fmin(expected[rows], one.expected - padding, out=expected[rows])
-        if between is not None and one.between is not None:
+        if between is not None and one.between is not None and one.expected_between is not None:
             own = one.between.proven - padding
             last = one.section.phase.last == n_steps - 1
             held = slice(rows.start, rows.stop if last else rows.stop - 1)

@@ -326,6 +326,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         ),
         notices=answers.notices,
         contacts=answers.contacts,
+        depths_asked=question.contact != "none",
         profiles=answers.profiles,
         cross_check=answers.cross_check,
         budget=answers.budget,

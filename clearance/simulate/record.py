@@ -207,6 +207,7 @@ class Record(Samples):
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         rules: what each rule comes to; one, "default", where the case has no rules.
         timeline: when what moves how.
+        depths_asked: whether it is to be told how deep contact is.
         of_pairs: what the rules come to of some of the pairs alone; None where no more can be asked.
         today: the day that waivers are held against; None where the case has none.
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
@@ -231,6 +232,7 @@ class Record(Samples):
     notices: tuple[Notice, ...] = ()
     contacts: ContactSequence | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
+    depths_asked: bool = False
     of_pairs: PairMeasurer | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
@@ -299,12 +301,15 @@ class Record(Samples):
         """The same of the whole motion, between two steps if a certificate has found a lesser moment there."""
         worst = worst_of(self.rules)
         assert worst is not None
-        return self.worst_sample if worst.touches and self.worst_sample.depth else worst
+        known = self.worst_sample if worst.touches and self.worst_sample.depth else worst
+        return self._deeper_between(self.rules, known)
 
     def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
         """`worst` as if there were no other rules than some, or than some of the pairs of these."""
         worst = worst_of(rules)
-        return None if worst is None else self._deepest_of(rules, worst)
+        if worst is None:
+            return None
+        return self._deeper_between(rules, self._deepest_of(rules, worst))
 
     def _deepest_of(self, rules: Sequence[RuleAnswer], worst: Moment) -> Moment:
         """The deepest of the moments in contact in place of one of them, where depth is known."""
@@ -313,6 +318,18 @@ class Record(Samples):
         from clearance.simulate.deepest import deepest_moment
 
         return deepest_moment(self.worked_out, rules) or worst
+
+    def _deeper_between(self, rules: Sequence[RuleAnswer], known: Moment) -> Moment:
+        """The deepest moment between two steps in place of one in contact, if it is deeper and depth is asked."""
+        if not known.touches or not self.depths_asked or self.certificate is None:
+            return known
+        from clearance.simulate.deepest_between import deepest_between
+
+        found = deepest_between(rules)
+        if found is None or found.depth is None:
+            return known
+        deeper = known.depth is None or found.depth.penetration > known.depth.penetration
+        return found if deeper else known
 
     @cached_property
     def nearest(self) -> Moment:

@@ -226,3 +226,25 @@ def test_a_proof_that_takes_too_many_parts_is_widened_and_ends(monkeypatch):
     wide = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate
     assert wide.lower_bound[0] < tight.lower_bound[0] <= wide.upper_bound[0]
     assert wide.tally["queries"] < tight.tally["queries"]
+
+
+def test_contact_between_two_steps_has_its_depth():
+    """Half way the fore arm, 40 mm thick, is 45 mm deep in the post: half of both, the shortest way out."""
+    run = cl.check(sweeping(THROUGH))
+    depth = run.record.worst.depth
+    assert depth.penetration == pytest.approx(0.045, abs=1e-9) and depth.exact
+    assert run.worst["between"] and run.worst["time"] == pytest.approx(1.0)
+    assert cl.check(sweeping(THROUGH), contact="none").record.worst.depth is None
+
+
+def test_the_deepest_between_is_told_where_a_step_is_less_deep():
+    """The step at 0.05 rad is in the post, less deep than the fore arm gets on its way there."""
+    record = cl.check(sweeping([[-1.0, 0.0], [0.05, 0.0]])).record
+    assert record.worst_sample.depth.penetration < record.worst.depth.penetration
+    assert record.worst.between and record.worst.depth.penetration > 0.044
+
+
+def test_steps_that_are_many_tell_the_depth_themselves():
+    angles = np.linspace(-0.1, 0.1, 41)
+    record = cl.check(sweeping(np.column_stack([angles, 0.0 * angles]))).record
+    assert record.worst is record.worst_sample

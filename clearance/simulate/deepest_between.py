@@ -1,0 +1,100 @@
+"""How deep bodies are in contact between the steps, where steps are too few to tell.
+
+Not for: the deepest of the steps (`deepest`), nor when there is contact (`stretches`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.errors import ClearanceError
+from clearance.query.contact import contact
+from clearance.simulate.moment import Depth, Moment, MomentQuery
+from clearance.simulate.pairs_alone import can_be_alone, near_alone
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.stretches import RuleStretches
+from clearance.world.forest import forest_of, positions_between
+
+LOOKS = 9
+"""Moments of a stretch of contact at which depth is found if fewer steps are in it, and as many again about the
+best; one takes milliseconds."""
+
+MOST_STRETCHES = 16
+"""Stretches that are looked into, the first of each pair first."""
+
+
+def deepest_between(rules: Sequence[RuleAnswer]) -> Moment | None:
+    """The first of the deepest moments that are found between the steps; None where none is looked for."""
+    spans = sorted(_spans(rules), key=lambda one: one[0])[:MOST_STRETCHES]
+    return _deepest([_deepest_in(rule, *span) for _, rule, span in spans])
+
+
+def _deepest(found: Sequence[Moment | None]) -> Moment | None:
+    """The first of the deepest of some moments."""
+    known = [one for one in found if one is not None]
+    return max(known, key=lambda one: one.depth.penetration if one.depth else 0.0, default=None)
+
+
+def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
+    """The deepest of a stretch: of evenly spread moments, then of as many about the best."""
+    best = _deepest([*_moments(rule, start, end)])
+    if best is None:
+        return None
+    apart = (end - start) / (LOOKS + 1)
+    about = max(start, best.time - apart), min(end, best.time + apart)
+    return _deepest([best, *_moments(rule, *about)])
+
+
+def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[int, RuleAnswer, tuple[float, float]]]:
+    """The stretches of contact of each pair with few steps in them, numbered pair by pair."""
+    for rule in rules:
+        within = rule.limits.warn
+        if rule.certificate is None or not can_be_alone(rule, within):
+            continue
+        for answer in near_alone(rule, within).values():
+            if answer.worst is None or not answer.worst.touches or answer.pairs is None:
+                continue
+            times = np.concatenate(
+                [one.section.phase.motions[0].times for one in answer.pairs.answers]
+            )
+            for i, (start, end) in enumerate(RuleStretches(answer, "contact").spans.tolist()):
+                if ((times >= start) & (times <= end)).sum() < LOOKS:
+                    yield i, answer, (start, end)
+
+
+def _moments(rule: RuleAnswer, start: float, end: float) -> Iterator[Moment]:
+    """The moments of a stretch at which the one pair of a rule overlaps, with their depth."""
+    assert rule.pairs is not None
+    for answer in rule.pairs.answers:
+        phase, (pair,) = answer.section.phase, answer.section.pairs
+        case, times = phase.case, phase.motions[0].times
+        if pair.has_cloud(case):
+            continue
+        for time in np.linspace(start, end, LOOKS + 2)[1:-1].tolist():
+            step = int(np.searchsorted(times, time, side="right")) - 1
+            if not 0 <= step < len(times) - 1:
+                continue
+            share = float((time - times[step]) / (times[step + 1] - times[step]))
+            poses = forest_of(case).poses(positions_between(case, phase.motions, step, share)[None])
+            shapes, placed = zip(
+                *((body.shape_in(case), body.poses_in(case, poses)[0]) for body in pair),
+                strict=True,
+            )
+            try:
+                found = contact(*shapes, pose_a=placed[0], pose_b=placed[1], rough=True)
+            except ClearanceError:  # a body without any extent
+                return
+            if found is not None:
+                query = MomentQuery(case, phase.motions, answer.section.pairs)
+                moment = query.between(step, share, 0, touches=True)
+                exact = bool(found.exact[0])
+                yield replace(
+                    moment,
+                    step=moment.step + phase.first,
+                    clearance=moment.clearance - answer.section.padding,
+                    rule=rule.name,
+                    depth=Depth(found.penetration, found.penetration_at_least, exact),
+                )
