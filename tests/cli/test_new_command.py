@@ -352,3 +352,28 @@ PLAIN = st.recursive(
 @given(PLAIN)
 def test_what_is_written_is_read_back(value):
     assert repr(parse_yaml(f"a: {flow(value)}  # said\n".encode(), "a.yaml")) == repr({"a": value})
+
+
+def test_what_no_table_says_of_a_motion_stays_in_a_file_that_does(tmp_path):
+    """A recording with a hole, and points with accelerations."""
+    pytest.importorskip("rosbags", reason="bags are made by rosbags")
+    from tests.load.making_bags import state, write_bag
+
+    times = [i / 50 for i in range(201) if i <= 50 or i >= 150]
+    bag = write_bag(
+        tmp_path / "cell" / "bags", "mcap", {"/s": [state(t, [0.0, 0.0]) for t in times]}
+    )
+    args = ["new", "made", "--robot", "cell/one.urdf", "--scene", "cell/scene.yaml", "--trajectory"]
+    assert run([*args, os.path.relpath(bag, tmp_path)]) == 0
+    text = Path("made/case.yaml").read_text()
+    assert "trajectory: ../cell/bags/run/run.mcap  # from" in text
+    assert (
+        "# trajectory: {file: ../cell/bags/run/run.mcap, gaps: hold}  # or linear, or not_measured: a hole"
+        in text
+    )
+    assert run(["check", "made/case.yaml"]) == 2
+    bent = ROS2.replace("accelerations: []", "accelerations: [0.5, 0.0]")
+    Path("cell/bent.yaml").write_text(bent)
+    assert run([*args, "cell/bent.yaml", "--force"]) == 0
+    points = load_case(Path("made/case.yaml")).robots[0].trajectory.points
+    assert points.accelerations.tolist() == [[0.5, 0.0]] * 2

@@ -79,8 +79,9 @@ def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: f
     found = []
     for unknown, start, end in ((late, first, span[0]), (early, span[1], last)):
         if unknown and start < end:
-            ends = (float((time - span[0]) / unit) for time in (start, end))
-            found.append(Hole(tuple(unknown), *ends, min(unknown.values()) / unit, NOT_MEASURED))
+            since, until = (float((time - span[0]) / unit) for time in (start, end))
+            usual = min(unknown.values()) / unit
+            found.append(Hole(tuple(unknown), since, until, usual, NOT_MEASURED))
     return found
 
 

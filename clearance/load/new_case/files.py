@@ -10,12 +10,13 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from clearance.errors import MissingKey, NothingToMeasure, at
 from clearance.late_dataclass import dataclass
 from clearance.load.case.case_file import read_case
 from clearance.load.files.input_files import InputFiles, resolved
+from clearance.load.files.written_paths import path_from
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion.trajectory_writer import written
 from clearance.load.new_case.named_motion import PERIOD, motion_between
@@ -27,12 +28,15 @@ from clearance.load.text.notes import counted
 from clearance.load.text.yaml_text import flow
 from clearance.world.case import Case, Source
 from clearance.world.names import checked_name
-from clearance.world.notice import START, listed
+from clearance.world.notice import START, Severity, listed
 from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_wrap import notices_on_wrap
 from clearance.world.trajectory import Trajectory
 
 CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
+MESSAGE = "trajectory.yaml"
+"""What has accelerations, which no table has."""
 
 
 @dataclass(frozen=True)
@@ -86,8 +90,10 @@ def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
         trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
     )
     text = _text(given, robot, scene, motion, folder, files)
-    contents = {CASE: text_of(text).encode(), TRAJECTORY: written(trajectory, TRAJECTORY).content}
-    contents |= scene.contents
+    contents = {CASE: text_of(text).encode(), **scene.contents}
+    name = text.trajectory["file"]
+    if name in (TRAJECTORY, MESSAGE):
+        contents[name] = written(trajectory, name).content
     try:
         case = _read_back(contents, folder)
     except NothingToMeasure:
@@ -148,7 +154,9 @@ def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[
 def _told(trajectory: Trajectory) -> str:
     start, end = trajectory.times[[0, -1]].tolist()
     n_joints = counted(len(trajectory.joint_names), "joint")
-    return f"{counted(trajectory.n_steps, 'sample')} of {n_joints}, {start:g} to {end:g} s"
+    return (
+        f"{counted(len(trajectory.written.times), 'sample')} of {n_joints}, {start:g} to {end:g} s"
+    )
 
 
 def _assumed_of_motion(given: NewCaseRequest) -> list[str]:
@@ -181,7 +189,7 @@ def _text(
         states=states,
         scene=scene.name,
         includes=scene.includes,
-        trajectory=TRAJECTORY,
+        trajectory=_trajectory_keys(given, motion.trajectory, folder),
         motion=motion.source,
         motion_notes=motion.notes,
         motion_keys=_open_keys(robot, motion.trajectory),
@@ -191,10 +199,23 @@ def _text(
     )
 
 
+def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
+    """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes."""
+    if trajectory.holes and given.trajectory is not None:
+        keys = dict(given.trajectory)
+        return {**keys, "file": path_from(folder, keys["file"])}
+    return {"file": TRAJECTORY if trajectory.points is None else MESSAGE}
+
+
 def _open_keys(robot: NewRobot, trajectory: Trajectory) -> list[tuple[str, str]]:
     """Keys of the trajectory that would answer what is suspect about it, and what that is."""
     moving = replace(robot.placed, trajectory=trajectory)
     found = [("wrap: shortest", f"or as_written: {one.text}") for one in notices_on_wrap(moving)]
+    found += [
+        ("gaps: hold", f"or linear, or not_measured: {one.text}")
+        for one in notices_on_holes(moving)
+        if one.severity is Severity.SUSPECT
+    ]
     start = flow(dict.fromkeys(trajectory.joint_names, 0.0))
     goals = (one for one in notices_on_motion(moving) if one.kind == START)
     return [*found, *((f"start_state: {start}", f"or elsewhere: {one.text}") for one in goals)]

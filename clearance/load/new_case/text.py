@@ -26,8 +26,9 @@ class CaseText:
         name: of the case. made_from: the files, as they are shown.
         robot: its keys and values, in order. link: its first with a shape, for examples.
         resting: what stands under `joints`. states: of which one could stand there.
-        scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
-            read. motion_keys: keys that the trajectory needs but that only the reader knows, as YAML, and why.
+        scene: a file, or nothing. trajectory: its keys, the file at least; `motion` says where it comes from,
+            `motion_notes` how it was read. motion_keys: keys that the trajectory needs but that only the reader
+            knows, as YAML, and why.
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
         touching: pairs that touch at every step, to be allowed where that is meant.
         remarks: why a key is as it is, by key. includes: models that the scene includes, as they are taken.
@@ -40,7 +41,7 @@ class CaseText:
     resting: Mapping[str, Any]
     states: Sequence[str]
     scene: str | None
-    trajectory: str
+    trajectory: Mapping[str, Any]
     motion: str
     motion_notes: Sequence[str] = ()
     motion_keys: Sequence[tuple[str, str]] = ()
@@ -64,9 +65,10 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield from (f"  {line}" for line in _robot(case))
     yield from _scene(case)
     yield from (f"# {shown(note)}" for note in case.motion_notes)
-    yield f"trajectory: {flow(case.trajectory)}  # {shown(case.motion)}"
+    path = case.trajectory["file"] if len(case.trajectory) == 1 else case.trajectory
+    yield f"trajectory: {flow(path)}  # {shown(case.motion)}"
     for key, why in case.motion_keys:
-        yield f"# trajectory: {{file: {flow(case.trajectory)}, {key}}}  # {shown(why)}"
+        yield f"# trajectory: {flow(case.trajectory)[:-1]}, {key}}}  # {shown(why)}"
     if case.carry:
         yield "carry:  # from the scene's file, in which links hold them"
         yield from (f"- {flow(one)}" for one in case.carry)
