@@ -62,25 +62,47 @@ class TextTable(NamedTuple):
             return None
 
 
-_SEPARATORS = {";": "semicolons", "\t": "tabs"}
+_SEPARATORS = {";": "semicolons", "\t": "tabs or blanks"}
 """Beside commas."""
 
 
 def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTable:
     """The table with the separators that it shows: semicolons, or else tabs, where the first row has some and, in
-    a header, no commas; then decimal commas where there is any comma.
+    a header, no commas; then decimal commas where there is any comma. Without any of these, blanks are tabs.
 
     Args:
         names: of the columns, where there is no header.
     """
     with opened() as file:
         start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
+        if _is_of_blanks(start):
+            return as_written(_blanks_as_tabs(opened), names)
         others = [mark for mark in _SEPARATORS if mark.encode() in start]
         if not others or (names is None and b"," in start):
             return TextTable(opened, names=names)
         file.seek(0)
         has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
     return TextTable(opened, others[0], "," if has_comma else ".", names)
+
+
+def _is_of_blanks(start: bytes) -> bool:
+    """True for a first row of words without any separator; `time [s]` is one column."""
+    words = start.split()
+    marked = any(mark in start.rstrip() for mark in (b",", b";", b"\t"))
+    return (
+        len(words) > 1 and not marked and not any(word.startswith((b"[", b"(")) for word in words)
+    )
+
+
+def _blanks_as_tabs(opened: Opener) -> Opener:
+    """The same file, a tab for each stretch of blanks; the mark of a comment stays out of the first row."""
+    with opened() as file:
+        rows = [line.split() for line in file.read().splitlines()]
+    first = next(row for row in rows if row)
+    if first[0] == b"#":
+        del first[0]
+    content = b"\n".join(b"\t".join(row) for row in rows)
+    return lambda: io.BytesIO(content)
 
 
 def note_on_separators(table: TextTable) -> list[str]:

@@ -37,10 +37,15 @@ WAYS = [
     ("#t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
     ("time,shoulder/position [rad],lift\n0,1,2\n1,3,4\n", []),
-    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs"]),
+    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs or blanks"]),
+    ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", ["columns are separated by tabs or blanks"]),
+    (
+        "# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n",
+        ["columns are separated by tabs or blanks", "column 't' is taken for time"],
+    ),
     (
         "time\tshoulder\tlift\n0\t1,0\t2\n1\t3\t4,0\n",
-        ["columns are separated by tabs, decimals written with commas"],
+        ["columns are separated by tabs or blanks, decimals written with commas"],
     ),
     ("time,shoulder,lift,\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
     ("time,shoulder,lift\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
@@ -101,6 +106,11 @@ def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
     assert trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
     told = "path.csv: columns that are left out: 'status', 'target_q_0', 'target_q_1', 'current'"
     assert told in made.notes
+
+
+def test_a_first_row_with_a_unit_behind_a_blank_is_one_column():
+    with pytest.raises(MissingKey, match="no column 'time' in the header 'elbow'"):
+        read("elbow [deg]\n1\n")
 
 
 def test_the_error_on_a_log_can_be_pasted(tmp_path):

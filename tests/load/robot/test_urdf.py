@@ -334,8 +334,9 @@ def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path,
 
 
 def test_pictures_of_no_size_are_no_matter_where_they_are_not_measured(tmp_path):
-    arm = load_urdf(tmp_path, robot(link(BOX + "<visual/>")))
-    assert len(arm.bodies) == 1 and not arm.notices
+    for geometry in ("collision", "collision_or_visual"):
+        arm = load_urdf(tmp_path, robot(link(BOX + "<visual/>")), geometry=geometry)
+        assert len(arm.bodies) == 1 and not arm.notices
 
 
 def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):

@@ -15,7 +15,9 @@ from clearance.errors import BadInput, BadShape, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles
+from clearance.load.robot.request import Geometry
 from clearance.load.robot.robot_element import robot_element
+from clearance.load.robot.shape_kinds import chosen_kind
 from clearance.load.text.numbers import is_zero
 from clearance.world.names import checked_name, require_own_names
 
@@ -82,20 +84,22 @@ def reduced_document(data: bytes) -> Element:
     return root
 
 
-def without_empty_shapes(root: Element, measured: str) -> list[str]:
+def without_empty_shapes(root: Element, geometry: Geometry) -> list[str]:
     """What is taken out of a reduced document since it has no size: no shape, or one whose dimensions are all 0.
 
     A shape that is flat or a line is left to be refused, since something may come near it.
 
     Args:
-        measured: "collision", "visual" or both in one word; others are taken out without being named.
+        geometry: which shapes are measured; others are taken out without being named.
     """
     names = []
     for link in root.iterfind("link"):
+        has = frozenset(("collision",) if link.find("collision") is not None else ())
+        measured = chosen_kind(has, geometry)
         for kind in ("collision", "visual"):
             for i, element in enumerate(link.findall(kind)):
                 if _has_no_size(element):
-                    names += [f"link {link.get('name')!r} {kind}[{i}]"] * (kind in measured)
+                    names += [f"link {link.get('name')!r} {kind}[{i}]"] * (kind == measured)
                     link.remove(element)
     return names
 
