@@ -23,6 +23,12 @@ from clearance.cli.options import LengthParamType, OutputPath
 @click.option(
     "--free", help="Dimensions to change, separated by commas.  [default: the driven ones]"
 )
+@click.option(
+    "--most-seconds",
+    type=click.FloatRange(min=0.0),
+    default=10.0,
+    help="Time after which a solve of the sketch stops.  [default: 10]",
+)
 @click.option("--out", required=True, type=OutputPath(), help="Sketch to write, .yaml.")
 @click.option("--picture", type=OutputPath(), help="Picture to write, .svg or .png.")
 def fit(
@@ -31,6 +37,7 @@ def fit(
     mode: str,
     margin_mm: float,
     free: str | None,
+    most_seconds: float,
     out: Path,
     picture: Path | None,
 ) -> None:
@@ -50,6 +57,7 @@ def fit(
     refuse_inputs([out, *([] if picture is None else [picture])], [sketch_file, profile_file])
     outline = read_outline(profile_file)
     sketch = Sketch.load(sketch_file)
+    sketch.most_seconds = most_seconds
     names = None if free is None else [name.strip() for name in free.split(",")]
     with at(str(sketch_file)):
         found = fitted(sketch, outline, mode, free=names, margin=margin_mm)

@@ -43,9 +43,7 @@ class SketchShape:
         self.turns = self.slides and not kinds & {"horizontal", "vertical"}
         result = self.sketch.solve()
         if not result.solved:
-            raise BadShape(
-                f"the constraints {', '.join(result.conflicts[:6])} contradict each other"
-            )
+            raise BadShape(result.fault)
         if result.freedom > 0:
             raise BadShape(
                 f"{result.freedom} freedoms of the sketch have no dimension",

@@ -138,7 +138,8 @@ def read_profile(path: str | Path) -> Profile:
 def solved_sketch(path: str | Path) -> Sketch:
     """The sketch of a file with all its constraints true.
 
-    Raises: what `Sketch.load` raises; BadShape (constraints that contradict each other, by name).
+    Raises: what `Sketch.load` raises; BadShape (constraints that contradict each other, or
+        are not solved in time, by name).
     """
     from clearance.sketch import Sketch
 
@@ -151,14 +152,11 @@ def solved_sketch(path: str | Path) -> Sketch:
 def require_solved(sketch: Sketch) -> None:
     """Solves a sketch.
 
-    Raises: BadShape (constraints that contradict each other, by name).
+    Raises: BadShape (constraints that contradict each other, or are not solved in time, by name).
     """
     result = sketch.solve()
     if not result.solved:
-        raise BadShape(
-            f"the constraints {', '.join(result.conflicts[:6])} contradict each other",
-            valid="a sketch that can be drawn",
-        )
+        raise BadShape(result.fault, valid="a sketch that can be drawn")
 
 
 def yaml_of(path: Path) -> object:

@@ -26,6 +26,7 @@ def copied(
     """
     motion = np.eye(2, 3) if motion is None else motion
     made = Sketch()
+    made.most_seconds = sketch.most_seconds
     for name, value in sketch.parameters.items():
         made.parameter(name, value)
     points: dict[str, Point] = {}

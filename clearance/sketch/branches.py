@@ -63,6 +63,7 @@ def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
     for count in range(1, len(steps) + 1):
         best = []
         for chosen in combinations(steps, count):
+            problem.limit.require_left()
             turned = np.ones(problem.plan.steps.vertex.size)
             turned[list(chosen)] = -1.0
             best.append(run(problem, before, sides, turned=turned))
@@ -111,6 +112,7 @@ def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: np.nd
     start, _ = started(problem, before, ())
     every = np.ones(problem.system.kind.size, np.uint8)
     for mask in range(2**steps.size):
+        problem.limit.require_left()
         turned = np.ones(problem.plan.steps.vertex.size)
         turned[steps[(mask >> np.arange(steps.size)) & 1 == 1]] = -1.0
         x = start.copy()

@@ -47,7 +47,7 @@ class ProblemPart:
     """The columns and equations of one part of a problem of a size near 1."""
 
     def __init__(self, problem: Problem, part: int) -> None:
-        self.system = problem.system
+        self.system, self.limit = problem.system, problem.limit
         self.vertices = np.flatnonzero(problem.part == part)
         chosen = (problem.row_part == part) & (problem.fate == 0)
         chosen[problem.plan.dependent] = False
@@ -90,6 +90,7 @@ def descend(
     for _ in range(longest):
         if place.total <= part.enough:
             break
+        part.limit.require_left()
         lower, damping, last = _step(part, place, damping, corrections)
         place = lower if lower.total < place.total else place
         if last:

@@ -19,7 +19,8 @@ from clearance.kernels.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.solve.search import BANDED
 from clearance.sketch.branches import exhausted
-from clearance.sketch.problem import DEPENDENT, Problem
+from clearance.sketch.effort import OutOfTime
+from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
 from clearance.sketch.trials import Trials
 
@@ -47,13 +48,35 @@ class Diagnosis:
 
     @cached_property
     def repairs(self) -> list[Repair]:
-        """See `Repair`."""
-        return repairs_of(self._trial, self._conflict)
+        """See `Repair`; none where there is no time for all."""
+        self._trial.limit = self._trial.problem.limit.again()
+        try:
+            return repairs_of(self._trial, self._conflict)
+        except OutOfTime:
+            return []
 
 
 def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis:
-    """Why a problem has no solution; the sketch is not changed."""
+    """Why a problem has no solution; the sketch is not changed. It may take as long as the solve."""
     trial = Trials(sketch, problem, before, outcome.x)
+    trial.limit = problem.limit.again()
+    if outcome.stopped:
+        return Diagnosis(trial, [], "", _not_holding(problem, outcome.x))
+    try:
+        return _diagnosed(trial, problem, outcome)
+    except OutOfTime:
+        return Diagnosis(trial, [], "", trial.everything(outcome.broken))
+
+
+def _not_holding(problem: Problem, x: np.ndarray) -> list[int]:
+    """The constraints of which an equation does not hold."""
+    s = problem.system
+    error = np.abs(residuals(s.code, s.var, s.coef, s.value, x[problem.alias]))
+    rows = error * problem.length_scale > RESIDUAL * problem.size
+    return sorted({int(o) for o in problem.tables.owner[rows]})
+
+
+def _diagnosed(trial: Trials, problem: Problem, outcome) -> Diagnosis:
     for row in _first_broken(problem, outcome):
         chain = _too_short(problem, row)
         if chain and trial.is_minimal(chain):

@@ -36,13 +36,24 @@ WRONG_SIDE = -2
 
 
 class ExecutionResult:
-    """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do)."""
+    """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do); whether its limit
+    has stopped it."""
 
-    def __init__(self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float) -> None:
+    def __init__(
+        self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float, stopped: bool = False
+    ) -> None:
         self.x = x
         self.fates = fates
         self.broken = broken
         self.residual = residual
+        self.stopped = stopped
+
+
+def stopped(problem: Problem, before: np.ndarray) -> ExecutionResult:
+    """What stands for a run that was stopped by its limit: the numbers `before` (n,), nothing solved."""
+    residual, row = residual_of(problem, before[problem.alias])
+    fates = np.full(problem.plan.steps.vertex.shape[0], KEPT)
+    return ExecutionResult(before.copy(), fates, max(int(row), 0), residual, stopped=True)
 
 
 def run(
@@ -60,6 +71,9 @@ def run(
     Args:
         effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
         turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
+
+    Raises:
+        OutOfTime: the problem's limit has passed.
     """
     unit, lengths = _units(problem)
     outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
@@ -155,6 +169,7 @@ def _solve_parts(
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part).tolist():
+        problem.limit.require_left()
         if effort < 2 or not _from_drawing(problem, p, x, start):
             _numeric_part(problem, p, x, start, effort)
     if effort < 2:
@@ -185,6 +200,7 @@ def _nearest(
         weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
         set_down(s, problem.part, settle, x, sketch, weight)
     for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)).tolist():
+        problem.limit.require_left()
         moved = least_movement(problem, p, x, sketch, problem.weight, start)
         if moved is not None:
             x = moved
@@ -218,6 +234,7 @@ def _numeric_part(
     rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
     mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
+        problem.limit.require_left()
         tried = np.where(mine, origin, x)  # other parts stay where they are
         if solve_block(s, cluster, ClusterPlace(tried, pivot), rule):
             x[:] = tried

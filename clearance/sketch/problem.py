@@ -30,6 +30,7 @@ from clearance.kernels.sketch.solve.place import System
 from clearance.kernels.sketch.solve.start import counts, row_parts
 from clearance.late_dataclass import dataclass
 from clearance.sketch.contacts import Contacts, contacts_of
+from clearance.sketch.effort import UNLIMITED, TimeLimit
 
 RESIDUAL = 1e-12
 """[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
@@ -108,7 +109,7 @@ class Problem:
 
     `alias` (n,) is the variable that stands for each; `weight` (n,) how many variables it stands
     for (0 for those stood for). `free` (parts,) are the freedoms left, `hold` how each part hangs
-    on the ground.
+    on the ground. `limit` is when searches stop.
     """
 
     tables: Tables
@@ -128,6 +129,7 @@ class Problem:
     length_scale: np.ndarray
     size: float
     contacts: Contacts | None = None
+    limit: TimeLimit = UNLIMITED
 
     @property
     def regular(self) -> System:

@@ -22,6 +22,7 @@ class SketchResult:
     Attributes:
         residual: [m] the largest equation error that is left (directions as arcs at the sketch's size).
         movement: [m] root of the summed squares of the points' shifts.
+        stopped: the solve's limit of time has passed before it was done; the sketch is as it was.
     """
 
     def __init__(self, sketch, problem: Problem, before: np.ndarray, outcome) -> None:
@@ -30,6 +31,7 @@ class SketchResult:
         self._before = before
         self._outcome = outcome
         self.residual = outcome.residual
+        self.stopped: bool = outcome.stopped
 
     @property
     def solved(self) -> bool:
@@ -41,7 +43,7 @@ class SketchResult:
         """The verdict: one of "well", "under", "over", "inconsistent" and "unsolved".
 
         "over": some constraints follow from others. "inconsistent": no solution exists, and `reason`
-        says by what proof. "unsolved": a search found none; that is no proof that there is none.
+        says by what proof. "unsolved": a search found none, or was stopped; that is no proof that there is none.
         """
         if not self.solved:
             return "inconsistent" if self._diagnosis.proof else "unsolved"
@@ -138,7 +140,17 @@ class SketchResult:
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
         if self._diagnosis.proof:
             return f"{shown} cannot hold together: {self._diagnosis.proof}"
+        if self.stopped:
+            seconds = self._problem.limit.seconds
+            return f"not solved within {seconds:g} s: {shown} do not hold; more seconds may do"
         return f"no place found where {shown} hold; a failed search is no proof that there is none"
+
+    @property
+    def fault(self) -> str:
+        """What keeps the sketch from being drawn, in one line; empty when all hold."""
+        if self.solved or self.status != "inconsistent":
+            return self.reason
+        return f"the constraints {', '.join(self.conflicts[:6])} contradict each other"
 
     @property
     def repairs(self) -> list[Repair]:

@@ -78,6 +78,7 @@ def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np
         moved = float(np.abs(x[mine] - sketch[mine]).max(initial=0.0))
         if moved <= FAR * _extent(problem, vertices, sketch) or not is_small(problem, b):
             continue
+        problem.limit.require_left()
         found = roots_of(problem, b, x, QUICK_STARTS)
         away = np.linalg.norm(found[:, mine] - sketch[mine], axis=1)
         if away.min() < 0.999 * away[0]:

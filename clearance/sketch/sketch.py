@@ -17,6 +17,7 @@ from clearance.sketch.checked_numbers import two
 from clearance.sketch.constraints import Constraint
 from clearance.sketch.dimensions import Dimensions
 from clearance.sketch.drawing import Drawing
+from clearance.sketch.effort import SECONDS, TimeLimit
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.lists import FlatLists
 from clearance.sketch.register import Register
@@ -44,6 +45,7 @@ class Sketch:
     Attributes:
         entities, constraints, parameters: by name.
         polylines: in the order in which they were added.
+        most_seconds: [s] after which a solve stops that is not told otherwise.
     """
 
     def __init__(self) -> None:
@@ -57,6 +59,7 @@ class Sketch:
         self.constraints: dict[str, Constraint] = self._register.constraints
         self.parameters: dict[str, float] = self._register.parameters
         self.polylines: list[Polyline] = []
+        self.most_seconds: float = SECONDS
 
     def point(self, x: float, y: float, *, name: str | None = None) -> Point:
         """A new point at (x, y) [m]."""
@@ -263,20 +266,27 @@ class Sketch:
         """Two points lie on one side of a line."""
         return self.add("same_side", a, b, line, name=name)
 
-    def solve(self) -> SketchResult:
+    def solve(self, *, seconds: float | None = None) -> SketchResult:
         """Moves the entities least so that every constraint holds; see `SketchResult`.
 
-        An inconsistent sketch is left as it is.
+        An inconsistent sketch is left as it is, and so is one that is not solved in time.
+
+        Args:
+            seconds: [s] of processor time after which searches stop, asked for between their steps;
+                `most_seconds` if not given. What is solved in time does not depend on it.
 
         Raises:
-            DegenerateSketch: the solution would leave a line or circle without extent.
+            DegenerateSketch: the solution would leave a line or circle without extent. BadDimension: no number of
+                seconds.
         """
-        return self._result(*self._engine().solve())
+        limit = TimeLimit(self.most_seconds if seconds is None else seconds)
+        return self._result(*self._engine().solve(limit))
 
     def drag(self, point: Point, position: Sequence[float]) -> SketchResult:
         """Brings a point as near to `position` as the constraints allow; all else moves least."""
         self._register.of_kind(point, Point)
-        return self._result(*self._engine().drag(point, two(position, "drag")))
+        limit = TimeLimit(self.most_seconds)
+        return self._result(*self._engine().drag(point, two(position, "drag"), limit))
 
     def curves(self) -> Curve:
         """The drawn parts (segments, arcs, circles) as one curve; chains where ends meet."""

@@ -11,7 +11,8 @@ import numpy as np
 
 from clearance.sketch.branches import run_with_sides
 from clearance.sketch.degenerate import check_degenerate
-from clearance.sketch.execution import ExecutionResult
+from clearance.sketch.effort import OutOfTime, TimeLimit
+from clearance.sketch.execution import ExecutionResult, stopped
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import Problem, problem_of, tables_of
 from clearance.sketch.start import sides_hold
@@ -48,19 +49,28 @@ class Solver:
             self.stale = False
         return self.problem
 
-    def solve(self) -> tuple[Problem, np.ndarray, ExecutionResult]:
+    def solve(self, limit: TimeLimit) -> tuple[Problem, np.ndarray, ExecutionResult]:
         """See `Sketch.solve`."""
         problem = self.current()
+        problem.limit = limit
         before = np.array(self.sketch._lists.numbers)
-        return self._finish(problem, before, run_with_sides(problem, before, self.sides))
+        return self._finish(problem, before, self._run(problem, before))
+
+    def _run(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
+        """The outcome from the numbers before; these again where the time was not enough."""
+        try:
+            return run_with_sides(problem, before, self.sides)
+        except OutOfTime:
+            return stopped(problem, before)
 
     def drag(
-        self, point, position: tuple[float, float]
+        self, point, position: tuple[float, float], limit: TimeLimit
     ) -> tuple[Problem, np.ndarray, ExecutionResult]:
         """See `Sketch.drag`."""
         problem = self.current()
+        problem.limit = limit
         before = np.array(self.sketch._lists.numbers)
-        outcome = run_with_sides(problem, before, self.sides)
+        outcome = self._run(problem, before)
         if outcome.broken == -1:
             target = outcome.x.copy()
             i = problem.alias[point.variable]

@@ -58,6 +58,7 @@ def execute(
         k = place_closed(s, steps, x, sketch, run, limits.settled, k)
         if k == fate.size:
             return fate
+        problem.limit.require_left()
         fate[k] = solve_numeric(s, plan, x, sketch, k, limits)
         k += 1
 

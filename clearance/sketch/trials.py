@@ -32,6 +32,7 @@ class Trials:
         self.problem = problem
         self.before = before
         self.starts = [found]
+        self.limit = problem.limit
         self.alone = np.full(problem.system.kind.size, -1)
 
     def marks(self, chosen: list[int]) -> np.ndarray:
@@ -42,7 +43,10 @@ class Trials:
 
     def part(self, chosen: list[int]) -> Problem:
         """The problem of these constraints alone."""
-        return problem_of(self.tables.only(self.marks(chosen)), self.before)
+        self.limit.require_left()
+        part = problem_of(self.tables.only(self.marks(chosen)), self.before)
+        part.limit = self.limit
+        return part
 
     def run(self, chosen: list[int], effort: int | None = None):
         """The outcome of these constraints alone, solved from the sketch."""
@@ -56,6 +60,7 @@ class Trials:
 
     def solvable(self, chosen: list[int]) -> bool:
         """Whether a trial finds a place where these constraints hold together."""
+        self.limit.require_left()
         if not chosen or self._near(chosen) or self.run(chosen, 0).broken == -1:
             return True
         return self.effort > 0 and self.run(chosen).broken == -1

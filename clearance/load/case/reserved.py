@@ -57,8 +57,7 @@ def _sketch(path: Path, files: InputFiles) -> Sketch:
         result = sketch.solve()
         with at(files.shown(path)):
             if not result.solved:
-                names = ", ".join(result.conflicts[:6])
-                raise BadShape(f"the constraints {names} contradict each other")
+                raise BadShape(result.fault)
             if not sketch.curves().is_closed:
                 raise BadShape(
                     "an open contour", valid="closed contours, since a region is asked for"

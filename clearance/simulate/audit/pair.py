@@ -77,8 +77,8 @@ class PairFinding:
 def audit_pair(robot: Robot, link_a: str, link_b: str, most_boxes: int = MOST_BOXES) -> PairFinding:
     """Whether two links with geometry can meet, at any positions of the joints between them.
 
-    Joints that follow others are where these take them, all within their limits. Joints without limits are looked at
-    over a turn.
+    Joints that follow others are where these take them, all within their limits. Joints without limits are looked
+    at over a turn.
     """
     search = _Search(robot, link_a, link_b)
     status, lower_bound, why = search.answer(most_boxes)

@@ -1,0 +1,121 @@
+"""A solve that is stopped changes nothing and says what it leaves; one that ends in time never sees the clock."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadDimension
+from clearance.sketch import Sketch
+from clearance.sketch.effort import OutOfTime, TimeLimit
+from scripts.bench.sketches.lattices import irreducible, shaken, sketched, slivered
+
+
+class Clock:
+    """Shows 0 s until it has been asked so often, then an hour."""
+
+    def __init__(self, n: float) -> None:
+        self.left = n
+
+    def __call__(self) -> float:
+        self.left -= 1
+        return 0.0 if self.left >= 0 else 3600.0
+
+
+def cluster(off: float = 0.2) -> Sketch:
+    points, edges = irreducible(12, 3)
+    return sketched(points, shaken(points, off, 3), edges)
+
+
+def contradictory() -> Sketch:
+    """Four points with all six distances, one of them wrong, and a chain of others."""
+    s = Sketch()
+    places = [(0.0, 0.0), (1.0, 0.1), (1.1, 1.0), (0.0, 0.9)]
+    p = [s.point(*place) for place in places]
+    for i, j in itertools.combinations(range(4), 2):
+        wrong = 0.3 if (i, j) == (0, 2) else 0.0
+        s.distance(p[i], p[j], math.dist(places[i], places[j]) + wrong)
+    return s
+
+
+MADE = {"a numeric cluster": cluster, "slivers": lambda: slivered(30, 0.05, 1)[0]}
+
+
+def numbers_of(sketch: Sketch) -> np.ndarray:
+    return np.array(sketch._lists.numbers)
+
+
+def solved_with(sketch: Sketch, limit: TimeLimit):
+    return sketch._result(*sketch._engine().solve(limit))
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_whenever_it_is_stopped_it_is_as_it_was_or_solved_as_ever(name):
+    """The clock runs out at every moment at which a search asks for it, one after another."""
+    drawn = numbers_of(MADE[name]())
+    free = MADE[name]()
+    whole = solved_with(free, TimeLimit(math.inf))
+    n_stopped = 0
+    for n in itertools.count(1):
+        sketch = MADE[name]()
+        clock = Clock(n)
+        found = solved_with(sketch, TimeLimit(10.0, clock))
+        if not found.stopped:
+            assert found.solved == whole.solved and (numbers_of(sketch) == numbers_of(free)).all()
+            break
+        n_stopped += 1
+        assert not found.solved and (numbers_of(sketch) == drawn).all()
+    assert n_stopped >= 1
+
+
+def test_what_is_left_unsolved_is_said():
+    sketch = cluster()
+    found = sketch.solve(seconds=0)
+    assert (found.status, found.stopped, found.conflicts) == ("unsolved", True, [])
+    assert set(found.searched) == set(sketch.constraints)
+    assert found.reason.startswith("not solved within 0 s: ")
+    assert found.fault == found.reason and found.repairs == []
+    assert sketch.solve().solved
+
+
+def test_what_needs_no_search_needs_no_time():
+    s = Sketch()
+    a, b, c = s.point(0, 0), s.point(1, 0.1), s.point(0.4, 0.8)
+    for one, other in ((a, b), (b, c), (c, a)):
+        s.distance(one, other, 1.0)
+    assert s.solve(seconds=0).solved
+
+
+def test_a_sketch_keeps_its_own_limit_for_solves_and_drags():
+    sketch = cluster()
+    sketch.most_seconds = 0.0
+    assert sketch.solve().stopped
+    assert sketch.drag(next(iter(sketch.entities.values())), (9.0, 9.0)).stopped
+    assert not sketch.solve(seconds=math.inf).stopped
+
+
+def test_what_conflicts_is_looked_for_as_long_as_a_solve():
+    """The same limit again, for the trials of which constraints conflict, and then for repairs."""
+    quick = contradictory()
+    assert solved_with(quick, TimeLimit(math.inf)).status == "inconsistent"
+    sketch = contradictory()
+    found = solved_with(sketch, TimeLimit(10.0, Clock(math.inf)))
+    assert not found.solved and not found.stopped
+    found._problem.limit = TimeLimit(10.0, Clock(2))
+    assert (found.status, found.conflicts) == ("unsolved", [])
+    assert set(found.searched) == set(sketch.constraints)
+
+
+@pytest.mark.parametrize("seconds", [-1.0, math.nan, "10"])
+def test_what_is_no_number_of_seconds_is_refused(seconds):
+    with pytest.raises(BadDimension, match="seconds is"):
+        cluster().solve(seconds=seconds)
+
+
+def test_a_limit_is_passed_once_and_for_all():
+    limit = TimeLimit(10.0, Clock(3))
+    limit.require_left()
+    limit.require_left()
+    with pytest.raises(OutOfTime):
+        limit.require_left()
