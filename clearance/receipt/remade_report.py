@@ -14,7 +14,7 @@ from pathlib import Path
 from clearance.compile.machine import processor
 from clearance.errors import BadInput, BadSyntax, MissingFile, shown
 from clearance.import_closure import PACKAGE
-from clearance.receipt.receipt_file import REPORT, Receipt
+from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
 from clearance.report.output import CONTENT, write
 from clearance.report.provenance import versions
 from clearance.report.withdrawn import OLDER_SUMMARY
@@ -23,8 +23,10 @@ from clearance.source_digests import closure_digest
 
 PAGE = "report.html"
 
+ABSENT = "not in the folder"
+
 MOST_TOLD, MOST_LETTERS = 3, 80
-"""Differences between two programs that are told, and letters of each."""
+"""Differences between two programs, or files, that are told, and letters of each."""
 
 SHOWN = 48
 """Letters of a line that differs which are told."""
@@ -47,14 +49,19 @@ def other_maker(receipt: Receipt) -> str:
         for name in [*own, *sorted({*told} - {*own})]
         if told.get(name) != own.get(name)
     ]
-    more = [f"and {len(others) - MOST_TOLD} more"] if len(others) > MOST_TOLD else []
-    return ", ".join([*(shown(text[:MOST_LETTERS]) for text in others[:MOST_TOLD]), *more])
+    return listed(others)
+
+
+def listed(names: list[str]) -> str:
+    """The first of some names, and how many more there are."""
+    more = [f"and {len(names) - MOST_TOLD} more"] if len(names) > MOST_TOLD else []
+    return ", ".join([*(shown(text[:MOST_LETTERS]) for text in names[:MOST_TOLD]), *more])
 
 
 def differences(record: Record, place: Path) -> dict[str, str]:
     """What differs, by file, between the report in a folder and the one that a record gives.
 
-    A file that is not in the folder is left out: it says nothing. The summary comes first, then the page.
+    The summary comes first, then the page. A file that is only in the report made again is `ABSENT`.
     """
     with tempfile.TemporaryDirectory() as made:
         write(record, made)
@@ -63,10 +70,15 @@ def differences(record: Record, place: Path) -> dict[str, str]:
             for name in reversed(CONTENT)
         }
     return {
-        name: _first_difference(told, own)
+        name: ABSENT if told is None else _first_difference(told, own)
         for name, (told, own) in pairs.items()
-        if told is not None and told != own
+        if told != own
     }
+
+
+def strangers(place: Path) -> list[str]:
+    """The names of what lies in a folder beside its report and receipt; a report does not vouch for it."""
+    return sorted({path.name for path in place.iterdir()} - {*CONTENT, FILE_NAME})
 
 
 def _first_difference(told: bytes, own: bytes | None) -> str:

@@ -20,7 +20,15 @@ from clearance.receipt.asked import question_of, told_beside
 from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, Receipt, read_receipt
-from clearance.receipt.remade_report import PAGE, differences, other_maker, require_report
+from clearance.receipt.remade_report import (
+    ABSENT,
+    PAGE,
+    differences,
+    listed,
+    other_maker,
+    require_report,
+    strangers,
+)
 from clearance.receipt.verification import (
     ROUNDED,
     Verification,
@@ -84,22 +92,29 @@ def _held_against(
 ) -> Verification:
     """What is proven, less what the report beside it does not bear out."""
     different = differences(run.record, place)
+    absent = [name for name, what in different.items() if what == ABSENT]
+    reasons = {ABSENT: absent, "no file of the report": strangers(place)}
+    different = {name: what for name, what in different.items() if name not in absent}
     made_by = other_maker(receipt) if different else ""
     unproven = next(_not_borne(run, data, receipt), "")
     if made_by:
-        told = f"{', '.join(sorted(different))} (made by {made_by}: not compared)"
-        return replace(
-            found, failure=_other_verdict(run.verdict, place) or unproven, not_verified=told
-        )
-    page = different.pop(PAGE, "") if receipt.head["compared"] else ""
+        reasons = {f"made by {made_by}: not compared": sorted(different)} | reasons
+        failure = _other_verdict(run.verdict, place) or unproven
+        return replace(found, failure=failure, not_verified=_told(reasons))
+    if receipt.head["compared"] and different.pop(PAGE, ""):
+        reasons = {"it shows a comparison with another run": [PAGE]} | reasons
     for name, what in different.items():
         return replace(found, failure=f"{name} is not what the case comes to: {what}")
-    not_verified = f"{PAGE} (it shows a comparison with another run)" if page else ""
     beyond = _beyond(run, data, receipt)
     for rule in data.rules[: n_without_errors(data)]:
         if rule in beyond:
             unproven = f"the report tells of up to {beyond[rule] * 1e3:.6f} mm more ({shown(rule)})"
-    return replace(found, failure=unproven, beyond=beyond, not_verified=not_verified)
+    return replace(found, failure=unproven, beyond=beyond, not_verified=_told(reasons))
+
+
+def _told(reasons: dict[str, list[str]]) -> str:
+    """The files that are not verified, by why."""
+    return ", ".join(f"{listed(names)} ({why})" for why, names in reasons.items() if names)
 
 
 def _not_borne(run: Run, data: CaseData, receipt: Receipt) -> Iterator[str]:

@@ -223,8 +223,34 @@ def test_every_file_of_the_report_is_held_against_the_receipt(folder, name):
     path.write_bytes(path.read_bytes() + b"\n")
     with pytest.raises(BadSyntax, match=f"{name}: it is not as it was"):
         cl.verify(folder, turning_arm())
-    path.unlink()
-    assert cl.verify(folder, turning_arm()).proven  # what is not there tells nothing
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_a_file_that_was_taken_away_is_not_called_verified(named, folder):
+    """Whether the receipt still names it or not."""
+    (folder / "contacts.csv").unlink()
+    told = read_receipt(folder / FILE_NAME).head["report"]
+    if not named:
+        rewritten(
+            folder,
+            head=read_receipt(folder / FILE_NAME).head
+            | {"report": {name: one for name, one in told.items() if name != "contacts.csv"}},
+        )
+    line = first_line(folder)
+    assert line.startswith("PROVEN, NOT VERIFIED: contacts.csv (not in the folder): at least")
+    assert "every byte" not in line
+
+
+def test_what_lies_beside_the_report_is_not_called_verified(folder):
+    (folder / "junit.xml").write_text('<testsuite tests="1" failures="0"/>')
+    (folder / "index.html").write_text("<h1>CLEAR: 500 mm</h1>\n")
+    line = first_line(folder)
+    told = "PROVEN, NOT VERIFIED: index.html, junit.xml (no file of the report): at least"
+    assert line.startswith(told) and "every byte" not in line
+    for word in ("a\x1b[2K", "b" * 200, "c", "d"):
+        (folder / word).mkdir()
+    line = first_line(folder)
+    assert "c, and 3 more (no file of the report)" in line and line.isprintable()
 
 
 def violated() -> cl.Case:
