@@ -11,6 +11,7 @@ from clearance.errors import BadInput, at
 from clearance.load.motion.trajectory_writer import WRITERS, WrittenTrajectory, written
 from clearance.world.case import PlacedRobot
 from clearance.world.motion import Motion
+from clearance.world.notice import NOT_MEASURED
 from clearance.world.trajectory import Trajectory
 
 
@@ -58,6 +59,13 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
         if len(motions) > 1 and is_yaml:
             content = f"# {motion.placed.robot.name}\n".encode() + content
         parts.append(content)
-        notes += changes
+        notes += (*changes, *_bridged(motion))
     between = b"---\n" if is_yaml else b""
     return WrittenTrajectory(between.join(parts), tuple(dict.fromkeys(notes)))
+
+
+def _bridged(motion: Motion) -> list[str]:
+    """That joints go straight where nobody knows how they went, which samples cannot say."""
+    asked = motion.placed.trajectory
+    holes = () if asked is None else asked.holes
+    return [f"{hole.text}: straight here" for hole in holes if hole.means == NOT_MEASURED]

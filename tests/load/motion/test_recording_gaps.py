@@ -9,6 +9,7 @@ from clearance.load.case.case_file import load_case
 from clearance.load.case.recorded_run import with_recorded
 from clearance.load.motion.joint_states import JointState, trajectory_of_states
 from clearance.load.motion.recording_gaps import tracks_of
+from clearance.report.motion_file import motion_content
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import selected_pairs
 from clearance.world.plausibility import notices_of
@@ -186,6 +187,9 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     assert run.summary["certified"]["not_measured"] == [[1.0, 3.0]]
     bound = run.record.certificate.lower_bound[run.record.steps["time"].to_numpy() == 1.0]
     assert not np.isfinite(bound).any()
+    assert motion_content(run.record.motions, "out.csv").notes == (
+        "no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): straight here",
+    )
     held = changed("file: path.csv", "file: path.csv, gaps: hold")
     (told,) = [
         notice.text
