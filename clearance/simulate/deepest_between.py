@@ -22,14 +22,14 @@ LOOKS = 9
 """Moments of a stretch of contact at which depth is found if fewer steps are in it, and as many again about the
 best; one takes milliseconds."""
 
-MOST_STRETCHES = 16
-"""Stretches that are looked into, the first of each pair first."""
+MOST_STRETCHES = 3
+"""Stretches that are looked into, the longest: a verdict waits for them."""
 
 
 def deepest_between(rules: Sequence[RuleAnswer]) -> Moment | None:
     """The first of the deepest moments that are found between the steps; None where none is looked for."""
-    spans = sorted(_spans(rules), key=lambda one: one[0])[:MOST_STRETCHES]
-    return _deepest([_deepest_in(rule, *span) for _, rule, span in spans])
+    spans = sorted(_spans(rules), key=lambda one: one[1] - one[2])[:MOST_STRETCHES]
+    return _deepest([_deepest_in(*span) for span in spans])
 
 
 def _deepest(found: Sequence[Moment | None]) -> Moment | None:
@@ -48,8 +48,8 @@ def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
     return _deepest([best, *_moments(rule, *about)])
 
 
-def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[int, RuleAnswer, tuple[float, float]]]:
-    """The stretches of contact of each pair with few steps in them, numbered pair by pair."""
+def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[RuleAnswer, float, float]]:
+    """The stretches of contact of each pair with few steps in them: from when until when [s]."""
     for rule in rules:
         within = rule.limits.warn
         if rule.certificate is None or not can_be_alone(rule, within):
@@ -60,9 +60,9 @@ def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[int, RuleAnswer, tuple
             times = np.concatenate(
                 [one.section.phase.motions[0].times for one in answer.pairs.answers]
             )
-            for i, (start, end) in enumerate(RuleStretches(answer, "contact").spans.tolist()):
+            for start, end in RuleStretches(answer, "contact").spans.tolist():
                 if ((times >= start) & (times <= end)).sum() < LOOKS:
-                    yield i, answer, (start, end)
+                    yield answer, start, end
 
 
 def _moments(rule: RuleAnswer, start: float, end: float) -> Iterator[Moment]:

@@ -17,10 +17,12 @@ from clearance.kernels.motion.certify_pair import FINEST
 from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import finer_path, prove_path
+from clearance.simulate.measure import nearest_at
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
+from clearance.world.forest import positions_along
 
 LEVELS = ("below_warn", "below_fail", "contact")
 """The levels, the widest first."""
@@ -226,7 +228,7 @@ class _Intervals:
     def parts(self, step: int, n_parts: int) -> Parts:
         """The parts of an interval that are not proven to be above the level."""
         bounds = self._proven(step, n_parts)
-        rows = np.flatnonzero(~self.threshold.above(bounds.lower))
+        rows = np.flatnonzero(~self._is_outside(step, self.threshold.above(bounds.lower)))
         edges = self.times[step] + np.arange(n_parts + 1) / n_parts * np.diff(self.times)[step]
         edges[-1] = self.times[step + 1]
         least = np.where(bounds.pair >= 0, bounds.upper, np.inf)
@@ -239,6 +241,24 @@ class _Intervals:
         return Parts(
             edges[rows], edges[rows + 1], least[rows], steps, steps, share[rows], pair[rows]
         )
+
+    def _is_outside(self, step: int, proven: np.ndarray) -> np.ndarray:
+        """(k,) True for parts above the level: those that are proven, unless a body is within another.
+
+        A proof is of surfaces, and of bodies that begin or end apart. So parts that are proven one after another
+        need no look if they join a step that is above the level; of others one moment is measured.
+        """
+        n, ends = len(proven), self.threshold.above(self.at_steps[step : step + 2])
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], proven, [False]]).astype(np.int8)))
+        outside = proven.copy()
+        for first, stop in edges.reshape(-1, 2).tolist():
+            if (first == 0 and ends[0]) or (stop == n and ends[1]):
+                continue
+            phase, what = self.answer.section.phase, self.answer.section.in_motion
+            middle = np.array([0.5 * (first + stop) / n])
+            there = nearest_at(what, positions_along(phase.case, phase.motions, step, middle))
+            outside[first:stop] = self.threshold.above(there.clearance)[0]
+        return outside
 
     def _proven(self, step: int, n_parts: int) -> IntervalBounds:
         what = self.answer.section.in_motion

@@ -12,9 +12,12 @@ from clearance.report.intervals import events, intervals
 from clearance.report.motion_intervals import motion_levels
 from clearance.simulate import stretches
 from clearance.simulate.stretches import LEVELS, joined_spans
-from clearance.world.case import Case
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory
+from tests.made_cases import at
 from tests.simulate.test_between_steps import LIMITS, PAST, THROUGH, sweeping
 
 TWICE = [[-1.0, 0.0], [1.0, 0.0], [-0.3, 0.3], [0.2, -0.4], [-1.1, 0.1], [-1.0, 0.0]]
@@ -142,3 +145,18 @@ def test_spans_that_overlap_or_meet_are_one():
     spans = np.array([[3.0, 4.0], [0.0, 1.0], [1.0, 2.0], [3.5, 3.6], [5.0, 5.0]])
     assert joined_spans(spans).tolist() == [[0.0, 2.0], [3.0, 4.0], [5.0, 5.0]]
     assert joined_spans(np.empty((0, 2))).shape == (0, 2)
+
+
+def test_a_body_that_goes_wholly_into_another_stays_in_contact():
+    """A cube of 0.1 m goes through a solid block of 1 m: from 0.45 to 1.55 m, its surface 0.45 m away half way."""
+    slide = Joint(
+        "slide", JointKind.PRISMATIC, "base", "cube", at(), np.array([1.0, 0.0, 0.0]), -3, 3
+    )
+    robot = Robot("slider", ("base", "cube"), (slide,), (Body("cube", cl.box((0.1,) * 3)),))
+    block = Obstacle(Body("block", cl.box((1.0, 1.0, 1.0))), at(1.0))
+    for positions in ([[0.0], [2.0]], [[0.0], [0.9], [1.1], [2.0]]):
+        asked = Trajectory(np.array(positions)[:, 0], ("slide",), np.array(positions))
+        case = Case("through", (PlacedRobot(robot, asked),), (block,), LIMITS)
+        (contact,) = spans_of(case)["contact"].tolist()
+        assert contact[0] <= 0.45 <= contact[0] + 0.021 and contact[1] - 0.021 <= 1.55 <= contact[1]
+        assert len(spans_of(case)["below_warn"]) == len(spans_of(case)["below_fail"]) == 1
