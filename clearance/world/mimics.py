@@ -49,7 +49,7 @@ def range_of(robot: Robot, master: str) -> tuple[float, float]:
     """
     low, high = -math.inf, math.inf
     for joint, leader, factor, offset in followers(robot):
-        if leader != master or joint.kind is JointKind.CONTINUOUS:
+        if leader != master:
             continue
         if factor == 0.0:
             if not joint.lower <= offset <= joint.upper:
