@@ -88,7 +88,8 @@ def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
     text = f"{verdict.text()}: {least_text(worst)} at {moment_text(worst)}"
     waived = [f"waived: {line}" for line in verdict.waived]
     nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
-    text = "; ".join([text, *verdict.reasons, *waived, *nearest, *verdict.scope])
+    at_level = [verdict.at_level] if verdict.at_level else []
+    text = "; ".join([text, *at_level, *verdict.reasons, *waived, *nearest, *verdict.scope])
     return TestResult("verdict", "verdict", text, "" if verdict.passed else "NotPassed")
 
 

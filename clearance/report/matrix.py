@@ -73,7 +73,9 @@ def matrix(summary: dict[str, Any]) -> Markup:
 
 def _meaning(summary: dict[str, Any]) -> list[str]:
     shown = _PAIR_SHOWN[summary["need"] == "pairs"]
-    when = "Over the motion" if summary["certified"] else "At the steps"
+    proven = [pair["proven"] is not None for pair in summary["pairs"]]
+    when = "Over the motion" if any(proven) else "At the steps"
+    when += ", of pairs that do not come near at the steps" if any(proven) > all(proven) else ""
     told = [
         f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
         f"line and {shown}; \N{EN DASH} marks a pair that was not measured."

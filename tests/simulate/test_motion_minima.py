@@ -36,6 +36,7 @@ def statuses(case: Case) -> dict[tuple[str, str], tuple[float, str]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [two_posts(), sweeping(TWICE, 0.47), sweeping(TWICE)])
 def test_pairs_stand_as_at_a_hundred_times_as_many_samples(case):
     coarse, fine = statuses(case), statuses(finer(case, 100))

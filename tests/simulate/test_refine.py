@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.report.junit_cases import results_of
 from clearance.simulate import refine
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -44,7 +45,10 @@ def test_a_gap_that_is_as_wide_as_its_limit_keeps_it(made, limit, status):
     assert (run.status, run.passed, run.verdict.unproven) == (status, True, None)
     assert gap - limits.rounding <= run.certificate.lower_bound.min() <= run.worst["clearance"]
     assert 0.0 < limits.rounding < 2e-11
-    assert f"equal to the {limit} limit but for rounding" in run.verdict.at_level
+    told = f"equal to the {limit} limit but for rounding"
+    assert told in run.verdict.at_level and run.summary["at_level"] == run.verdict.at_level
+    first = next(results_of(run.record, run.verdict))
+    assert told in first.text and not first.fault
 
 
 @pytest.mark.parametrize("made", [sliding, passing])

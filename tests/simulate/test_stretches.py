@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import clearance as cl
 from clearance.report.intervals import events, intervals
 from clearance.report.motion_intervals import motion_levels
 from clearance.simulate import stretches
+from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.simulate.stretches import LEVELS, joined_spans
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -19,6 +21,8 @@ from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
 from tests.simulate.test_between_steps import LIMITS, PAST, THROUGH, sweeping
+
+SCENES = Path(__file__).parents[2] / "scenes"
 
 TWICE = [[-1.0, 0.0], [1.0, 0.0], [-0.3, 0.3], [0.2, -0.4], [-1.1, 0.1], [-1.0, 0.0]]
 """Over the post or through it five times, twice with a bent elbow."""
@@ -97,6 +101,7 @@ def test_many_steps_below_are_taken_whole(monkeypatch):
     assert found["contact"].tolist() == [[0.0, 2.0]]
 
 
+@pytest.mark.slow
 def test_cubics_are_followed():
     velocities = np.array([[0.0, 0.0], [3.0, 0.0]])
     case = sweeping(THROUGH, PAST, velocities=velocities)
@@ -160,3 +165,33 @@ def test_a_body_that_goes_wholly_into_another_stays_in_contact():
         (contact,) = spans_of(case)["contact"].tolist()
         assert contact[0] <= 0.45 <= contact[0] + 0.021 and contact[1] - 0.021 <= 1.55 <= contact[1]
         assert len(spans_of(case)["below_warn"]) == len(spans_of(case)["below_fail"]) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["door_and_arm", "turntable_cell", "panda_shelf"])
+def test_moments_of_cells_that_are_below_lie_in_the_stretches(scene):
+    """Doors and turntables that move by tables, parts that are carried, rules; samples that are far apart."""
+    case = cl.load_case(SCENES / scene / "case.yaml")
+    record = cl.check(replace(case, robots=tuple(map(thinned, case.robots)), waivers=())).record
+    spans, rng = motion_levels(record).spans, np.random.default_rng(5)
+    for rule in record.rules:
+        for answer in rule.pairs.answers:
+            for step in range(answer.section.phase.first, answer.section.phase.last):
+                for moment in nearest_moments(rule, answer, step, np.sort(rng.random(3))):
+                    below = (
+                        moment.clearance < rule.limits.warn,
+                        moment.clearance < rule.limits.fail,
+                        moment.touches,
+                    )
+                    for level, is_below in zip(LEVELS, below, strict=True):
+                        inside = any(a <= moment.time <= b for a, b in spans[level])
+                        assert inside or not is_below, (level, moment.time, moment.clearance)
+
+
+def thinned(placed: PlacedRobot) -> PlacedRobot:
+    """The robot with every twentieth of its samples."""
+    asked = placed.trajectory
+    kept = np.unique(np.append(np.arange(0, asked.n_steps, 20), asked.n_steps - 1))
+    velocities = None if asked.velocities is None else asked.velocities[kept]
+    table = Trajectory(asked.times[kept], asked.joint_names, asked.positions[kept], velocities)
+    return replace(placed, trajectory=table)

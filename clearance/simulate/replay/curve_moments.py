@@ -79,7 +79,7 @@ def _evenly(record: Record) -> list[Moment]:
             continue
         shares = np.arange(1, n_parts) / n_parts
         own = [
-            (rule, _nearest(rule, answer, step, shares))
+            (rule, nearest_moments(rule, answer, step, shares))
             for rule, answer in answers
             if answer.section.phase.first <= step < answer.section.phase.last
         ]
@@ -89,7 +89,7 @@ def _evenly(record: Record) -> list[Moment]:
     return found
 
 
-def _nearest(
+def nearest_moments(
     rule: RuleAnswer, answer: SectionAnswer, step: int, shares: np.ndarray
 ) -> list[Moment]:
     """The nearest pair of a section at some shares (k,) of the interval after a step of the run."""
