@@ -24,14 +24,15 @@ from clearance.receipt.remade_report import has_comparison, hashes_of, maker
 from clearance.receipt.search import MOST_ITEMS, EvidenceSearch, TooManyProofs
 from clearance.report.folder import write_file
 
-GIVEN_UP = (0.03, 0.12)
-"""[-] Of what tolerances take, by which claims are below what they leave; the first that can be shown."""
+GIVEN_UP = (0.0, 0.12)
+"""[-] Of what tolerances take, by which claims are below what they leave, but for the least of a rule; the first
+that can be shown."""
 
 MOST_GIVEN_UP = 0.2
 """[-] The same of single intervals at most, where evidence would be without end."""
 
 MOST_WITH_ERRORS = 1_500_000
-"""Proofs of what tolerances leave; where more are needed, more is given up."""
+"""Proofs of what tolerances leave; where more are needed, something is given up."""
 
 MANY = 500_000
 """Proofs without tolerances from which on the most is given up at once."""
@@ -166,7 +167,8 @@ def _attempts(
     exact = claims_of(record, data)
     lowest = _lowered(exact, n_rules, MOST_GIVEN_UP)
     for share in GIVEN_UP if n_nominal < MANY else GIVEN_UP[-1:]:
-        lowered = _kept(_lowered(exact, n_rules, share), data, kind)
+        lowered = _no_lower_than_least(_lowered(exact, n_rules, share), exact)
+        lowered = _kept(lowered, data, kind)
         both = np.concatenate([claims, lowered[n_rules:]])
         search = EvidenceSearch(data.stretches[n_stretches:], data.shapes, halves, both, lowest)
         last = share == GIVEN_UP[-1]
@@ -207,13 +209,21 @@ def _kept(claims: np.ndarray, data: CaseData, kind: str) -> np.ndarray:
 
 
 def _lowered(claims: np.ndarray, n_rules: int, share: float) -> np.ndarray:
-    """The claims with tolerances, less a share of what these take and two micrometres: the proof has bounds of its
-    own, and what would take the most evidence is not worth it.
+    """The claims with tolerances, less a share of what these take and, with it, two micrometres.
+
+    The proof has bounds of its own, and what would take the most evidence is not worth it.
     """
     nominal, left = claims[:n_rules], claims[n_rules:]
     taken = np.where(nominal == NOT_CLAIMED, 0, np.maximum(nominal - left, 0))
-    less = left - np.ceil(share * taken).astype(np.int64) - MICROMETRES
+    less = left - np.ceil(share * taken).astype(np.int64) - (MICROMETRES if share else 0)
     return np.concatenate([nominal, np.where(left == NOT_CLAIMED, left, less)])
+
+
+def _no_lower_than_least(lowered: np.ndarray, exact: np.ndarray) -> np.ndarray:
+    """Claims that are given up no further than the least of their rule, on which a verdict rests."""
+    claimed = exact != NOT_CLAIMED
+    least = np.where(claimed, exact, np.iinfo(np.int64).max).min(axis=1, keepdims=True)
+    return np.where(claimed, np.maximum(lowered, least), lowered)
 
 
 def claims_of(record: Record, data: CaseData) -> np.ndarray:
