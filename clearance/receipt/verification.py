@@ -31,7 +31,7 @@ class Verification:
     """What a receipt comes to.
 
     Attributes:
-        name: of the case. kind: "full" or "sampled".
+        name: of the case. source: its file; empty where it was given as an object. kind: "full" or "sampled".
         failure: what is not proven, first of all; empty if all is.
         bounds: [m] proven of each rule that judges something, over all intervals but those of `n_contact`.
         n_pairs, n_intervals: of the run. n_claimed: intervals of which something is claimed.
@@ -64,6 +64,7 @@ class Verification:
     verdict: str = ""
     asked: tuple[str, ...] = ()
     not_verified: str = ""
+    source: str = ""
 
     @property
     def proven(self) -> bool:
@@ -85,7 +86,7 @@ class Verification:
         return (
             f"{sampled}{nominal}PROVEN{self._left_out}{not_verified}: {bounds} between all {self.n_pairs} pairs "
             f"over {span} intervals of motion; verdict {self.verdict}{asked}{report}; "
-            f"{len(self.inputs)} inputs unchanged, data {self.data[:16]}"
+            f"{len(self.inputs)} inputs of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
         )
 
     def _bound_text(self, rule: str) -> str:

@@ -83,7 +83,8 @@ def verify(
     files = tuple(name for name in (receipt.head["tolerance"], *receipt.head["waivers"]) if name)
     run = answer(question)
     asked = told_beside(own, question, files)
-    found = replace(found, asked=asked, verdict=run.verdict.text())
+    source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
+    found = replace(found, asked=asked, verdict=run.verdict.text(), source=source)
     return _held_against(found, run, data, receipt, place)
 
 
