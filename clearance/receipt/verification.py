@@ -130,7 +130,7 @@ def proven(case: Case, data: CaseData, receipt: Receipt) -> Verification:
         n_claimed=int(claimed.any(axis=0).sum()),
         n_contact=int(open_ones[:n_nominal].any(axis=0).sum()),
         data=data.digest,
-        inputs=tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
+        inputs=tuple({one["path"]: one["sha256"] for one in receipt.head["inputs"]}.items()),
         unmeasured=data.unmeasured,
         nominal=not data.has_errors and case.tolerance is not None,
         n_not_ruled_out=int(open_ones[n_nominal:].any(axis=0).sum()),

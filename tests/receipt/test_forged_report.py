@@ -371,6 +371,16 @@ def test_inputs_of_which_the_case_knows_nothing_are_refused(folder):
     assert str(told.value).isprintable() and "\\n\\x1b[2KPROVEN" in str(told.value)
 
 
+@pytest.mark.slow
+def test_an_input_is_told_once_and_with_the_hash_that_was_compared(tmp_path):
+    case = cl.load_case(Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml")
+    saved(case, tmp_path)
+    inputs = read_receipt(tmp_path / FILE_NAME).head["inputs"]
+    hashed(tmp_path, inputs=[{**inputs[0], "sha256": "0" * 64}, *inputs])
+    found = cl.verify(tmp_path, case)
+    assert found.inputs == tuple((one["path"], one["sha256"]) for one in inputs)
+
+
 @pytest.mark.parametrize("word", ["x\n\x1b[2KPROVEN: at least 99.000 mm", "9" * 5000])
 def test_names_in_a_receipt_cannot_write_a_line_of_their_own(folder, word):
     path = folder / "summary.json"
