@@ -175,7 +175,7 @@ def test_no_value_of_the_summary_passes_as_made_elsewhere(report, tmp_path, answ
 TABLES = ("steps.csv", "contacts.csv", "budget.csv", "findings.json", "worst_moments.yaml")
 
 
-@pytest.mark.parametrize("name", [*TABLES, "report.html"])
+@pytest.mark.parametrize("name", [*TABLES, pytest.param("report.html", marks=pytest.mark.slow)])
 def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tolerances, tmp_path):
     folder = Path(shutil.copytree(report_with_tolerances, tmp_path / "report"))
     path = folder / name
@@ -254,9 +254,10 @@ def test_what_lies_beside_the_report_is_not_called_verified(folder):
 
 
 def violated() -> cl.Case:
-    return replace(turning_arm(), limits=cl.Limits(0.2, 0.3))
+    return replace(turning_arm(), limits=cl.Limits(0.15, 0.3))
 
 
+@pytest.mark.slow
 def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
     saved(violated(), tmp_path)
 
@@ -276,17 +277,18 @@ def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
 def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(tmp_path):
     saved(violated(), tmp_path)
     found = cl.verify(tmp_path, violated())
-    assert found.proven and found.verdict == "violated" and found.below == {"default": 0.2}
-    assert "(default, BELOW ITS LIMIT of 200 mm)" in found.headline
+    assert found.proven and found.verdict == "violated" and found.below == {"default": 0.15}
+    assert "(default, BELOW ITS LIMIT of 150 mm)" in found.headline
     assert "; verdict violated, every byte" in found.headline
 
 
+@pytest.mark.slow
 def test_limits_that_are_not_those_of_the_case_are_told(tmp_path):
     """A run that was asked with lower limits is right, and its first line says what was asked."""
     asked = replace(violated(), limits=cl.Limits(0.001, 0.002))
     saved(asked, tmp_path)
     found = cl.verify(tmp_path, violated())
-    told = "verdict clear (fail 1 mm, not the case's 200 mm; warn 2 mm, not the case's 300 mm)"
+    told = "verdict clear (fail 1 mm, not the case's 150 mm; warn 2 mm, not the case's 300 mm)"
     assert found.proven and told in found.headline
     assert "not the case's" not in cl.verify(tmp_path, asked).headline
 
@@ -308,11 +310,12 @@ def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(tmp
     assert first_line(tmp_path, violated()).startswith("NOT PROVEN: summary.json is not what")
 
 
+@pytest.mark.slow
 def test_a_verdict_that_rests_on_waivers_says_so_and_of_which_day(tmp_path):
     saved(waived(), tmp_path)
     asked = read_receipt(tmp_path / FILE_NAME).head["asked"]
     line = first_line(tmp_path, waived())
-    assert "BELOW ITS LIMIT of 200 mm" in line
+    assert "BELOW ITS LIMIT of 150 mm" in line
     assert f"with 1 waiver (waivers as of {asked['today']})" in line
     hashed(tmp_path, asked=asked | {"today": "2900-01-02"})
     assert first_line(tmp_path, waived()).startswith("NOT PROVEN: summary.json is not what")
