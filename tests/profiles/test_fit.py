@@ -152,7 +152,7 @@ def contradictory():
     ("sketch", "outline", "options", "fault", "said"),
     [
         (lambda: rectangle(1, 1, driven=()), SQUARE, {}, NoFreeDimension, "no free dimension"),
-        (contradictory, SQUARE, {}, BadShape, "contradict each other"),
+        (contradictory, SQUARE, {}, BadShape, "no place found where"),
         (
             lambda: rectangle(1, 1),
             cl.Curve.polyline([[0, 0], [1, 0], [1, 1]]),
