@@ -6,6 +6,7 @@ that is more; what is not proven then is in the stretch. Not for: whether a leve
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
@@ -19,6 +20,7 @@ from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import finer_path, prove_path
 from clearance.simulate.measure import nearest_at
 from clearance.simulate.moment import Moment, MomentQuery
+from clearance.simulate.parts import blocks
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
@@ -154,6 +156,12 @@ def joined_spans(spans: np.ndarray) -> np.ndarray:
     return np.column_stack([spans[first, 0], np.append(reached[first[1:] - 1], reached[-1])])
 
 
+def _places(n: int, test: Callable[[slice], np.ndarray]) -> np.ndarray:
+    """(k,) where a test holds among n rows, asked a block at a time to save memory."""
+    found = [block.start + np.flatnonzero(test(block)) for block in blocks(n)]
+    return np.concatenate([np.empty(0, dtype=np.int64), *found])
+
+
 def threshold_of(section: Section, level: str | float) -> Threshold:
     """What distances of a section, paddings left out, are held against."""
     if level == "contact":
@@ -169,16 +177,15 @@ def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts
     """The parts of a section."""
     assert answer.certificate is not None, "the run is certified"
     own = _Intervals(answer, answer.certificate, threshold_of(answer.section, level))
-    below = ~own.threshold.above(own.at_steps)
-    is_open = ~own.threshold.above(own.certificate.lower_bound[:-1])
-    inner = is_open & below[:-1] & below[1:]
-    parted = is_open & (own.most_parts > 1) & answer.section.tied
-    if own.most_parts[inner].sum() > MOST_LOOKS:
+    opened = own.opened
+    inner = own.below(opened) & own.below(opened + 1)
+    parted = (own.most_parts(opened) > 1) & answer.section.tied
+    if own.most_parts(opened[inner]).sum() > MOST_LOOKS:
         parted &= ~inner
-    split = np.flatnonzero(parted)[:MOST_SPLIT]
-    is_open[split] = False
-    found = [own.steps(np.flatnonzero(below)), own.whole(np.flatnonzero(is_open))]
-    found += [own.parts(int(i), int(own.most_parts[i])) for i in split]
+    split = opened[parted][:MOST_SPLIT]
+    whole = np.setdiff1d(opened, split, assume_unique=True)
+    found = [own.steps(own.steps_below), own.whole(whole)]
+    found += [own.parts(int(i), int(n)) for i, n in zip(split, own.most_parts(split), strict=True)]
     joined = Parts(*(np.concatenate(column) for column in zip(*found, strict=True)))
     return joined._replace(
         least=joined.least - answer.section.padding,
@@ -199,16 +206,25 @@ class _Intervals:
         """(n,) [s] of its steps."""
         return self.answer.section.phase.motions[0].times
 
-    @cached_property
-    def at_steps(self) -> np.ndarray:
-        """(n,) [m] the least distance of each step, infinite where it is not known."""
-        clearance = self.answer.found.clearance
-        return np.where(np.isnan(clearance), np.inf, clearance)
+    @property
+    def opened(self) -> np.ndarray:
+        """(k,) the intervals that are not proven to be above the level."""
+        lower = self.certificate.lower_bound[:-1]
+        return _places(len(lower), lambda block: ~self.threshold.above(lower[block]))
 
-    @cached_property
-    def most_parts(self) -> np.ndarray:
-        """(n - 1,) how many parts of each interval are as long as they should be."""
-        length = np.diff(self.times)
+    @property
+    def steps_below(self) -> np.ndarray:
+        """(k,) the steps that are below the level."""
+        return _places(len(self.times), lambda block: self.below(block))
+
+    def below(self, steps: np.ndarray | slice) -> np.ndarray:
+        """(k,) True for steps that are known to be below the level."""
+        clearance = self.answer.found.clearance[steps]
+        return ~(np.isnan(clearance) | self.threshold.above(clearance))
+
+    def most_parts(self, steps: np.ndarray) -> np.ndarray:
+        """(k,) how many parts of the intervals after some steps are as long as they should be."""
+        length = self.times[steps + 1] - self.times[steps]
         part = np.maximum(FINEST_TIME, FINEST_SHARE * length)
         return np.maximum(1, np.ceil(length / part * (1.0 - 1e-9))).astype(np.int64)
 
@@ -216,7 +232,7 @@ class _Intervals:
         """Steps that are below the level."""
         times, pairs = self.times[steps], self.answer.found.pair[steps]
         none = np.zeros(len(steps))
-        return Parts(times, times, self.at_steps[steps], pairs, steps, none, pairs)
+        return Parts(times, times, self.answer.found.clearance[steps], pairs, steps, none, pairs)
 
     def whole(self, steps: np.ndarray) -> Parts:
         """Whole intervals, with the least that the certificate saw in them."""
@@ -248,7 +264,7 @@ class _Intervals:
         A proof is of surfaces, and of bodies that begin or end apart. So parts that are proven one after another
         need no look if they join a step that is above the level; of others one moment is measured.
         """
-        n, ends = len(proven), self.threshold.above(self.at_steps[step : step + 2])
+        n, ends = len(proven), ~self.below(slice(step, step + 2))
         edges = np.flatnonzero(np.diff(np.concatenate([[False], proven, [False]]).astype(np.int8)))
         outside = proven.copy()
         for first, stop in edges.reshape(-1, 2).tolist():

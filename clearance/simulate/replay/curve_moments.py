@@ -14,6 +14,7 @@ from clearance.simulate.certificate import Certificate, motion_codes
 from clearance.simulate.measure import nearest_at
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
+from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.rule_answer import RuleAnswer, standing_worst
 from clearance.simulate.section_answer import SectionAnswer
@@ -42,27 +43,37 @@ def curve_moments(record: Record) -> list[Moment]:
 
 def _dips(record: Record) -> Iterator[Moment]:
     """The least moment of each interval that comes nearer than its ends, by the rule that stands worst then."""
-    certificates, standing = [], []
+    worst: dict[int, tuple[float, Certificate]] = {}
     for rule in record.rules:
         own = rule.certificate
-        if own is not None:
-            codes = motion_codes(own, rule.limits, slice(None))
-            margins = own.upper_bound - rule.limits.fail
-            certificates.append(own)
-            standing.append(np.where(_is_dip(rule, own), codes * BEYOND_REACH - margins, -np.inf))
-    which, worst = np.argmax(standing, axis=0), np.max(standing, axis=0)
-    dips = np.flatnonzero(np.isfinite(worst))
-    for step in dips[np.argsort(-worst[dips], kind="stable")][:MOST_DIPS].tolist():
-        yield certificates[int(which[step])].moment_of(step)
+        if own is None:
+            continue
+        for block in blocks(len(own.pair)):
+            steps = block.start + np.flatnonzero(_is_dip(rule, own, block))
+            standing = own.upper_bound[steps] - rule.limits.fail
+            standing -= motion_codes(own, rule.limits, block)[steps - block.start] * BEYOND_REACH
+            for step, value in zip(steps.tolist(), standing.tolist(), strict=True):
+                if step not in worst or value < worst[step][0]:
+                    worst[step] = value, own
+            worst = _first(worst) if len(worst) > 4 * MOST_DIPS else worst
+    for step, (_, own) in _first(worst).items():
+        yield own.moment_of(step)
 
 
-def _is_dip(rule: RuleAnswer, certificate: Certificate) -> np.ndarray:
-    """(n,) True where the motion is seen nearer than at both ends by more than the gap, or in contact."""
-    ends = np.where(np.isnan(rule.measurement.clearance), np.inf, rule.measurement.clearance)
-    lesser = np.minimum(ends, np.append(ends[1:], np.inf))
-    deeper = certificate.upper_bound < lesser - certificate.gap
-    touches = certificate.touches(slice(None)) & (lesser > 0.0)
-    return (certificate.pair >= 0) & (deeper | touches)
+def _first(worst: dict[int, tuple[float, Certificate]]) -> dict[int, tuple[float, Certificate]]:
+    """Those of some steps that stand worst, the worst first."""
+    return {step: worst[step] for step in sorted(worst, key=lambda one: worst[one][0])[:MOST_DIPS]}
+
+
+def _is_dip(rule: RuleAnswer, certificate: Certificate, block: slice) -> np.ndarray:
+    """(k,) True where the motion is seen nearer than at both ends by more than the gap, or in contact."""
+    clearance = rule.measurement.clearance[block.start : block.stop + 1]
+    ends = np.where(np.isnan(clearance), np.inf, clearance)
+    n = block.stop - block.start
+    lesser = np.minimum(ends[:n], np.append(ends[1:], np.inf)[:n])
+    deeper = certificate.upper_bound[block] < lesser - certificate.gap
+    touches = certificate.touches(block) & (lesser > 0.0)
+    return (certificate.pair[block] >= 0) & (deeper | touches)
 
 
 def _evenly(record: Record) -> list[Moment]:
