@@ -40,7 +40,7 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 def notices_on_motion(
     placed: PlacedRobot, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
-    """What of a robot's motion looks like another unit, and that it is a goal without a start.
+    """What of a robot's motion looks like another unit, and that nobody says where it begins.
 
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
@@ -49,21 +49,27 @@ def notices_on_motion(
     return [
         *notices_on_positions(joint_extents(placed) if extents is None else extents, before),
         *_suspect(told),
-        *_goal_alone(placed),
+        *_way_in(placed),
     ]
 
 
-def _goal_alone(placed: PlacedRobot) -> list[Notice]:
-    """That all which is asked is to be somewhere at a time after 0: nobody says which way that is."""
-    asked = placed.given_trajectory
-    if asked.n_steps > 1 or asked.times[0] <= 0.0:
+def _way_in(placed: PlacedRobot) -> list[Notice]:
+    """That nobody says how a robot comes to its first sample; where that is all which is asked, it is no motion."""
+    asked, about = placed.given_trajectory, placed.robot.name
+    first = float(asked.times[0])
+    if asked.n_steps < 2 and first > 0.0:
+        text = (
+            f"the trajectory of robot {about!r} is one goal at {first:.6g} s, and the motion there is not "
+            "measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is a single pose"
+        )
+        return [Notice(Severity.SUSPECT, START, text, about)]
+    if not asked.has_way_in:
         return []
     text = (
-        f"the trajectory of robot {placed.robot.name!r} is one goal at {asked.times[0]:.6g} s, and the motion "
-        "there is not measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is "
-        "a single pose"
+        f"not measured: how robot {about!r} comes to its first point at {first:.6g} s; "
+        "trajectory: {start_state: …} says where it begins at 0 s"
     )
-    return [Notice(Severity.SUSPECT, START, text, placed.robot.name)]
+    return [Notice(Severity.WARNING, START, text, about)]
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:

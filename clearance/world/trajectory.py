@@ -72,6 +72,7 @@ class Trajectory:
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
+        has_way_in: True if a message moves joints to the first of several samples from where nobody says.
         wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
             A `PlacedRobot` takes whole turns off those that are meant the shortest way.
 
@@ -90,6 +91,7 @@ class Trajectory:
     path_error: float = 0.0
     points: Points | None = None
     began: float | None = None
+    has_way_in: bool = False
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):

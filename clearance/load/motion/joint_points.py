@@ -195,10 +195,13 @@ def _notes(points: list[_Point], trajectory: Trajectory) -> list[str]:
     notes = []
     first = points[0]
     if "accelerations" in first.values:
+        followed = (
+            f"; {len(points)} points are followed by cubics through {trajectory.n_steps}, "
+            f"{trajectory.path_error:.1g} rad or m off at most, which clearances are lessened by"
+        )
         notes.append(
             "joints move on the quintics through positions, velocities and accelerations, as with ROS's joint "
-            f"trajectory controller; {len(points)} points are followed by cubics through {trajectory.n_steps}, "
-            f"{trajectory.path_error:.1g} rad or m off at most, which clearances are lessened by"
+            f"trajectory controller{followed if trajectory.n_steps > 1 else ''}"
         )
     if any("effort" in point.values for point in points):
         notes.append("effort is not read")

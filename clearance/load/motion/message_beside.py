@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -85,7 +86,7 @@ def with_start(
     first = float(trajectory.times[0])
     if start is None:
         without = f"the first point is at {first:g} s; how the robot gets there is not in the file"
-        return trajectory, (without,) if first > 0.0 else ()
+        return _with_way_in(trajectory), (without,) if first > 0.0 else ()
     names = trajectory.joint_names
     others = [f"{name}: {at_:g}" for name, at_ in start.positions.items() if name not in names]
     notes = [
@@ -95,7 +96,7 @@ def with_start(
     missing = [name for name in names if name not in start.positions]
     if missing:
         notes.append(f"{start.place} is not used: it says nothing of {listed(missing, 8)}")
-        return trajectory, tuple(notes)
+        return _with_way_in(trajectory), tuple(notes)
     positions = np.array([start.positions[name] for name in names])
     if first > 0.0:
         notes.append(
@@ -110,6 +111,12 @@ def with_start(
             f"{start.place} has joint {names[i]!r} {off[i]:.3g} off the first point, at {first:g} s, which counts"
         )
     return trajectory, tuple(notes)
+
+
+def _with_way_in(trajectory: Trajectory) -> Trajectory:
+    return replace(
+        trajectory, has_way_in=trajectory.n_steps > 1 and bool(trajectory.times[0] > 0.0)
+    )
 
 
 def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str]:

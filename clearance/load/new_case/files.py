@@ -200,8 +200,10 @@ def _text(
 
 
 def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
-    """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes."""
-    if trajectory.holes and given.trajectory is not None:
+    """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes, or
+    that it comes to its first sample from elsewhere.
+    """
+    if (trajectory.holes or trajectory.has_way_in) and given.trajectory is not None:
         keys = dict(given.trajectory)
         return {**keys, "file": path_from(folder, keys["file"])}
     return {"file": TRAJECTORY if trajectory.points is None else MESSAGE}

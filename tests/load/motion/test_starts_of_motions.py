@@ -91,6 +91,35 @@ def test_a_goal_without_a_start_is_suspect_in_whatever_format(tmp_path):
         assert found.verdict.text() == "suspect (would be clear at a single pose)"
 
 
+LATE = plan(point(4.0, 1.0, 0.05), point(6.0, 0.0, 0.05), names=("shoulder", "lift"))
+
+
+def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
+    says = (
+        "not measured: how robot 'arm' comes to its first point at 4 s; "
+        "trajectory: {start_state: …} says where it begins at 0 s"
+    )
+    case = load(tmp_path, LATE)
+    assert [one.text for one in notices_of(case)] == [says]
+    found = check(case, need="minimum").verdict
+    assert found.exit_code == 0 and list(found.warnings) == [says]
+    assert kinds(load(tmp_path, LATE, ", start_state: {shoulder: 0, lift: 0}")) == []
+    start = state({"shoulder": 0.0, "lift": 0.0})
+    assert kinds(load(tmp_path, displayed(LATE, start))) == []
+    assert kinds(load_small(tmp_path, trajectory="time,shoulder\n4,1\n6,0\n")) == []
+
+
+def test_a_new_case_keeps_that_the_way_to_the_first_point_is_not_known(tmp_path, capsys):
+    load(tmp_path, LATE)
+    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
+    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
+    asked = [word for key, name in files.items() for word in (f"--{key}", str(tmp_path / name))]
+    assert run(["new", str(tmp_path / "made"), *asked]) == 0
+    case = load_case(tmp_path / "made" / "case.yaml")
+    assert kinds(case) == ["start"]
+    assert "start_state: {shoulder: 0.0, lift: 0.0}" in (tmp_path / "made/case.yaml").read_text()
+
+
 def test_a_start_in_the_case_makes_it_a_motion(tmp_path):
     case = load(tmp_path, GOAL, ", start_state: {shoulder: -0.5, lift: 0.02}")
     asked = case.robots[0].trajectory
