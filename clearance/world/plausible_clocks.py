@@ -13,10 +13,12 @@ import numpy as np
 
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.notice import Notice, Severity
+from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
 
 SKEW = 1e-3
-"""[s] Recordings that begin within it begin together."""
+"""[s] Recordings that begin within it begin together. Beyond it, and within an interval of theirs, each began with
+its first message: that is a warning."""
 
 
 class _Table(NamedTuple):
@@ -65,7 +67,14 @@ def _recordings_apart(case: Case) -> Iterator[Notice]:
                 f"than that of {recorded[0].robot.name!r}, and is taken from 0 s; `start: {start}` beside its "
                 "file takes it so, `start: 0` says that this is meant"
             )
-            yield Notice(Severity.SUSPECT, "clocks", text)
+            by_chance = apart <= max(_usual_interval(later), _usual_interval(recorded[0]))
+            yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
+
+
+def _usual_interval(placed: PlacedRobot) -> float:
+    """[s] between two samples of a recording, by its clock."""
+    intervals = np.diff(placed.given_trajectory.times)
+    return float(np.median(intervals)) if len(intervals) else 0.0
 
 
 def _clock_at_start(placed: PlacedRobot) -> float:
@@ -77,13 +86,17 @@ def _clock_at_start(placed: PlacedRobot) -> float:
 
 def _tables(case: Case) -> Iterator[_Table]:
     for placed in case.robots:
-        if placed.trajectory is not None and placed.trajectory.n_steps > 1:
+        if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
             name = f"robot {placed.robot.name!r}"
             yield _table(name, placed.trajectory.times, placed.timing)
     for obstacle in case.obstacles:
-        if obstacle.moves is not None and len(obstacle.moves) > 1:
+        if obstacle.moves is not None and _changes(obstacle.moves):
             name = f"obstacle {obstacle.name!r}"
             yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+
+
+def _changes(table: PoseTable) -> bool:
+    return any(np.ptp(one, axis=0).any() for one in (table.positions, table.quaternions))
 
 
 def _table(name: str, times: np.ndarray, timing: Timing) -> _Table:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from clearance.world.case import Clock
@@ -79,6 +80,15 @@ def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
     assert not told(replace(case, obstacles=tuple(obstacles)))
 
 
+def test_a_table_in_which_nothing_moves_says_nothing_of_a_clock(tmp_path):
+    case = cell(tmp_path, EPOCH)
+    standing = np.zeros_like(case.robots[0].given_trajectory.positions)
+    left = replace(
+        case.robots[0], trajectory=replace(case.robots[0].given_trajectory, positions=standing)
+    )
+    assert not told(replace(case, robots=(left, *case.robots[1:])))
+
+
 def two_recordings(folder, apart, *changes):
     """Both arms by recordings of which the right one's first stamp is some seconds after the left one's."""
     files = "joints: {shoulder: 0.2}", "trajectory: path.csv"
@@ -97,6 +107,15 @@ def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
     ]
     assert "robot 'left' is 3.25 s later" in told(two_recordings(tmp_path, -3.25))[0]
     assert not told(two_recordings(tmp_path, 5e-4))
+
+
+def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_path):
+    """Two drivers of one rate never send their first messages at one moment. These send two a second."""
+    case = two_recordings(tmp_path, 0.25)
+    (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
+    assert one.severity == "warning" and "is 0.25 s later than that of 'left'" in one.text
+    (one,) = [n for n in notices_of(two_recordings(tmp_path, 1.25)) if n.kind == "clocks"]
+    assert one.severity == "suspect"
 
 
 @pytest.mark.parametrize("start", [0, 0.5, 3.25])

@@ -84,7 +84,7 @@ def trajectory_of_states(
                 f"no message has a finite position of joint {name!r}", valid="one at least"
             )
     start, end = _known_span({name: joints[name] for name in kept}, ends_hold=gaps == HOLD)
-    tracks = tracks_of({name: joints[name].samples for name in kept})
+    tracks = tracks_of({name: joints[name].samples for name in kept}, NANO)
     holes = holes_of(tracks, gaps, (start, end), NANO)
     holes += tuple(unknown_ends(tracks, (start, end), NANO))
     if gaps == HOLD:

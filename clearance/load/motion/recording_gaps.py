@@ -20,22 +20,37 @@ LONG = 10.0
 """Usual intervals that make a hole. Drivers and recorders lose a few messages in a row; how far a joint can be off
 a straight line grows with the square of the interval, here to a hundred times what is usual."""
 
+BRIEF = 0.15
+"""[s] No shorter interval is a hole: fast drivers pause for some tens of milliseconds, and send messages in bursts.
+A recording of 10 Hz has such intervals throughout."""
+
+LATE = 2.0
+"""Usual intervals by which a joint may begin after the others, or end before them: one is by chance."""
 
 FEW = 10
 """Messages that show no usual interval of their own: it is then that of the joints told of more often."""
 
 
 class Track(NamedTuple):
-    """Where a joint was: times (n,) in any unit, increasing, positions (n,) [rad or m], and the usual interval."""
+    """Where a joint was: times (n,) in any unit, increasing, positions (n,) [rad or m], and the usual interval.
+
+    Attributes:
+        brief: `BRIEF` in that unit.
+    """
 
     times: np.ndarray
     positions: np.ndarray
     usual: float
+    brief: float
 
     @property
     def holes(self) -> np.ndarray:
         """(k,) the samples after which a hole begins."""
-        return np.flatnonzero(np.diff(self.times) > LONG * self.usual)
+        return np.flatnonzero(np.diff(self.times) > self.at_most(LONG))
+
+    def at_most(self, n_usual: float) -> float:
+        """So many usual intervals, or a brief one if that is longer."""
+        return max(n_usual * self.usual, self.brief)
 
     def held(self) -> Track:
         """The track that stays over each hole until a usual interval before its next sample."""
@@ -44,21 +59,27 @@ class Track(NamedTuple):
             return self
         times = np.insert(self.times, after, self.times[after] - self.times.dtype.type(self.usual))
         positions = np.insert(self.positions, after, self.positions[after - 1])
-        return Track(times, positions, self.usual)
+        return self._replace(times=times, positions=positions)
 
 
-def tracks_of(samples: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, Track]:
+def tracks_of(
+    samples: Mapping[str, tuple[np.ndarray, np.ndarray]], unit: float = 1.0
+) -> dict[str, Track]:
     """The tracks of joints, of times and positions (n,) each, with the median of their intervals as the usual one.
 
     A joint that is told of a few times only, while others are all the time, has theirs.
+
+    Args:
+        unit: as in `holes_of`.
     """
     own = {name: _median(np.diff(times)) for name, (times, _) in samples.items()}
     often = (own[name] for name, (times, _) in samples.items() if len(times) > FEW)
     least = min(often, default=np.inf)
-    return {
-        name: Track(times, positions, own[name] if len(times) > FEW else min(own[name], least))
-        for name, (times, positions) in samples.items()
-    }
+    found = {}
+    for name, (times, positions) in samples.items():
+        usual = own[name] if len(times) > FEW else min(own[name], least)
+        found[name] = Track(times, positions, usual, BRIEF * unit)
+    return found
 
 
 def _median(lengths: np.ndarray) -> float:
@@ -67,15 +88,15 @@ def _median(lengths: np.ndarray) -> float:
 
 
 def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: float) -> list[Hole]:
-    """Where some joints are told of and others not yet, or no more, for many usual intervals: nothing is measured.
+    """Where some joints are told of and others not yet, or no more, for longer than by chance: nothing is measured.
 
     Args:
         span: in which all are. unit: as in `holes_of`.
     """
     first = min(track.times[0] for track in tracks.values())
     last = max(track.times[-1] for track in tracks.values())
-    late = {n: t.usual for n, t in tracks.items() if t.times[0] - first > LONG * t.usual}
-    early = {n: t.usual for n, t in tracks.items() if last - t.times[-1] > LONG * t.usual}
+    late = {n: t.usual for n, t in tracks.items() if t.times[0] - first > t.at_most(LATE)}
+    early = {n: t.usual for n, t in tracks.items() if last - t.times[-1] > t.at_most(LATE)}
     found = []
     for unknown, start, end in ((late, first, span[0]), (early, span[1], last)):
         if unknown and start < end:

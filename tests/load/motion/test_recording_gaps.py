@@ -104,6 +104,31 @@ def test_ends_at_which_some_joints_are_unknown_are_said_not_to_be_measured():
     assert not read(sorted(arm + skew)).trajectory.holes
 
 
+@pytest.mark.parametrize(
+    "times",
+    [
+        (np.arange(50)[:, None] * 0.025 + np.arange(4) * 0.001).ravel(),  # four at a time, 40 times a second
+        np.delete(np.arange(500) * 0.002, np.arange(200, 260)),  # a driver at 500 Hz pauses for 0.122 s
+    ],
+)  # fmt: skip
+def test_pauses_as_short_as_slow_recordings_have_throughout_are_no_holes(times):
+    assert not read(states(times, "shoulder")).trajectory.holes
+
+
+def test_a_gripper_told_of_ten_times_a_second_beside_a_fast_arm_has_no_holes():
+    arm = states(0.002 * np.arange(460), "shoulder")
+    finger = states(0.005 + 0.1 * np.arange(10), "finger", ("finger",))
+    assert not read(sorted(arm + finger)).trajectory.holes
+
+
+def test_a_slow_joint_that_begins_late_by_several_of_its_intervals_leaves_that_not_measured():
+    arm = states(0.002 * np.arange(3000), "shoulder")
+    finger = states(0.5 + 0.1 * np.arange(55), "finger", ("finger",))
+    (start,) = read(sorted(arm + finger)).trajectory.holes
+    assert (start.joints, start.means) == (("finger",), "not_measured")
+    assert (start.start, start.end) == pytest.approx((-0.5, 0.0))
+
+
 def test_a_joint_that_holds_moves_within_a_usual_interval_before_its_next_message():
     messages = states(with_hole(), "shoulder", swing=lambda t: 0.0 if t <= 1.0 else 0.4)
     trajectory, _ = read(messages, "hold")
