@@ -54,13 +54,14 @@ def notices_on_motion(
 
 
 def _way_in(placed: PlacedRobot) -> list[Notice]:
-    """That nobody says how a robot comes to its first sample; where that is all which is asked, it is no motion."""
+    """That nobody says how a robot comes to its first sample; one sample alone is no motion."""
     asked, about = placed.given_trajectory, placed.robot.name
     first = float(asked.times[0])
     if asked.n_steps < 2 and first > 0.0:
         text = (
             f"the trajectory of robot {about!r} is one goal at {first:.6g} s, and the motion there is not "
-            "measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is a single pose"
+            "measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is a "
+            "single pose"
         )
         return [Notice(Severity.SUSPECT, START, text, about)]
     if not asked.has_way_in:

@@ -21,8 +21,8 @@ LONG = 10.0
 a straight line grows with the square of the interval, here to a hundred times what is usual."""
 
 BRIEF = 0.15
-"""[s] No shorter interval is a hole: fast drivers pause for some tens of milliseconds, and send messages in bursts.
-A recording of 10 Hz has such intervals throughout."""
+"""[s] No shorter interval is a hole: fast drivers pause for some tens of milliseconds, and send messages
+in bursts. A recording of 10 Hz has such intervals throughout."""
 
 LATE = 2.0
 """Usual intervals by which a joint may begin after the others, or end before them: one is by chance."""
@@ -88,7 +88,7 @@ def _median(lengths: np.ndarray) -> float:
 
 
 def unknown_ends(tracks: Mapping[str, Track], span: tuple[float, float], unit: float) -> list[Hole]:
-    """Where some joints are told of and others not yet, or no more, for longer than by chance: nothing is measured.
+    """Where some joints are told of and others not yet, or no more, longer than by chance: nothing is measured.
 
     Args:
         span: in which all are. unit: as in `holes_of`.
