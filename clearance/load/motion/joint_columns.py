@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownJoint
 from clearance.load.table.column_units import VELOCITY, Column
-from clearance.load.table.csv_table import TIME
+from clearance.load.table.csv_table import TIME, UNNAMED
 from clearance.load.text.yaml_text import flow
 from clearance.world.joint_positions import turns
 from clearance.world.mimics import Follower, followers
@@ -25,6 +25,7 @@ TURN_AGREES, SLIDE_AGREES = 1e-3, 1e-4
 certificates are."""
 
 _NUMBERED = re.compile(r"(.*?)(\d+)")
+_LIKE_TIME = re.compile(rf"time|stamp|zeit|sec|^{re.escape(UNNAMED)}", re.IGNORECASE)
 
 
 def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column]) -> None:
@@ -40,7 +41,7 @@ def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column
     try:
         require_moving_joints(robot, [name for name in joints if name not in following])
     except UnknownJoint as error:
-        error.valid += f"; {_remedy(robot, columns)}"
+        error.valid += f"; {remedy(robot, columns)}"
         raise
 
 
@@ -87,13 +88,30 @@ def _require_agreed(found: Trajectory, one: Follower) -> None:
         )
 
 
-def _remedy(robot: Robot, columns: Sequence[Column]) -> str:
+def remedy(robot: Robot, columns: Sequence[Column]) -> str:
     """The `columns` of a case that take what is meant out of a header."""
     joints = [joint.name for joint in robot.moving_joints]
-    times = {one.name: one.header for one in columns if one.name == TIME}
-    own = [one.header for one in columns if one.name.removesuffix(VELOCITY) in joints]
-    if own:
-        return f"columns: {flow([*times.values(), *own])} takes these columns alone (--columns)"
+    own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
+    times = [one.header for one in columns if one.name == TIME]
+    if own and times:
+        told = flow([*times, *(one.header for one in own)])
+        return f"columns: {told} takes these columns alone (--columns)"
+    found = {one.name: one.header for one in own} or _joints_alike(joints, columns)
+    told = flow({TIME: times[0] if times else _time_alike(columns)} | found)
+    return f"columns: {told} says which column is whose (--columns)"
+
+
+def _time_alike(columns: Sequence[Column]) -> str:
+    """The column that is called most like a time, or has no name."""
+    headers = [one.header for one in columns]
+    return next((one for one in headers if _LIKE_TIME.search(one)), "column of times")
+
+
+def _joints_alike(joints: Sequence[str], columns: Sequence[Column]) -> dict[str, str]:
+    """A column for each joint: one whose name has the joint's in it, or one of as many numbered ones."""
+    found = {joint: _column_alike(joint, columns) for joint in joints}
+    if any(found.values()):
+        return {joint: header for joint, header in found.items() if header}
     groups: dict[str, list[str]] = {}
     for one in columns:
         numbered = _NUMBERED.fullmatch(one.header)
@@ -102,5 +120,13 @@ def _remedy(robot: Robot, columns: Sequence[Column]) -> str:
     alike = [names for names in groups.values() if len(names) == len(joints) > 1]
     alike.sort(key=lambda names: "actual_q_" not in names[0])  # as robots of UR log where they are
     taken = alike[0] if alike else [f"column of {joint}" for joint in joints]
-    told = flow(times | dict(zip(joints, taken, strict=True)))
-    return f"columns: {told} says which column is whose (--columns)"
+    return dict(zip(joints, taken, strict=True))
+
+
+def _column_alike(joint: str, columns: Sequence[Column]) -> str | None:
+    """The column that has the joint's name as a part of its own, by itself or as its position."""
+    part = re.compile(rf"(?:.*[^a-z0-9])?{re.escape(joint)}(?:[^a-z0-9].*)?", re.IGNORECASE)
+    headers = [one.header for one in columns if part.fullmatch(one.header)]
+    positions = [one for one in headers if "pos" in one.lower().replace(joint.lower(), "")]
+    headers = positions or [one for one in headers if one.lower().endswith(joint.lower())]
+    return headers[0] if len(headers) == 1 else None

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, MissingKey, nearest_name
-from clearance.load.motion.joint_columns import require_joints
+from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, nearest_name
+from clearance.load.motion.joint_columns import remedy, require_joints
 from clearance.load.motion.quaternion_columns import by_angles, joints_by_angles, turned_joints
 from clearance.load.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.load.table.column_units import (
@@ -25,9 +25,11 @@ from clearance.load.table.column_units import (
 )
 from clearance.load.table.csv_table import (
     TIME,
+    UNNAMED,
     TextTable,
     as_written,
     columns_of,
+    first_row,
     header_of,
     note_on_separators,
     refuse_standing_time,
@@ -47,13 +49,11 @@ def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
     choice = request.choice
     choice.refuse_others({"units", "joints", "period", "gaps", "columns"}, "a CSV table")
     table = as_written(request.opened, _names_given(choice))
+    _refuse_numbers(table)
     header = header_of(table, "joint names")
-    _refuse_numbers(header, table)
     columns = _columns(header, request)
     joints = _joints(columns, request)
     turned = turned_joints(joints, request.turns)
-    if request.robot is not None:
-        require_joints(request.robot, joints_by_angles(joints, turned), columns)
     by_name = {column.name: column for column in columns}
     parts = [[TIME] * (choice.period is None), joints]
     if any(name.endswith(VELOCITY) for name in by_name):
@@ -77,12 +77,23 @@ def _joints(columns: list[Column], request: TrajectoryRequest) -> tuple[str, ...
     """The names of the columns that are positions.
 
     Raises:
-        MissingKey, BadInput: times or velocities that are missing, or are there twice. BadShape: no joint.
+        MissingKey, BadInput: times or velocities that are missing, or are there twice. UnknownJoint: as
+            `require_joints`. BadShape: no joint.
     """
     names = [column.name for column in columns]
-    _require_times(names, request.choice)
-    _refuse_unmatched_velocities(names)
+    try:
+        _require_times(names, request.choice)
+    except MissingKey as error:
+        if request.robot is not None and request.choice.columns is None:
+            error.valid = (
+                f"{remedy(request.robot, columns)}; or period: the seconds from row to row"
+            )
+        raise
     joints = tuple(name for name in names if name != TIME and not name.endswith(VELOCITY))
+    if request.robot is not None:
+        turned = turned_joints(joints, request.turns)
+        require_joints(request.robot, joints_by_angles(joints, turned), columns)
+    _refuse_unmatched_velocities(names)
     if request.joints_needed and not joints:
         raise BadShape("there is no joint column", valid="time and at least one joint are needed")
     return joints
@@ -93,14 +104,18 @@ def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
     choice = request.choice
     if choice.columns is not None:
         return chosen_columns(header, dict(choice.columns), request.turns, choice.units)
+    nameless = [i for i, name in enumerate(header) if name.startswith(UNNAMED)]
+    if request.robot is None and nameless:
+        raise BadSyntax(f"column {nameless[0] + 1} of the header has no name")
     return with_time(columns_in(header, request.turns, choice.units), request.turns)
 
 
-def _refuse_numbers(header: list[str], table: TextTable) -> None:
-    """Nothing, if the first row is no row of numbers, or names are given."""
-    if table.names is None and all(table.float_of(name or "0") is not None for name in header):
+def _refuse_numbers(table: TextTable) -> None:
+    """Nothing, if the first row does not begin with a number, or names are given."""
+    row = first_row(table)
+    if table.names is None and row and table.float_of(row[0]) is not None:
         raise MissingKey(
-            f"the first row, {','.join(header)!r:.80}, is numbers: there is no header",
+            f"the first row, {','.join(row)!r:.80}, begins with a number: there is no header",
             valid="joints: [the names of the columns beside time, in order] (--joints)",
         )
 

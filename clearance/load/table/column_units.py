@@ -39,16 +39,23 @@ UNITS = {
     "mm": Unit("length", "millimetres"),
     "s": Unit("time"),
     "ms": Unit("time", "milliseconds"),
+    "us": Unit("time", "microseconds"),
+    "ns": Unit("time", "nanoseconds"),
 }
 """By how they are written; velocities are in one of them a second."""
+
+_PARTS = {"mm": 1e3, "ms": 1e3, "us": 1e6, "ns": 1e9}
+"""How many of a unit are a metre or a second."""
 
 _TIMES = (TIME, "t", "timestamp")
 """What programs call the column of times, in small letters."""
 
 _A = {"angle": "an angle", "length": "a length", "time": "a time"}
 
-_BRACKETS = re.compile(r"(.*\S)\s*(?:\[(rad|deg|mm?|m?s)(/s)?\]|\((rad|deg|mm?|m?s)(/s)?\))")
-_ENDING = re.compile(r"(.+)_(rad|deg|mm?|m?s)")
+_BRACKETS = re.compile(
+    r"(.*\S)\s*(?:\[(rad|deg|mm?|[mun]?s)(/s)?\]|\((rad|deg|mm?|[mun]?s)(/s)?\))"
+)
+_ENDING = re.compile(r"(.+)_(rad|deg|mm?|[mun]?s)")
 
 
 class Column(NamedTuple):
@@ -135,13 +142,13 @@ def in_kind(
 def in_own_units(values: np.ndarray, columns: Sequence[Column]) -> None:
     """Turns (n, k) values of k columns into rad, metres and seconds, in place.
 
-    Exactness: a quotient by 1000 is rounded once; degrees are within 2^-52 of their value.
+    Exactness: a quotient by a power of ten is rounded once; degrees are within 2^-52 of their value.
     """
     for i, column in enumerate(columns):
         if column.unit == "deg":
             values[:, i] *= math.pi / 180.0
-        elif column.unit in ("mm", "ms"):
-            values[:, i] /= 1000.0
+        elif column.unit in _PARTS:
+            values[:, i] /= _PARTS[column.unit]
 
 
 def note_on_units(columns: Sequence[Column]) -> list[str]:

@@ -40,6 +40,10 @@ Opener = Callable[[], BinaryIO]
 """Opens a file for reading from its start."""
 
 
+UNNAMED = "(column "
+"""How the name of a column without one begins; its place follows."""
+
+
 class TextTable(NamedTuple):
     """A file with a table, and how it is written.
 
@@ -99,7 +103,7 @@ def _blanks_as_tabs(opened: Opener) -> Opener:
     with opened() as file:
         rows = [line.split() for line in file.read().splitlines()]
     first = next(row for row in rows if row)
-    if first[0] == b"#":
+    if first[0] in (b"#", b"%"):
         del first[0]
     content = b"\n".join(b"\t".join(row) for row in rows)
     return lambda: io.BytesIO(content)
@@ -113,8 +117,16 @@ def note_on_separators(table: TextTable) -> list[str]:
     return [f"columns are separated by {_SEPARATORS[table.delimiter]}{decimals}"]
 
 
+def first_row(table: TextTable) -> list[str]:
+    """The cells of the first row that is not blank, none where there is none."""
+    return [cell.strip() for cell in next(_rows(table), (0, []))[1]]
+
+
 def header_of(table: TextTable, others: str) -> list[str]:
     """The names of the columns, each once; `EMPTY` last where each row ends with a separator.
+
+    One without a name, as that of a row's number, is called `(column 1)` by its place, and a joint of that name
+    is none.
 
     Args:
         others: what the columns beside `time` are, for errors.
@@ -124,17 +136,16 @@ def header_of(table: TextTable, others: str) -> list[str]:
     """
     if table.names is not None:
         return _as_the_first_row(table, table.names)
-    _, cells = next(_rows(table), (0, []))
-    if not any(cell.strip() for cell in cells):
+    names = first_row(table)
+    if not any(names):
         raise BadSyntax("the file is empty", valid=f"a header with {TIME!r} and {others} is needed")
-    names = [cell.strip() for cell in cells]
-    names[0] = names[0].removeprefix("#").lstrip()  # as programs write that mark what is no number
+    names[0] = names[0].lstrip("#%").lstrip()  # as programs write that mark what is no number
     if len(names) > 1 and not names[-1]:
         names.pop()
     seen: set[str] = set()
     for i, name in enumerate(names):
         if not name:
-            raise BadSyntax(f"column {i + 1} of the header has no name")
+            name = names[i] = f"{UNNAMED}{i + 1})"
         if name in seen:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
         seen.add(name)

@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.cli import run
-from clearance.errors import BadInput, BadPose, BadShape, MissingKey, UnknownJoint
+from clearance.errors import BadInput, BadPose, BadShape, BadSyntax, MissingKey, UnknownJoint
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.load.case.case_file import load_case
 from clearance.load.case.recorded_run import with_recorded
@@ -33,6 +33,12 @@ WAYS = [
     ("Timestamp,shoulder,lift\n0,1,2\n1,3,4\n", ["column 'Timestamp' is taken for time"]),
     ("t_ms,shoulder,lift\n0,1,2\n1000,3,4\n", ["column 't_ms' is taken for time", "read in milliseconds: 'time'"]),
     ("T [s],shoulder,lift\n0,1,2\n1,3,4\n", ["column 'T [s]' is taken for time"]),
+    (
+        "timestamp_ns,shoulder,lift\n0,1,2\n1000000000,3,4\n",
+        ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
+    ),
+    ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
+    ("% time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
     ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
     ("#t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
@@ -78,7 +84,9 @@ def test_a_joint_that_is_called_t_is_no_time():
     ("text", "fault", "says"),
     [
         ("t,timestamp,shoulder\n0,1,2\n", MissingKey, "'t', 'timestamp' could each be it; did you mean 't'?"),
-        ("0,1,2\n1,3,4\n", MissingKey, "'0,1,2', is numbers: there is no header; joints: [the names"),
+        ("0,1,2\n1,3,4\n", MissingKey, "'0,1,2', begins with a number: there is no header; joints: [the names"),
+        ("17,base,elbow,0.0,0.0\n", MissingKey, "begins with a number: there is no header"),
+        (",time,shoulder\n0,0,1\n", BadSyntax, "column 1 of the header has no name"),
         ("0\t1\t2\n", MissingKey, "the columns beside time, in order] (--joints)"),
         ("time,shoulder,\n0,1,\n1,2\n", BadShape, "line 3: 2 columns; the header has 3"),
         ("T [deg],shoulder\n0,1\n", BadInput, "column 'T [deg]' is a time, not in deg"),
@@ -125,6 +133,33 @@ def test_the_error_on_a_log_can_be_pasted(tmp_path):
     case = changed("path.csv", f"path.csv, {hint}")
     made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=own)
     assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
+
+
+NOT_TAKEN = [
+    (",time,shoulder,lift", "[time, shoulder, lift]"),
+    (",shoulder,lift", '{time: "(column 1)", shoulder: shoulder, lift: lift}'),
+    ("__time,/js/lift/position,/js/lift/effort,/js/shoulder/position",
+     "{time: __time, shoulder: /js/shoulder/position, lift: /js/lift/position}"),
+    ("time_from_start,shoulder,lift", "{time: time_from_start, shoulder: shoulder, lift: lift}"),
+    ("Zeit,Shoulder,Lift", "{time: Zeit, shoulder: Shoulder, lift: Lift}"),
+    ("time,shoulder_pos,lift_pos", "{time: time, shoulder: shoulder_pos, lift: lift_pos}"),
+    ("time,shoulder,lift,shoulder/velocity,lift/velocity,shoulder/effort,lift/effort",
+     "[time, shoulder, lift, shoulder/velocity, lift/velocity]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("header", "hint"), NOT_TAKEN)
+def test_each_error_on_a_header_has_columns_that_can_be_pasted(tmp_path, header, hint):
+    n = header.count(",")
+    log = f"{header}\n" + "".join(
+        ",".join([str(i), *[repr(0.01 * i)] * n]) + "\n" for i in range(3)
+    )
+    with pytest.raises((UnknownJoint, MissingKey)) as caught:
+        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=log)
+    assert f"columns: {hint} " in str(caught.value) and "\n" not in str(caught.value)
+    case = changed("path.csv", f"path.csv, columns: {hint}")
+    asked = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=log).robots[0].trajectory
+    assert sorted(asked.joint_names) == ["lift", "shoulder"] and asked.n_steps == 3
 
 
 def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
