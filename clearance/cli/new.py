@@ -73,7 +73,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--columns",
     type=ColumnsParamType(),
     metavar="A,B=C,…",
-    help="The columns of a CSV that are meant, others being left out: time, joints, or joint=column.",
+    help="Columns of the CSV to read, and no others: time, joint names, or joint=column.",
 )
 @click.option(
     "--states",

@@ -44,7 +44,7 @@ class ColumnsParamType(click.ParamType):
         for part in value.split(","):
             name, separator, column = (one.strip() for one in part.partition("="))
             if not name or (separator and not column):
-                self.fail(f"{value!r} is not a list of columns; time,elbow=q3", param, ctx)
+                self.fail(f"{value!r} is not a list of columns such as time,elbow=q3", param, ctx)
             found[name] = column or name
         return found
 
@@ -115,7 +115,7 @@ INCLUDE_OPTION = click.option(
     metavar="URI=skip|PATH",
     multiple=True,
     type=IncludeParamType(),
-    help="Leave a model out that an SDF scene includes, or take another for it; may be given again.",
+    help="Leave out a model that the SDF scene includes, or use the one at PATH instead; may be given again.",
 )
 
 

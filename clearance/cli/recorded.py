@@ -32,14 +32,14 @@ _OPTIONS = (
     click.option(
         "--recorded-gaps",
         type=click.Choice(GAPS),
-        help="What joints do in holes of RUN: they stay until just before their next message, go straight, or are "
-        "not measured.  [default: holes are suspect]",
+        help="How joints move in a hole of RUN: hold their position, move straight to the next message, or leave "
+        "the hole out of the check.  [default: a hole is suspect input]",
     ),
     click.option(
         "--recorded-columns",
         type=ColumnsParamType(),
         metavar="A,B=C,…",
-        help="The columns of a CSV that are meant, others being left out: time, joints, or joint=column.",
+        help="Columns of the CSV to read, and no others: time, joint names, or joint=column.",
     ),
 )
 

@@ -89,20 +89,20 @@ def write_receipt_of(
     "case_file",
     metavar="CASE.yaml",
     type=click.Path(path_type=Path),
-    help="The case, where it is not where it was.",
+    help="The case file, if it has moved.",
 )
 @click.option(
     "--tolerance",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="The tolerances that were given beside the case, where they are not where they were.",
+    help="The --tolerance file of the run, if it has moved.",
 )
 @click.option(
     "--waivers",
     metavar="FILE",
     multiple=True,
     type=click.Path(path_type=Path),
-    help="The waivers that were given beside the case, where they are not where they were.",
+    help="A --waivers file of the run, if they have moved; give all of them, in the same order.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def verify(
@@ -112,13 +112,13 @@ def verify(
     waivers: tuple[Path, ...],
     quiet: bool,
 ) -> int:
-    """Proves the certified bound of the report in DIR again, and makes all else of the report again.
+    """Proves the certified bound of the report in DIR again, and compares the report with a fresh run.
 
-    The proof is by arithmetic of its own, which shares no code with what measured. Limits, rules
-    and verdict are those of the case's files; each file of the report is compared with the one
-    that the case gives. The first line names what is not verified. Exit code: 0 proven, and the
-    report is right; 1 it is not, with the first pair and interval, or file and line; 2 bad input:
-    a receipt that is damaged, or of other files, and which.
+    The proof shares no code with the measurement. Limits, rules, waivers and verdict come from the
+    case's files, not from the report. The first line names each file that is not verified. Exit
+    code: 0 the bound is proven and the report is right; 1 it is not: the line names the first pair
+    and interval, or the file and its line; 2 bad input: the receipt is damaged, or an input has
+    changed.
     """
     from clearance.errors import shown
     from clearance.extras import require

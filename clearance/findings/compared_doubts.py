@@ -53,7 +53,7 @@ def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iter
     if (old.basis, new.basis) == ("motion", "samples"):
         yield "the motion was proven, and only the samples are looked at"
     if old.basis != "pose" == new.basis:
-        yield "a motion was looked at, and only a single pose is"
+        yield "a motion was checked, and now only a single pose is"
     if (old.method, new.method) == ("exact", "paper"):
         yield "the method was exact, and is paper, without guarantee"
     if _slack(new) < _slack(old):

@@ -81,7 +81,7 @@ def _curves(gain: Gain) -> Markup:
     )
     what = element(
         "p",
-        "The least clearance at the steps, and between them where it is less or they are far apart"
+        "Least clearance at each step, and between steps where it is lower or steps are far apart in time"
         + (f"; the line is the limit with the margin of {limit_mm(gain.request.margin)} mm."
            if gain.request.margin else "; the line is the limit."),
         class_="faint",

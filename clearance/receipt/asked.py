@@ -1,7 +1,7 @@
-"""What was asked of a case beside its files, as a receipt holds it, and the question as it is asked again.
+"""The options of a run beside its case's files, written to a receipt and read back to run the case again.
 
-Whoever wrote the receipt chose it; so `told_beside` says in words all that is judged otherwise than by the case's
-files. Not for: answering (`run`).
+Whoever wrote the receipt chose these options. So `told_beside` names each one that changes how the case is
+judged. Not for: answering (`run`).
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from clearance.run.question import Question, with_levels
 from clearance.world.case import Case
 
 OF_THE_CASE = ("levels", "accept", "unproven_ok")
-"""What a command line changes of a case, beside the files that it gives."""
+"""Fields of a case that a command line can change."""
 
 NOT_TOLD = ("case", "inside")
 
 
 def asked_of(question: Question) -> dict[str, Any]:
-    """What was asked, as JSON holds it."""
+    """The options of a run, as plain data for JSON."""
     case = question.case
     options = {one.name: getattr(question, one.name) for one in fields(question)}
     told = {name: value for name, value in options.items() if name not in NOT_TOLD}
@@ -39,7 +39,7 @@ def question_of(case: Case, asked: dict[str, Any]) -> Question:
     """The question of a case that `asked_of` has told.
 
     Raises:
-        BadInput: it is none, or of what no receipt is written.
+        BadInput: it is no such data, or asks for a run without receipts.
     """
     options = {name: value for name, value in asked.items() if name not in OF_THE_CASE}
     try:
@@ -58,7 +58,7 @@ def question_of(case: Case, asked: dict[str, Any]) -> Question:
 
 
 def refuse_uncovered(question: Question) -> None:
-    """Refuses what no receipt can be written of.
+    """Refuses a run for which no receipt can be written.
 
     Raises:
         BadInput: why not.
@@ -79,7 +79,7 @@ def refuse_uncovered(question: Question) -> None:
 
 
 def told_beside(case: Case, question: Question, files: tuple[str, ...]) -> tuple[str, ...]:
-    """What the verdict rests on beside the case's own files, in words.
+    """The options that change the verdict beside the case's own files, in words.
 
     Args:
         case: as its file has it. files: that were given beside it.
@@ -95,11 +95,11 @@ def _beside(case: Case, question: Question, files: tuple[str, ...]) -> Iterator[
             yield f"{level} {here * 1e3:g} mm, not the case's {there * 1e3:g} mm"
     accepted = [kind for kind in question.case.accept if kind not in case.accept]
     if accepted:
-        yield f"{shown(', '.join(accepted))} accepted beside the case"
+        yield f"accepted for this run: {shown(', '.join(accepted))}"
     if _unproven_ok(question.case) and not _unproven_ok(case):
-        yield "limits that are not proven with tolerances may pass"
+        yield "limits not proven with tolerances are accepted"
     if files:
-        yield f"{', '.join(map(shown, files))} beside the case"
+        yield f"with {', '.join(map(shown, files))}"
     if question.today is not None:
         yield f"waivers as of {question.today}"
 

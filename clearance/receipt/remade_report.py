@@ -1,6 +1,6 @@
-"""The report beside a receipt: whether it is as it was, and whether the case gives it again, byte for byte.
+"""The report beside a receipt: is it unchanged, and does a fresh run of the case give the same bytes?
 
-It is made again by what measures, from the case's files. Not for: proving bounds (`verification`).
+The fresh run measures as `check` does, from the case's files. Not for: proving bounds (`verification`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SHOWN = 48
 
 
 def maker() -> dict[str, str]:
-    """Which program on which machine makes a report: where all of it is the same, so are the bytes."""
+    """The programs and the machine that make a report; if all are the same, so are the bytes."""
     sources = closure_digest([PACKAGE / "run" / "__init__.py", PACKAGE / "report" / "output.py"])
     machine = repr((platform.machine(), processor()))
     digest = hashlib.sha256(machine.encode()).hexdigest()[:8]
@@ -42,7 +42,7 @@ def maker() -> dict[str, str]:
 
 
 def other_maker(receipt: Receipt) -> str:
-    """What made the report where that is not this program on this machine; else empty."""
+    """How the programs and machine that made the report differ from these; empty if they do not."""
     told, own = receipt.head["maker"], maker()
     others = [
         f"{name} {told.get(name, 'unknown')}, here {own.get(name, 'unknown')}"
@@ -59,9 +59,9 @@ def listed(names: list[str]) -> str:
 
 
 def differences(record: Record, place: Path) -> dict[str, str]:
-    """What differs, by file, between the report in a folder and the one that a record gives.
+    """The first difference of each file between the report in a folder and the report of a record.
 
-    The summary comes first, then the page. A file that is only in the report made again is `ABSENT`.
+    The summary comes first, then the page. A file that the folder lacks is `ABSENT`.
     """
     with tempfile.TemporaryDirectory() as made:
         write(record, made)
@@ -77,23 +77,23 @@ def differences(record: Record, place: Path) -> dict[str, str]:
 
 
 def strangers(place: Path) -> list[str]:
-    """The names of what lies in a folder beside its report and receipt; a report does not vouch for it."""
+    """The names of other files in the folder of a report; nothing is verified about these."""
     return sorted({path.name for path in place.iterdir()} - {*CONTENT, FILE_NAME})
 
 
 def _first_difference(told: bytes, own: bytes | None) -> str:
     if own is None:
-        return "this case gives none"
+        return "the fresh run has no such file"
     if b"\0" not in told:
         rows = zip_longest(told.split(b"\n"), own.split(b"\n"), fillvalue=b"")
         for number, (there, here) in enumerate(rows, 1):
             if there != here:
                 return f"line {number} is {_part(there, here)}, not {_part(here, there)}"
-    return "its bytes are others"
+    return "its bytes differ"
 
 
 def _part(line: bytes, other: bytes) -> str:
-    """What a line has from a little before it differs from another one."""
+    """A line, from a little before its first difference to another one."""
     same = next((i for i, (a, b) in enumerate(zip(line, other, strict=False)) if a != b), 0)
     start = max(0, same - SHOWN // 2)
     text = line.strip() if len(line) <= SHOWN else line[start : start + SHOWN]

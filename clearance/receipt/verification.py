@@ -73,7 +73,7 @@ class Verification:
 
     @property
     def headline(self) -> str:
-        """One line: what is proven, of what; what is not comes before all figures."""
+        """One line: the bounds that are proven, for which case; all that is not proven stands before them."""
         sampled = "SAMPLED: " if self.kind == "sampled" else ""
         if self.failure:
             return f"{sampled}NOT PROVEN: {self.failure}"
@@ -81,11 +81,11 @@ class Verification:
         bounds = ", ".join(self._bound_text(rule) for rule in self.bounds) or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
         not_verified = f", NOT VERIFIED: {self.not_verified}" if self.not_verified else ""
-        report = "" if self.not_verified else ", every byte of the report is as made again"
+        report = "" if self.not_verified else "; every byte of the report matches a fresh run"
         asked = f" ({'; '.join(self.asked)})" if self.asked else ""
         return (
             f"{sampled}{nominal}PROVEN{self._left_out}{not_verified}: {bounds} between all {self.n_pairs} pairs "
-            f"over {span} intervals of motion; verdict {self.verdict}{asked}{report}; "
+            f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{report}; "
             f"{len(self.inputs)} inputs of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
         )
 
@@ -96,7 +96,7 @@ class Verification:
             told += f", BELOW ITS LIMIT of {self.below[rule] * 1e3:g} mm"
         if rule in self.beyond:
             beyond = np.ceil(self.beyond[rule] * 1e6) / 1e3
-            told += f"; NOT VERIFIED: up to {beyond:.3f} mm more in the report"
+            told += f"; NOT VERIFIED: the report certifies up to {beyond:.3f} mm more"
         return f"at least {bound:.3f} mm ({told})"
 
     @property

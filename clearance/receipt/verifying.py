@@ -1,6 +1,6 @@
-"""Says whether a report with a receipt is what its case comes to: the bound proven again, all else made again.
+"""Verifies a report with a receipt: proves its bound again, and compares all else with a fresh run of the case.
 
-What is judged, by which limits and rules, follows from the case's files; nothing is taken from the report.
+The case's files alone say which pairs, limits and rules are judged; nothing is taken from the report.
 Not for: the proof (`verification`), nor the comparison of files (`remade_report`).
 """
 
@@ -44,7 +44,7 @@ from clearance.simulate.status import Status
 from clearance.world.case import Case
 
 PASSING = {Status.CLEAR: "warn", Status.NEAR: "fail"}
-"""What says that limits are kept, and which."""
+"""The verdicts that say a limit is kept, each with the name of that limit."""
 
 Paths = Sequence[str | PathLike[str]]
 
@@ -55,18 +55,18 @@ def verify(
     tolerance: str | PathLike[str] | None = None,
     waivers: Paths = (),
 ) -> Verification:
-    """Whether the report in a folder is what its case comes to, and its certified bound proven by its receipt.
+    """Whether the receipt proves the certified bound of the report, and the report matches a fresh run.
 
-    The bound is proven by arithmetic that shares no code with what measured. The case is answered again, and every
-    file of the report is compared with the one that is made then.
+    The proof shares no code with the measurement. The case is run again, and every file of the report is compared
+    with the new one.
 
     Args:
-        folder: of a report with `receipt.bin`.
-        case: the case or its file, where it is not where it was when the receipt was written.
-        tolerance, waivers: the same of files that were given beside the case.
+        folder: a report with `receipt.bin`.
+        case: the case or its file, if it has moved since the receipt was written.
+        tolerance, waivers: files that the run had beside its case, if they have moved.
 
     Raises:
-        BadInput: no receipt, a damaged one, or one of other inputs or another report: which.
+        BadInput: there is no receipt, it is damaged, or an input or a file of the report has changed.
     """
     place = Path(folder)
     receipt = read_receipt(place / FILE_NAME)
@@ -91,10 +91,10 @@ def verify(
 def _held_against(
     found: Verification, run: Run, data: CaseData, receipt: Receipt, place: Path
 ) -> Verification:
-    """What is proven, less what the report beside it does not bear out."""
+    """The verification, with all that differs between the report and a fresh run."""
     different = differences(run.record, place)
     absent = [name for name, what in different.items() if what == ABSENT]
-    reasons = {ABSENT: absent, "no file of the report": strangers(place)}
+    reasons = {ABSENT: absent, "not part of the report": strangers(place)}
     different = {name: what for name, what in different.items() if name not in absent}
     made_by = other_maker(receipt) if different else ""
     unproven = next(_not_borne(run, data, receipt), "")
@@ -105,16 +105,18 @@ def _held_against(
     if receipt.head["compared"] and different.pop(PAGE, ""):
         reasons = {"it shows a comparison with another run": [PAGE]} | reasons
     for name, what in different.items():
-        return replace(found, failure=f"{name} is not what the case comes to: {what}")
+        return replace(found, failure=f"{name} differs from a fresh run: {what}")
     beyond = _beyond(run, data, receipt)
     for rule in data.rules[: n_without_errors(data)]:
         if rule in beyond:
-            unproven = f"the report tells of up to {beyond[rule] * 1e3:.6f} mm more ({shown(rule)})"
+            unproven = (
+                f"the report certifies up to {beyond[rule] * 1e3:.6f} mm more ({shown(rule)})"
+            )
     return replace(found, failure=unproven, beyond=beyond, not_verified=_told(reasons))
 
 
 def _told(reasons: dict[str, list[str]]) -> str:
-    """The files that are not verified, by why."""
+    """The files that are not verified, grouped by reason."""
     return ", ".join(f"{listed(names)} ({why})" for why, names in reasons.items() if names)
 
 
@@ -134,8 +136,9 @@ def _not_borne(run: Run, data: CaseData, receipt: Receipt) -> Iterator[str]:
         limit = getattr(limits[rule], level) if level else 0.0
         if level and len(claimed) and (claimed.min() + ROUNDED) * UNIT < limit:
             yield (
-                f"the case comes to {verdict.text()}, the receipt proves {claimed.min() * UNIT * 1e3:.6f} mm "
-                f"({shown(rule)}), below the {level} limit of {limit * 1e3:g} mm"
+                f"a fresh run is {verdict.text()}, but the receipt proves only "
+                f"{claimed.min() * UNIT * 1e3:.6f} mm ({shown(rule)}), below the {level} limit "
+                f"of {limit * 1e3:g} mm"
             )
 
 
@@ -157,7 +160,7 @@ def _other_verdict(verdict: Verdict, place: Path) -> str:
         told = "nothing"
     if told == verdict.status:
         return ""
-    return f"{LAST} says {shown(repr(told))[:60]}, the case comes to {verdict.status}"
+    return f"{LAST} says {shown(repr(told))[:60]}, a fresh run says {verdict.status}"
 
 
 def _cases(

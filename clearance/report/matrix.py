@@ -75,7 +75,7 @@ def _meaning(summary: dict[str, Any]) -> list[str]:
     shown = _PAIR_SHOWN[summary["need"] == "pairs"]
     proven = [pair["proven"] is not None for pair in summary["pairs"]]
     when = "Over the motion" if any(proven) else "At the steps"
-    when += ", of pairs that do not come near at the steps" if any(proven) > all(proven) else ""
+    when += " (at the steps for pairs that stay far)" if any(proven) > all(proven) else ""
     told = [
         f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
         f"line and {shown}; \N{EN DASH} marks a pair that was not measured."

@@ -65,7 +65,9 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
 
 
 def _bridged(motion: Motion) -> list[str]:
-    """That joints go straight where nobody knows how they went, which samples cannot say."""
+    """A note on holes that are not measured: the file joins the samples around them by straight lines."""
     asked = motion.placed.trajectory
     holes = () if asked is None else asked.holes
-    return [f"{hole.text}: straight here" for hole in holes if hole.means == NOT_MEASURED]
+    return [
+        f"{hole.text}: a straight line in this file" for hole in holes if hole.means == NOT_MEASURED
+    ]

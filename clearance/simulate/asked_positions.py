@@ -1,6 +1,6 @@
-"""Configurations that `check` would call suspect, at the price of comparing arrays.
+"""Finds configurations that `check` would call suspect, by comparing arrays.
 
-Not for: what a case itself shows (`world.plausibility`), and numbers that cannot be right (`checker`).
+Not for: suspect values in the case itself (`world.plausibility`), and numbers that cannot be right (`checker`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from clearance.world.trajectory import Trajectory
 
 
 class AskedPositions:
-    """Looks at the configurations that a case is asked about.
+    """Checks the configurations for which a clearance is asked.
 
     Args:
         names: of the joints that a configuration gives, robot by robot. accept: kinds of suspect input that are
@@ -46,25 +46,25 @@ class AskedPositions:
         self._least, self._greatest = self._bounds(far=False)
 
     def are_usual(self, given: np.ndarray) -> bool:
-        """True if nothing is to be said of configurations (..., k): every number is finite and within limits."""
+        """True if all configurations (..., k) are finite and within limits."""
         return bool(((given >= self._least) & (given <= self._greatest)).all())
 
     def at_rest(self) -> list[Notice]:
-        """The notices on joints that no configuration gives; a case in which something moves tells them itself."""
+        """The notices on joints that no configuration gives; a case with motion has these notices itself."""
         moves = [placed.trajectory is not None for placed in self._case.robots]
         if any(moves) or any(obstacle.moves is not None for obstacle in self._case.obstacles):
             return []
         return list(self._notices(np.clip(0.0, self._least, self._greatest)[None]))
 
     def require_not_suspect(self, notices: Collection[Notice]) -> None:
-        """Nothing, if each kind of suspect input among the notices is accepted.
+        """Checks that each kind of suspect input among the notices is accepted.
 
         Raises:
             SuspectInput: the first that is not.
         """
         for one in notices:
             if one.severity is Severity.SUSPECT and one.kind not in self._accept:
-                raise SuspectInput(one.text, valid=f"mend it, or accept=[{one.kind!r}]")
+                raise SuspectInput(one.text, valid=f"correct it, or accept=[{one.kind!r}]")
 
     def judge(self, given: np.ndarray) -> None:
         """Warns, once, of configurations (n, k) beyond the limits of joints.
@@ -77,10 +77,10 @@ class AskedPositions:
         told = [one.text for one in notices if one.severity is not Severity.SUSPECT]
         if told and "limits" not in self._accept:
             self._least, self._greatest = self._bounds(far=True)
-            warnings.warn(f"{told[0]}; further ones are not told", stacklevel=4)
+            warnings.warn(f"{told[0]}; further ones are not reported", stacklevel=4)
 
     def _notices(self, given: np.ndarray) -> Iterator[Notice]:
-        """As `check` has them where the rows are the samples."""
+        """The notices of `check` on a trajectory with these rows as samples."""
         first, rule = 0, self._case.limits.joints
         times = np.arange(len(given), dtype=np.float64)
         for placed, names in zip(self._case.robots, self._names, strict=True):
@@ -92,14 +92,14 @@ class AskedPositions:
             yield from notices_on_joints(asked, rule, before, extents)
 
     def _bounds(self, *, far: bool) -> tuple[np.ndarray, np.ndarray]:
-        """(k,) from where to where nothing is to be said; `far`: nothing of suspect input."""
+        """(k,) least and greatest positions without any notice; with `far`, without suspect input."""
         pairs = zip(self._case.robots, self._names, strict=True)
         ranges = [self._ranges(placed, names, far) for placed, names in pairs]
         least, greatest = np.concatenate(ranges).T
         return np.ascontiguousarray(least), np.ascontiguousarray(greatest)
 
     def _ranges(self, placed: PlacedRobot, names: Sequence[str], far: bool) -> np.ndarray:
-        """(k, 2) from where to where each joint, and all that follow it, are usual."""
+        """(k, 2) the usual range of each joint and of all that follow it."""
         ranges = np.tile([-REACH, REACH], (len(names), 1))
         place = {name: i for i, name in enumerate(names)}
         for joint, master, factor, offset in followers(placed.robot):

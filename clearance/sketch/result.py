@@ -142,7 +142,7 @@ class SketchResult:
             return f"{shown} cannot hold together: {self._diagnosis.proof}"
         if self.stopped:
             seconds = self._problem.limit.seconds
-            return f"not solved within {seconds:g} s: {shown} do not hold; more seconds may do"
+            return f"not solved within {seconds:g} s: {shown} do not hold; a longer time limit may help"
         return f"no place found where {shown} hold; a failed search is no proof that there is none"
 
     @property

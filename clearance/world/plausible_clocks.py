@@ -1,6 +1,6 @@
-"""Tables of one case that may be of two clocks: they never meet in a run, or began apart by their stamps.
+"""Tables of one case whose times may come from two clocks: they never overlap, or their stamps begin apart.
 
-Not for: clocks that are said not to be tied (`clocks`).
+Not for: clocks that the case declares unsynchronised (`clocks`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ its first message: that is a warning."""
 
 
 class _Table(NamedTuple):
-    """Whose it is, and from when to when it goes [s] in the run; without end where it begins again."""
+    """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats."""
 
     start: float
     end: float
@@ -36,8 +36,9 @@ class _Table(NamedTuple):
 
 
 def notices_on_clocks(case: Case) -> list[Notice]:
-    """Tables that end before others begin, and recordings that began at other times than they are taken to, where
-    the case does not say so.
+    """Notices on tables that end before others begin, and on recordings that are shifted against their stamps.
+
+    There is none where the case says `start` or `after`.
     """
     if case.clock.slack == math.inf:
         return []
@@ -47,15 +48,15 @@ def notices_on_clocks(case: Case) -> list[Notice]:
         meant = earlier.timing.says_after or later.timing.says_start
         if earlier.end < later.start and not meant:
             text = (
-                f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; are their times of "
-                "one clock? `start:` of the later table, or `after: hold` of the earlier, says that this is meant"
+                f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; do their times "
+                "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
     return [*found, *_recordings_apart(case)]
 
 
 def _recordings_apart(case: Case) -> Iterator[Notice]:
-    """The recordings that are taken to begin together, where their stamps say otherwise."""
+    """Notices on recordings that begin together in the case, but not by their stamps."""
     recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
     recorded.sort(key=_clock_at_start)
     for later in recorded[1:]:
@@ -63,9 +64,9 @@ def _recordings_apart(case: Case) -> Iterator[Notice]:
         if apart > SKEW and not later.timing.says_start:
             start = f"{apart / later.timing.rate:.6g}"
             text = (
-                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} is {start} s later "
-                f"than that of {recorded[0].robot.name!r}, and is taken from 0 s; `start: {start}` beside its "
-                "file takes it so, `start: 0` says that this is meant"
+                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} begins {start} s after "
+                f"that of {recorded[0].robot.name!r}, but it is taken from 0 s; beside its file, "
+                f"`start: {start}` keeps the delay and `start: 0` drops it"
             )
             by_chance = apart <= max(_usual_interval(later), _usual_interval(recorded[0]))
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)

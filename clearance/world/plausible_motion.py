@@ -40,7 +40,7 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 def notices_on_motion(
     placed: PlacedRobot, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
-    """What of a robot's motion looks like another unit, and that nobody says where it begins.
+    """Notices on motion of a robot that looks like another unit, and on an unknown start.
 
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
@@ -54,14 +54,14 @@ def notices_on_motion(
 
 
 def _way_in(placed: PlacedRobot) -> list[Notice]:
-    """That nobody says how a robot comes to its first sample; one sample alone is no motion."""
+    """A notice where the motion to the first sample is unknown; suspect where this is the only sample."""
     asked, about = placed.given_trajectory, placed.robot.name
     first = float(asked.times[0])
     if asked.n_steps < 2 and first > 0.0:
         text = (
-            f"the trajectory of robot {about!r} is one goal at {first:.6g} s, and the motion there is not "
-            "measured; trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is a "
-            "single pose"
+            f"the trajectory of robot {about!r} has one sample, at {first:.6g} s: the motion to this goal is "
+            "not measured; give its start at 0 s with trajectory: {start_state: …}, or give the sample the "
+            "time 0 to check a single pose"
         )
         return [Notice(Severity.SUSPECT, START, text, about)]
     if not asked.has_way_in:
@@ -74,7 +74,7 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
 
 
 def notices_on_positions(extents: Sequence[JointExtent], before: str = "") -> list[Notice]:
-    """What of the places that joints go to looks like another unit.
+    """Notices on joint positions that look like another unit.
 
     Args:
         before: what stands before the names of joints.

@@ -1,4 +1,4 @@
-"""Holes in recordings: suspect until the case says what joints do there, and told where they are not measured.
+"""Notices on holes in recordings: suspect until the case says how joints move there; named where not measured.
 
 Not for: finding them (`load.motion.recording_gaps`).
 """
@@ -14,17 +14,17 @@ from clearance.world.trajectory import Hole
 
 _MEANING = {
     None: (
-        "a hole in the recording{whose}, bridged by a straight line: {holes}; "
-        f"gaps: {' | '.join(GAPS)} beside the file says what is meant"
+        "the recording{whose} has a hole, bridged by a straight line: {holes}; say how joints move in "
+        f"it with gaps: {' | '.join(GAPS)} beside the file"
     ),
-    HOLD: "assumed{whose}: joints stay until a usual interval before their next message (gaps: hold); {holes}",
+    HOLD: "assumed{whose}: joints stay until one usual interval before their next message (gaps: hold); {holes}",
     LINEAR: "assumed{whose}: joints go straight from message to message (gaps: linear); {holes}",
     NOT_MEASURED: "not measured{whose}: {holes}",
 }
 
 
 def notices_on_holes(placed: PlacedRobot, before: str = "") -> list[Notice]:
-    """What a verdict says of the holes in a robot's recording: one notice for all of a meaning, the longest first.
+    """Notices on the holes in a robot's recording: one for each value of `gaps`, the longest hole first.
 
     Args:
         before: what stands before the names of joints.
@@ -42,7 +42,7 @@ def notices_on_holes(placed: PlacedRobot, before: str = "") -> list[Notice]:
 
 
 def not_measured(case: Case) -> list[tuple[float, float]]:
-    """The stretches of a run [s] in which some robot is left out, in order of time, each once."""
+    """The stretches of a run [s] in which some robot is not measured, in order of time, each once."""
     spans = {
         _span(hole, placed.timing)
         for placed in case.robots

@@ -1,4 +1,4 @@
-"""Turns of continuous joints of which it is not said which way round they go.
+"""Notices on long turns of continuous joints for which the case does not say which way round they go.
 
 Not for: what such a turn is (`wrap`), nor units (`plausible_motion`).
 """
@@ -16,7 +16,7 @@ from clearance.world.wrap import LongStep, long_steps
 
 
 def notices_on_wrap(placed: PlacedRobot, before: str = "") -> list[Notice]:
-    """That joints go by more than half a turn in a step; one notice, of the longest step of each.
+    """One notice on the joints that turn by more than half a turn in a step, with the longest step.
 
     Args:
         before: what stands before the names of joints.
@@ -27,12 +27,12 @@ def notices_on_wrap(placed: PlacedRobot, before: str = "") -> list[Notice]:
     first, others = found[0], listed([repr(before + one.joint) for one in found[1:]])
     start, end = placed.timing.run_times(np.array([first.start, first.end])).tolist()
     text = (
-        f"joint {before + first.joint!r} goes from {first.before:.6g} to {first.after:.6g} rad "
-        f"between {start:.6g} s and {end:.6g} s, more than half a turn"
-        f"{f', as in {first.n_steps - 1} steps more' if first.n_steps > 1 else ''}"
-        f"{f' (likewise {others})' if others else ''}: by {first.after - first.before:.3g} rad as written, by "
-        f"{first.shortest:.3g} rad the shortest way; trajectory: {{wrap: as_written}} or {{wrap: shortest}} says "
-        "which is meant"
+        f"joint {before + first.joint!r} turns by more than half a turn in one step, from {first.before:.6g} to "
+        f"{first.after:.6g} rad between {start:.6g} s and {end:.6g} s"
+        f"{f', and in {first.n_steps - 1} more' if first.n_steps > 1 else ''}"
+        f"{f' (likewise {others})' if others else ''}: {first.after - first.before:.3g} rad as written, "
+        f"{first.shortest:.3g} rad the shortest way; say which with trajectory: {{wrap: as_written}} or "
+        "{wrap: shortest}"
     )
     return [Notice(Severity.SUSPECT, WRAP, text, placed.robot.name)]
 

@@ -98,7 +98,7 @@ def _parted(times: np.ndarray, n_parts: np.ndarray) -> tuple[np.ndarray, np.ndar
     n_parts = np.maximum(n_parts, 1.0)
     if n_parts.sum() >= MOST_SAMPLES:
         raise BadShape(
-            f"its quintics take {n_parts.sum():.3g} samples to follow",
+            f"cubics would need {n_parts.sum():.3g} samples to follow its quintics",
             valid=f"{MOST_SAMPLES:,} or fewer; accelerations are in rad/s² and m/s²",
         )
     interval = np.repeat(np.arange(len(n_parts)), n_parts.astype(np.int64))

@@ -122,9 +122,7 @@ def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
     for hole in driven.not_measured:
         times = times[(times <= hole.start) | (times >= hole.end)]
     if not len(times):
-        raise BadTime(
-            f"it has a hole over all of {start:g} to {end:g} s", valid="gaps: hold or linear"
-        )
+        raise BadTime(f"a hole covers all of {start:g} to {end:g} s", valid="gaps: hold or linear")
     return times
 
 

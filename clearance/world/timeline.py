@@ -203,7 +203,7 @@ def _of_robot(motion: Motion) -> _Table:
     left_out = asked.not_measured if asked is not None else ()
     if left_out and timing.after == "loop":
         raise BadInput(
-            f"the recording of robot {motion.placed.robot.name!r} has holes and begins again and again",
+            f"the recording of robot {motion.placed.robot.name!r} has holes and repeats (after: loop)",
             valid="after: hold, or gaps: hold or linear",
         )
     spans = (timing.run_times(np.array(window.ends)) for window in left_out)

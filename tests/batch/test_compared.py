@@ -86,7 +86,7 @@ def test_a_pose_in_place_of_a_motion_is_less(folder, capsys):
     assert "1 of a single pose" in (folder / "new" / "batch.html").read_text()
     code, lines = compared(capsys)
     assert (code, lines[1]) == (
-        1, "less is known: a motion was looked at, and only a single pose is (t000)"
+        1, "less is known: a motion was checked, and now only a single pose is (t000)"
     )  # fmt: skip
 
 

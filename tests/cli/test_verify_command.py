@@ -35,7 +35,8 @@ def test_the_receipt_of_a_run_is_proven(home, capsys):
     told = capsys.readouterr().out
     assert told.startswith("PROVEN: at least 34.884 mm (default) between all 1 pairs over 300 ")
     assert (
-        "; verdict clear, every byte of the report is as made again; 3 inputs of ../scenes/" in told
+        "; verdict clear; every byte of the report matches a fresh run; 3 inputs of ../scenes/"
+        in told
     )
     assert "trajectory.csv" in told and "are left out" in told
 
@@ -118,9 +119,7 @@ def test_what_was_asked_beside_the_case_is_asked_again_and_said(home, capsys):
     line = capsys.readouterr().out.partition("\n")[0]
     assert "BELOW ITS LIMIT of 40 mm" in line and "every byte of the report" in line
     assert "with 1 waiver (fail 40 mm, not the case's " in line
-    assert (
-        "; units accepted beside the case; ../more.yaml beside the case; waivers as of 2027" in line
-    )
+    assert "; accepted for this run: units; with ../more.yaml; waivers as of 2027" in line
     waivers.rename(home / "moved.yaml")
     assert run(["verify", str(out)]) == ExitCode.BAD_INPUT
     assert "--waivers FILE" in capsys.readouterr().err

@@ -90,7 +90,10 @@ def test_less_than_the_report_tells_of_is_not_proven(folder):
     rewritten(folder, claims=claims)
     found = cl.verify(folder, loose())
     assert found.beyond["default, with tolerances"] == pytest.approx(0.01, abs=3e-6)
-    assert "with tolerances; NOT VERIFIED: up to 10.00" in found.headline.partition("\n")[0]
+    assert (
+        "with tolerances; NOT VERIFIED: the report certifies up to 10.00"
+        in found.headline.partition("\n")[0]
+    )
     claims[1] = NOT_CLAIMED
     rewritten(folder, claims=claims)
     assert (
@@ -103,7 +106,7 @@ def test_a_limit_that_is_kept_with_tolerances_must_be_proven(folder):
     receipt = read_receipt(folder / FILE_NAME)
     for least, failure in (
         (0.010, ""),
-        (0.009999, "the case comes to clear with tolerances, the receipt proves 9.999000 mm"),
+        (0.009999, "a fresh run is clear with tolerances, but the receipt proves only 9.999000 mm"),
     ):
         claims = receipt.claims.copy()
         claims[1] = np.minimum(claims[1], round(least / UNIT))

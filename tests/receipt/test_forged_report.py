@@ -1,4 +1,4 @@
-"""Reports that somebody has changed, hashes and all, are not what the case comes to, or not called verified."""
+"""Reports that somebody has changed, hashes and all, differ from a fresh run, or are not called verified."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def test_the_report_as_it_is_passes(folder):
     with_summary(folder, lambda summary: None)
     found = cl.verify(folder, turning_arm())
     assert found.proven and not found.not_verified and found.verdict == "clear"
-    assert "verdict clear, every byte of the report is as made again" in found.headline
+    assert "verdict clear; every byte of the report matches a fresh run" in found.headline
 
 
 @pytest.mark.slow
@@ -144,7 +144,7 @@ def test_no_value_of_the_summary_can_be_changed(report_with_tolerances, tmp_path
         path.write_text(json.dumps(summary, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
         hashed(folder, path.name)
         line = first_line(folder, loose())
-        assert line.startswith("NOT PROVEN: summary.json is not what the case comes to"), way
+        assert line.startswith("NOT PROVEN: summary.json differs from a fresh run"), way
         n += 1
     assert n > 500
     path.write_text(told)
@@ -184,7 +184,9 @@ def test_a_table_or_page_that_says_something_else_is_found(name, report_with_tol
     other = chr(ord(last.group()) + 1)
     path.write_text(text[: last.start()] + other + text[last.end() :], encoding="utf-8")
     hashed(folder, name)
-    assert re.match(rf"NOT PROVEN: {name} is .*: line \d+ is ", first_line(folder, loose()))
+    assert re.match(
+        rf"NOT PROVEN: {name} differs from a fresh run: line \d+ is ", first_line(folder, loose())
+    )
 
 
 @pytest.mark.parametrize("name", ["replay.npz", "steps.parquet"])
@@ -193,13 +195,13 @@ def test_data_that_is_not_that_of_the_case_is_found(name, folder):
     content[len(content) // 2] ^= 1
     (folder / name).write_bytes(content)
     hashed(folder, name)
-    assert first_line(folder).startswith(f"NOT PROVEN: {name} is not what the case comes to: its")
+    assert first_line(folder).startswith(f"NOT PROVEN: {name} differs from a fresh run: its")
 
 
 def test_a_page_of_its_own_is_found(folder):
     (folder / "report.html").write_text("<h1>CLEAR: 500 mm</h1>\n")
     hashed(folder, "report.html")
-    assert first_line(folder).startswith("NOT PROVEN: report.html is not what the case comes to")
+    assert first_line(folder).startswith("NOT PROVEN: report.html differs from a fresh run")
     hashed(folder, compared=True)
     assert first_line(folder).startswith(
         "PROVEN, NOT VERIFIED: report.html (it shows a comparison with another run): at least"
@@ -211,7 +213,7 @@ def test_a_table_that_no_run_of_the_case_writes_is_found(folder):
     with pytest.raises(BadSyntax, match=r"budget.csv: it was not there"):
         cl.verify(folder, turning_arm())
     hashed(folder, "budget.csv")
-    told = "NOT PROVEN: budget.csv is not what the case comes to: this case gives none"
+    told = "NOT PROVEN: budget.csv differs from a fresh run: the fresh run has no such file"
     assert first_line(folder) == told
 
 
@@ -245,12 +247,12 @@ def test_what_lies_beside_the_report_is_not_called_verified(folder):
     (folder / "junit.xml").write_text('<testsuite tests="1" failures="0"/>')
     (folder / "index.html").write_text("<h1>CLEAR: 500 mm</h1>\n")
     line = first_line(folder)
-    told = "PROVEN, NOT VERIFIED: index.html, junit.xml (no file of the report): at least"
+    told = "PROVEN, NOT VERIFIED: index.html, junit.xml (not part of the report): at least"
     assert line.startswith(told) and "every byte" not in line
     for word in ("a\x1b[2K", "b" * 200, "c", "d"):
         (folder / word).mkdir()
     line = first_line(folder)
-    assert "c, and 3 more (no file of the report)" in line and line.isprintable()
+    assert "c, and 3 more (not part of the report)" in line and line.isprintable()
 
 
 def violated() -> cl.Case:
@@ -268,9 +270,11 @@ def test_a_violated_run_whose_limits_were_lowered_is_found(tmp_path):
         summary |= {"passed": True, "exit_code": 0}
 
     with_summary(tmp_path, lowered)
-    assert first_line(tmp_path, violated()).startswith("NOT PROVEN: summary.json is not what")
+    assert first_line(tmp_path, violated()).startswith(
+        "NOT PROVEN: summary.json differs from a fresh run"
+    )
     hashed(tmp_path, maker=read_receipt(tmp_path / FILE_NAME).head["maker"] | OTHER)
-    told = "NOT PROVEN: summary.json says 'clear', the case comes to violated"
+    told = "NOT PROVEN: summary.json says 'clear', a fresh run says violated"
     assert first_line(tmp_path, violated()) == told
 
 
@@ -279,7 +283,7 @@ def test_a_violated_run_is_not_read_as_one_that_keeps_its_limits(tmp_path):
     found = cl.verify(tmp_path, violated())
     assert found.proven and found.verdict == "violated" and found.below == {"default": 0.15}
     assert "(default, BELOW ITS LIMIT of 150 mm)" in found.headline
-    assert "; verdict violated, every byte" in found.headline
+    assert "; verdict violated; every byte" in found.headline
 
 
 @pytest.mark.slow
@@ -307,7 +311,9 @@ def test_waivers_that_a_report_tells_of_and_the_case_does_not_have_are_found(tmp
         summary |= {"verdict": "clear", "n_waivers": 1}
 
     with_summary(tmp_path, one_waiver)
-    assert first_line(tmp_path, violated()).startswith("NOT PROVEN: summary.json is not what")
+    assert first_line(tmp_path, violated()).startswith(
+        "NOT PROVEN: summary.json differs from a fresh run"
+    )
 
 
 @pytest.mark.slow
@@ -318,7 +324,9 @@ def test_a_verdict_that_rests_on_waivers_says_so_and_of_which_day(tmp_path):
     assert "BELOW ITS LIMIT of 150 mm" in line
     assert f"with 1 waiver (waivers as of {asked['today']})" in line
     hashed(tmp_path, asked=asked | {"today": "2900-01-02"})
-    assert first_line(tmp_path, waived()).startswith("NOT PROVEN: summary.json is not what")
+    assert first_line(tmp_path, waived()).startswith(
+        "NOT PROVEN: summary.json differs from a fresh run"
+    )
 
 
 def test_a_page_that_shows_a_comparison_is_not_called_verified(tmp_path):
@@ -362,7 +370,7 @@ def test_a_question_that_is_none_or_proves_nothing_is_refused(folder, change):
 def test_another_question_has_another_report(folder):
     head = read_receipt(folder / FILE_NAME).head
     rewritten(folder, head=head | {"asked": head["asked"] | {"need": "limit"}})
-    assert first_line(folder).startswith("NOT PROVEN: summary.json is not what")
+    assert first_line(folder).startswith("NOT PROVEN: summary.json differs from a fresh run")
 
 
 def test_inputs_of_which_the_case_knows_nothing_are_refused(folder):

@@ -66,7 +66,7 @@ def test_no_raised_bound_is_proven(folder):
 def test_a_receipt_of_less_than_the_report_tells_of_proves_no_report(folder):
     receipt = read_receipt(folder / FILE_NAME)
     rewritten(folder, claims=receipt.claims - 100)
-    assert "the report tells of up to 0.00009" in verified(folder).failure
+    assert "the report certifies up to 0.00009" in verified(folder).failure
 
 
 def test_no_item_can_be_left_out(folder):

@@ -13,8 +13,8 @@ EPOCH = 1750851666.25
 PATH = "time,shoulder\n{0},0\n{1},0.5\n"
 TOLD = (
     "CHECK CLOCKS: obstacle 'door' moves from 0 to 1 s, robot 'left' moves from 1750851666.25 to 1750851667.25 s: "
-    "they never move together; are their times of one clock? `start:` of the later table, or `after: hold` of the "
-    "earlier, says that this is meant"
+    "they never move together; do their times come from one clock? If so, give the later table a `start:`, or the "
+    "earlier one `after: hold`"
 )
 
 
@@ -102,10 +102,10 @@ def two_recordings(folder, apart, *changes):
 
 def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
     assert told(two_recordings(tmp_path, 3.25)) == [
-        "CHECK CLOCKS: by its stamps the recording of robot 'right' is 3.25 s later than that of 'left', and is "
-        "taken from 0 s; `start: 3.25` beside its file takes it so, `start: 0` says that this is meant"
+        "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 3.25 s after that of 'left', "
+        "but it is taken from 0 s; beside its file, `start: 3.25` keeps the delay and `start: 0` drops it"
     ]
-    assert "robot 'left' is 3.25 s later" in told(two_recordings(tmp_path, -3.25))[0]
+    assert "robot 'left' begins 3.25 s after" in told(two_recordings(tmp_path, -3.25))[0]
     assert not told(two_recordings(tmp_path, 5e-4))
 
 
@@ -113,7 +113,7 @@ def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_pa
     """Two drivers of one rate never send their first messages at one moment. These send two a second."""
     case = two_recordings(tmp_path, 0.25)
     (one,) = [notice for notice in notices_of(case) if notice.kind == "clocks"]
-    assert one.severity == "warning" and "is 0.25 s later than that of 'left'" in one.text
+    assert one.severity == "warning" and "begins 0.25 s after that of 'left'" in one.text
     (one,) = [n for n in notices_of(two_recordings(tmp_path, 1.25)) if n.kind == "clocks"]
     assert one.severity == "suspect"
 

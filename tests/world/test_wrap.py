@@ -66,9 +66,9 @@ def test_a_step_of_more_than_half_a_turn_is_suspect_and_both_readings_are_measur
     assert one.kind == "wrap"
     says, _, answers = one.text.partition("; least clearance as written: ")
     assert says == (
-        "joint 'spin' goes from 2.9 to -2.9 rad between 0 s and 1 s, more than half a turn: by -5.8 rad as "
-        "written, by 0.483 rad the shortest way; trajectory: {wrap: as_written} or {wrap: shortest} says which is "
-        "meant"
+        "joint 'spin' turns by more than half a turn in one step, from 2.9 to -2.9 rad between 0 s and 1 s: "
+        "-5.8 rad as written, 0.483 rad the shortest way; say which with trajectory: {wrap: as_written} or "
+        "{wrap: shortest}"
     )
     figures = [float(answer.split(" mm")[0]) for answer in answers.split(", the shortest way: ")]
     assert figures == pytest.approx([1e3 * run.worst["clearance"], 100.0], abs=0.11)

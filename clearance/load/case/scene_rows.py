@@ -66,7 +66,7 @@ def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
     links = body_names(case).links
     if frame not in links:
         raise UnknownLink(
-            f"frame {frame!r} is given, which is no link",
+            f"frame {frame!r} is no link",
             where="frame",
             valid=nearest_name(frame, (*links, WORLD_FRAMES[0])),
         )
@@ -76,8 +76,8 @@ def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
             yield Notice(
                 Severity.SUSPECT,
                 "frame",
-                f"CHECK FRAME: the scene's file is in the frame of link {frame!r}, which moves or does not stand "
-                "at the origin, but is taken for the world: obstacles may be elsewhere; place the robot to agree",
+                f"CHECK FRAME: the scene's file is in the frame of link {frame!r}, but is read as the world's. "
+                "This link moves or is not at the origin: obstacles may be misplaced; place the robot to agree",
             )
 
 

@@ -1,6 +1,6 @@
-"""Where a motion begins at 0 s whose first sample is later, as a case file says it: by value, or by states.
+"""The start at 0 s of a trajectory whose first sample is later, as the case file gives it: by value, or by states.
 
-Not for: what a message says of that (`motion.message_start`), nor joints that rest (`resting`).
+Not for: the start in a message (`motion.message_beside`), nor joints that rest (`resting`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from clearance.world.trajectory import Trajectory
 def with_start(
     entry: schema.RobotEntry, trajectory: Trajectory, robot: Robot, folder: Path, files: InputFiles
 ) -> tuple[Trajectory, tuple[str, ...]]:
-    """The trajectory after the start that its entry gives, if it gives one; and a note on that.
+    """The trajectory with a sample at 0 s added, if its entry gives a start; and a note.
 
     Args:
         folder: against which paths are looked up.
@@ -44,7 +44,7 @@ def with_start(
             )
         positions = _positions(entry, asked, trajectory, robot, folder, files)
     first = f"the first sample at {trajectory.times[0]:g} s"
-    note = f"from start_state at 0 s joints go from rest to {first} as they go between samples"
+    note = f"joints start from rest in start_state at 0 s and go to {first} as between samples"
     return started(trajectory, np.array(positions)), (note,)
 
 
@@ -72,7 +72,7 @@ def _positions(
     missing = [name for name in trajectory.joint_names if name not in found]
     if missing:
         raise MissingKey(
-            f"it says nothing of {listed([*map(repr, missing)])}",
+            f"it has no position of {listed([*map(repr, missing)])}",
             valid="a position of each joint that the trajectory moves",
         )
     return [found[name] for name in trajectory.joint_names]

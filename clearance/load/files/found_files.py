@@ -37,11 +37,11 @@ class FoundFiles:
         notes = notes_on_variables(self._by_variable)
         if self._elsewhere:
             told = _first(self._elsewhere, "is read from ")
-            notes.append(f"a path of another machine, in the same package here: {told}")
+            notes.append(f"path of another machine, found in the same package here: {told}")
         return notes
 
     def notices(self) -> list[Notice]:
-        """Suspect input for each package that is not there: the files that stand in for its own."""
+        """Suspect input for each missing package: the files that were read instead."""
         return _notices_on_stand_ins(self._stand_ins)
 
 
@@ -56,7 +56,7 @@ def _notices_on_stand_ins(stand_ins: PathsByName) -> list[Notice]:
         Notice(
             Severity.SUSPECT,
             "package",
-            f"CHECK PACKAGE: package {package!r} is not there: {_first(files, 'is taken from ')}; "
+            f"CHECK PACKAGE: package {package!r} was not found: {_first(files, 'is taken from ')}; "
             "is it the same file? give the package's folder in package_dirs",
         )
         for package, files in stand_ins.items()

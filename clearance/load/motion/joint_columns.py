@@ -1,5 +1,6 @@
-"""What a table's columns say of the joints of a robot: which are joints, which follow others, which are to be left
-out. Not for: reading the table (`trajectory_csv`).
+"""Which columns of a table are joints of a robot, which are mimic joints, and which to leave out.
+
+Not for: reading the table (`trajectory_csv`).
 """
 
 from __future__ import annotations
@@ -21,15 +22,14 @@ from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
 TURN_AGREES, SLIDE_AGREES = 1e-3, 1e-4
-"""[rad], [m] How far a joint that follows another may be logged off where it follows: 1 mm at 1 m, as fine as
-certificates are."""
+"""[rad], [m] How far a logged mimic joint may be off the position that it should follow: 1 mm at 1 m."""
 
 _NUMBERED = re.compile(r"(.*?)(\d+)")
 _LIKE_TIME = re.compile(rf"time|stamp|zeit|sec|^{re.escape(UNNAMED)}", re.IGNORECASE)
 
 
 def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column]) -> None:
-    """Nothing, if all are joints that move, or follow one that is given too.
+    """Checks that all are moving joints, or mimic joints whose master is given too.
 
     Args:
         columns: all of the table, for the remedy.
@@ -46,10 +46,10 @@ def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column
 
 
 def without_followers(robot: Robot, found: Trajectory) -> tuple[Trajectory, list[str]]:
-    """The trajectory without joints that follow others that it gives as well, and a note.
+    """The trajectory without mimic joints whose master it gives as well, and a note.
 
     Raises:
-        BadInput: one is not where it follows.
+        BadInput: a mimic joint is off the position that it should follow.
     """
     following = _following(robot, found.joint_names)
     for one in following:
@@ -60,12 +60,12 @@ def without_followers(robot: Robot, found: Trajectory) -> tuple[Trajectory, list
     kept = [i for i, name in enumerate(found.joint_names) if name not in names]
     told = listed([repr(name) for name in names], 8)
     return found.of_columns(kept), [
-        f"columns of joints that follow others agree with these: {told}"
+        f"columns of mimic joints agree with the joints that they follow: {told}"
     ]
 
 
 def _following(robot: Robot, joints: Sequence[str]) -> list[Follower]:
-    """The joints that follow others of the given ones."""
+    """The mimic joints among the given ones whose master is given too."""
     given = set(joints)
     return [
         one
@@ -89,20 +89,20 @@ def _require_agreed(found: Trajectory, one: Follower) -> None:
 
 
 def remedy(robot: Robot, columns: Sequence[Column]) -> str:
-    """The `columns` of a case that take what is meant out of a header."""
+    """The line `columns: …` to add to a case, so that only joints of the robot are read."""
     joints = [joint.name for joint in robot.moving_joints]
     own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
     times = [one.header for one in columns if one.name == TIME]
     if own and times:
         told = flow([*times, *(one.header for one in own)])
-        return f"columns: {told} takes these columns alone (--columns)"
+        return f"columns: {told} reads these columns only (--columns)"
     found = {one.name: one.header for one in own} or _joints_alike(joints, columns)
     told = flow({TIME: times[0] if times else _time_alike(columns)} | found)
-    return f"columns: {told} says which column is whose (--columns)"
+    return f"columns: {told} maps each joint to its column (--columns)"
 
 
 def _time_alike(columns: Sequence[Column]) -> str:
-    """The column that is called most like a time, or has no name."""
+    """The column whose name is most like a time, or that has no name."""
     headers = [one.header for one in columns]
     return next((one for one in headers if _LIKE_TIME.search(one)), "column of times")
 
@@ -124,7 +124,7 @@ def _joints_alike(joints: Sequence[str], columns: Sequence[Column]) -> dict[str,
 
 
 def _column_alike(joint: str, columns: Sequence[Column]) -> str | None:
-    """The column that has the joint's name as a part of its own, by itself or as its position."""
+    """The column whose name contains the joint's, alone or with a word for position."""
     part = re.compile(rf"(?:.*[^a-z0-9])?{re.escape(joint)}(?:[^a-z0-9].*)?", re.IGNORECASE)
     headers = [one.header for one in columns if part.fullmatch(one.header)]
     positions = [one for one in headers if "pos" in one.lower().replace(joint.lower(), "")]

@@ -196,11 +196,11 @@ def _notes(points: list[_Point], trajectory: Trajectory) -> list[str]:
     first = points[0]
     if "accelerations" in first.values:
         followed = (
-            f"; {len(points)} points are followed by cubics through {trajectory.n_steps}, "
-            f"{trajectory.path_error:.1g} rad or m off at most, which clearances are lessened by"
+            f"; {len(points)} points become cubics through {trajectory.n_steps} samples, at most "
+            f"{trajectory.path_error:.1g} rad or m off, and clearances are reduced to cover that"
         )
         notes.append(
-            "joints move on the quintics through positions, velocities and accelerations, as with ROS's joint "
+            "joints move on the quintics through positions, velocities and accelerations, as in ROS's joint "
             f"trajectory controller{followed if trajectory.n_steps > 1 else ''}"
         )
     if any("effort" in point.values for point in points):

@@ -176,7 +176,7 @@ def _notes(
     n_received = sum(not state.is_stamped for state in states)
     if n_received:
         notes.append(
-            f"{n_received} of {len(states)} messages are not stamped: their time is that of their receipt"
+            f"{n_received} of {len(states)} messages have no stamp: the time of receipt is used"
         )
     unknown = [
         f"{name!r} in message {listed([*map(str, joints[name].unknown)])}"

@@ -1,4 +1,4 @@
-"""What a message says beside the points of a trajectory: where the robot starts, and what is not read, by name.
+"""Fields of a message beside the points of a trajectory: the start of the robot, and names of fields not read.
 
 Not for: the points (`joint_points`), nor where a trajectory is in a message (`joint_messages`).
 """
@@ -26,15 +26,15 @@ _STARTS = ("trajectory_start", "start_state")
 _OF_MESSAGE = frozenset(
     ("seq", "stamp", "goal_id", "status", "event_type", "info", "error_code", "planning_time")
 )
-"""Keys that tell of the message, not of a motion."""
+"""Keys about the message, not about a motion."""
 
 _NAMES = frozenset(("name", "joint_names"))
-"""Keys of what others speak of; alone they say nothing."""
+"""Names that other fields refer to; alone they have no effect."""
 
 _UNTURNED = {"x": 0, "y": 0, "z": 0, "w": 1}
 
 NEAR = 1e-6
-"""[rad or m] A start that is nearer to the first point, which is at 0 s, is that point."""
+"""[rad or m] A start closer than this to a first point at 0 s is the same as the point."""
 
 
 class StartState(NamedTuple):
@@ -82,7 +82,7 @@ def _by_name(joints: Fields, key: str) -> dict[str, float]:
 def with_start(
     trajectory: Trajectory, start: StartState | None
 ) -> tuple[Trajectory, tuple[str, ...]]:
-    """The trajectory after its start, if the message gives one and points begin later; and a note on that."""
+    """The trajectory with a sample at 0 s added, if points begin later and the message has a start; and notes."""
     first = float(trajectory.times[0])
     if start is None:
         without = f"the first point is at {first:g} s; how the robot gets there is not in the file"
@@ -90,17 +90,17 @@ def with_start(
     names = trajectory.joint_names
     others = [f"{name}: {at_:g}" for name, at_ in start.positions.items() if name not in names]
     notes = [
-        f"{start.place} says of joints that the trajectory does not move {{{listed(others, 8)}}}: "
+        f"{start.place} also has joints that the trajectory does not move {{{listed(others, 8)}}}: not used, "
         "robot.joints of the case says where they rest"
     ] if others else []  # fmt: skip
     missing = [name for name in names if name not in start.positions]
     if missing:
-        notes.append(f"{start.place} is not used: it says nothing of {listed(missing, 8)}")
+        notes.append(f"{start.place} is not used: it has no position of {listed(missing, 8)}")
         return _with_way_in(trajectory), tuple(notes)
     positions = np.array([start.positions[name] for name in names])
     if first > 0.0:
         notes.append(
-            f"from {start.place} joints go to the first point at {first:g} s as they go between points"
+            f"joints start in {start.place} at 0 s and go to the first point at {first:g} s as between points"
         )
         rates = np.array([start.velocities.get(name, 0.0) for name in names])
         return started(trajectory, positions, rates), tuple(notes)
@@ -108,7 +108,8 @@ def with_start(
     if (off > NEAR).any():
         i = int(np.argmax(off))
         notes.append(
-            f"{start.place} has joint {names[i]!r} {off[i]:.3g} off the first point, at {first:g} s, which counts"
+            f"{start.place} has joint {names[i]!r} {off[i]:.3g} off the first point, at {first:g} s; "
+            "the point is used"
         )
     return trajectory, tuple(notes)
 
@@ -120,7 +121,7 @@ def _with_way_in(trajectory: Trajectory) -> Trajectory:
 
 
 def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str]:
-    """A line naming what is said beside the points and has no effect here."""
+    """A line that names the fields beside the points that have no effect here."""
     found = [*_unread(message.trajectory, message.place, ("joint_names", "points"))]
     for place, holder in message.around:
         for path in _unread(holder, place, READ):
@@ -129,7 +130,7 @@ def notes_on_unread(message: JointMessage, start: StartState | None) -> list[str
             else:
                 key = path.rpartition(".")[2]
                 found += _unread(holder[key], path, ("joint_state", "is_diff"))
-    return [f"said beside the points, and not read: {listed(found, 8)}"] if found else []
+    return [f"fields beside the points, not read: {listed(found, 8)}"] if found else []
 
 
 def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
@@ -143,7 +144,7 @@ def _unread(fields: Fields, place: str, read: Sequence[str]) -> Iterator[str]:
 
 
 def _says(value: Any) -> bool:
-    """True if a value is another than what an empty message has; each part of it is looked at once."""
+    """True if a value differs from that of an empty message; each part is visited once."""
     waiting, seen = [value], set[int]()
     while waiting:
         one = waiting.pop()

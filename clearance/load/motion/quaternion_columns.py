@@ -67,7 +67,7 @@ def by_angles(
         if len(steep):
             raise BadInput(
                 f"{stem!r} is pitched by {np.degrees(angles[steep[0], 1]):.1f} degrees, where yaw and roll are "
-                "not told apart",
+                "not distinct",
                 where=f"line {line_of_row(table, int(steep[0]))}",
                 valid="an obstacle that `moves` by a table of poses, and the robot's base on it",
             )
@@ -76,7 +76,7 @@ def by_angles(
     if turned:
         told = listed([repr(stem) for stem in turned])
         notes.append(
-            f"quaternions of {told} are read as yaw, pitch and roll, each of which goes by itself"
+            f"quaternions of {told} are read as yaw, pitch and roll, each interpolated on its own"
         )
     found = [columns[name] for name in joints_by_angles(names, turned)]
     return np.column_stack(found), [*notes, *note_on_rounded(n_rounded)]

@@ -52,6 +52,6 @@ def notes_on_names(header: Sequence[str], columns: Sequence[Column]) -> list[str
     ]
     used = {one.header for one in columns}
     left = [repr(name) for name in header if name not in used and name != EMPTY]
-    notes += [f"columns that are left out: {listed(left, 8)}"] if left else []
+    notes += [f"columns not read: {listed(left, 8)}"] if left else []
     notes += ["the empty column at the end is left out"] if EMPTY in header else []
     return notes

@@ -76,7 +76,7 @@ def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_
     (notice,) = load_urdf(tmp_path, robot(link(two))).notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert notice.text == (
-        "CHECK PACKAGE: package 'arms' is not there: package://arms/meshes/part.stl is taken from meshes/part.stl"
+        "CHECK PACKAGE: package 'arms' was not found: package://arms/meshes/part.stl is taken from meshes/part.stl"
         ", and 1 more likewise; is it the same file? give the package's folder in package_dirs"
     )
 
@@ -155,7 +155,7 @@ def test_a_path_of_another_machine_is_looked_for_by_its_package(tmp_path, before
     found = load_urdf(folder, asked, [tmp_path / "here"])
     shown = "../here/arms-2/meshes/part.stl"
     assert found.bodies[0].origin == shown and found.notices == ()
-    told = f"a path of another machine, in the same package here: {given} is read from {shown}"
+    told = f"path of another machine, found in the same package here: {given} is read from {shown}"
     assert found.notes == (told,)
 
 

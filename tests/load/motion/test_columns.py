@@ -112,7 +112,7 @@ def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
     assert trajectory.joint_names == ("shoulder", "lift")
     assert trajectory.times.tolist() == [100, 101]
     assert trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
-    told = "path.csv: columns that are left out: 'status', 'target_q_0', 'target_q_1', 'current'"
+    told = "path.csv: columns not read: 'status', 'target_q_0', 'target_q_1', 'current'"
     assert told in made.notes
 
 
@@ -124,12 +124,12 @@ def test_a_first_row_with_a_unit_behind_a_blank_is_one_column():
 def test_the_error_on_a_log_can_be_pasted(tmp_path):
     with pytest.raises(UnknownJoint, match="unknown joint 'status'") as caught:
         load_small(tmp_path, urdf=TWO_JOINTS, trajectory=LOG)
-    assert f"; columns: {TAKEN} says which column is whose (--columns)" in str(caught.value)
+    assert f"; columns: {TAKEN} maps each joint to its column (--columns)" in str(caught.value)
     own = "time,shoulder,lift [mm],x1\n0,0.1,20,4\n1,0.2,30,4\n"
     with pytest.raises(UnknownJoint, match="unknown joint 'x1'") as caught:
         load_small(tmp_path, urdf=TWO_JOINTS, trajectory=own)
     hint = 'columns: [time, shoulder, "lift [mm]"]'
-    assert f"; {hint} takes these columns alone (--columns)" in str(caught.value)
+    assert f"; {hint} reads these columns only (--columns)" in str(caught.value)
     case = changed("path.csv", f"path.csv, {hint}")
     made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=own)
     assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
@@ -209,7 +209,10 @@ def test_a_column_of_a_joint_that_follows_is_taken_where_it_agrees(tmp_path):
     made = load_small(tmp_path, urdf=FINGERS, trajectory=rows)
     assert made.robots[0].trajectory.joint_names == ("shoulder", "lift")
     assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
-    assert "path.csv: columns of joints that follow others agree with these: 'other'" in made.notes
+    assert (
+        "path.csv: columns of mimic joints agree with the joints that they follow: 'other'"
+        in made.notes
+    )
     off = rows.replace("-49.95", "-49.8")
     with pytest.raises(BadInput, match=r"'other' follows 'lift', and is 0\.0002 m off that at 1 s"):
         load_small(tmp_path, urdf=FINGERS, trajectory=off)
@@ -312,9 +315,9 @@ def test_new_takes_columns_and_writes_what_they_are(tmp_path, monkeypatch, capsy
     ]
     words.append("--columns")
     assert run([*words, "time=timestamp,shoulder=actual_q_0,lift=actual_q_1"]) == 0
-    assert "columns that are left out: 'status'" in (tmp_path / "out" / "case.yaml").read_text()
+    assert "columns not read: 'status'" in (tmp_path / "out" / "case.yaml").read_text()
     made = load_case(tmp_path / "out" / "case.yaml").robots[0].trajectory
     assert made.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
     capsys.readouterr()
     assert run([*words, "time=,shoulder"]) == 2
-    assert "is not a list of columns; time,elbow=q3" in capsys.readouterr().err
+    assert "is not a list of columns such as time,elbow=q3" in capsys.readouterr().err

@@ -177,8 +177,8 @@ def test_a_table_is_a_recording_where_it_is_given_as_one(tmp_path):
     (told,) = suspects(with_recorded(case, tmp_path / "run.csv"))
     assert told.kind == "gaps"
     assert told.text == (
-        "a hole in the recording, bridged by a straight line: no message of shoulder, lift from 1 to 3 s "
-        "(2 s, usually 0.02 s); gaps: hold | linear | not_measured beside the file says what is meant"
+        "the recording has a hole, bridged by a straight line: no message of shoulder, lift from 1 to 3 s "
+        "(2 s, usually 0.02 s); say how joints move in it with gaps: hold | linear | not_measured beside the file"
     )
     held = with_recorded(case, tmp_path / "run.csv", 0.5, gaps="not_measured")
     assert not suspects(held)
@@ -213,7 +213,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
     bound = run.record.certificate.lower_bound[run.record.steps["time"].to_numpy() == 1.0]
     assert not np.isfinite(bound).any()
     assert motion_content(run.record.motions, "out.csv").notes == (
-        "no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): straight here",
+        "no message of shoulder, lift from 1 to 3 s (2 s, usually 0.02 s): a straight line in this file",
     )
     held = changed("file: path.csv", "file: path.csv, gaps: hold")
     (told,) = [
@@ -222,7 +222,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
         if "hold" in notice.text
     ]
     assert told == (
-        "assumed: joints stay until a usual interval before their next message (gaps: hold); no message of "
+        "assumed: joints stay until one usual interval before their next message (gaps: hold); no message of "
         "shoulder, lift from 1 to 3 s (2 s, usually 0.02 s)"
     )
     with pytest.raises(BadInput, match="gaps"):
@@ -230,7 +230,7 @@ def test_a_case_says_what_a_hole_means(tmp_path):
             write_case(tmp_path, changed("file: path.csv", "file: path.csv, gaps: none"), **files)
         )
     again = changed("file: path.csv", "file: path.csv, gaps: not_measured, after: loop")
-    with pytest.raises(BadInput, match="has holes and begins again and again"):
+    with pytest.raises(BadInput, match="has holes and repeats"):
         load_case(write_case(tmp_path, again, **files))
 
 

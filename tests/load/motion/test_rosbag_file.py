@@ -199,7 +199,7 @@ def test_messages_without_a_stamp_are_of_the_time_of_their_receipt(tmp_path, con
     bare = [state(None, [0.1 * i, 0.0]) for i in range(3)]
     trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": bare}))
     assert trajectory.times.tolist() == [0.0, 1.0, 2.0]
-    assert any("3 of 3 messages are not stamped: their time is that of their" in n for n in notes)
+    assert any("3 of 3 messages have no stamp: the time of receipt is used" in n for n in notes)
 
 
 def test_a_hole_is_suspect_in_a_case_and_refused_by_convert(tmp_path, capsys):

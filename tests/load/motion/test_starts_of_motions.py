@@ -81,8 +81,8 @@ def test_a_motion_is_none(tmp_path):
 
 def test_a_goal_without_a_start_is_suspect_in_whatever_format(tmp_path):
     says = (
-        "the trajectory of robot 'arm' is one goal at 4 s, and the motion there is not measured; "
-        "trajectory: {start_state: …} says where it begins at 0 s, a time of 0 that it is a single pose"
+        "the trajectory of robot 'arm' has one sample, at 4 s: the motion to this goal is not measured; give its "
+        "start at 0 s with trajectory: {start_state: …}, or give the sample the time 0 to check a single pose"
     )
     for case in (load(tmp_path, GOAL), load_small(tmp_path, trajectory="time,shoulder\n4,1\n")):
         assert [(one.kind, one.text) for one in notices_of(case)] == [("start", says)]
@@ -125,7 +125,7 @@ def test_a_start_in_the_case_makes_it_a_motion(tmp_path):
     asked = case.robots[0].trajectory
     assert kinds(case) == [] and asked.times.tolist() == [0.0, 4.0]
     assert asked.positions.tolist() == [[-0.5, 0.02], [1.0, 0.05]]
-    said = "from start_state at 0 s joints go from rest to the first sample at 4 s as they go between samples"
+    said = "joints start from rest in start_state at 0 s and go to the first sample at 4 s as between samples"
     assert any(said in note for note in case.notes)
     assert check(case, need="minimum").verdict.text() == "clear"
     named = load(tmp_path, GOAL, ", start_state: home", robot=", srdf: arm.srdf", arm__srdf=SRDF)
@@ -153,7 +153,7 @@ def test_with_accelerations_it_goes_on_a_quintic_from_rest(tmp_path):
 @pytest.mark.parametrize(
     ("key", "fault", "says"),
     [
-        ("{shoulder: 0}", MissingKey, "start_state: it says nothing of 'lift'"),
+        ("{shoulder: 0}", MissingKey, "start_state: it has no position of 'lift'"),
         ("{shoulder: 0, lft: 0}", UnknownJoint, "start_state: unknown joint 'lft'; did you mean 'lift'"),
         ("home", MissingKey, "start_state: state 'home' is in no file"),
         ("1.5", BadInput, "start_state"),
@@ -177,7 +177,7 @@ def test_the_start_of_a_message_is_used():
     assert trajectory.times.tolist() == [0.0, 4.0]
     assert trajectory.positions.tolist() == [[-0.5], [1.0]]
     assert notes == (
-        "path.json: from trajectory_start joints go to the first point at 4 s as they go between points",
+        "path.json: joints start in trajectory_start at 0 s and go to the first point at 4 s as between points",
     )
     moving = displayed(plan(point(4.0, 1.0, velocities=[0.0])), state({"shoulder": -0.5}, [0.25]))
     assert read(moving).trajectory.velocities.tolist() == [[0.25], [0.0]]
@@ -195,12 +195,12 @@ def test_what_the_start_says_of_other_joints_and_another_place_is_told():
     assert trajectory.positions[0, 0] == 0.1
     told = " | ".join(notes)
     assert (
-        "trajectory_start says of joints that the trajectory does not move {finger: 0.04, thumb: 0}"
+        "trajectory_start also has joints that the trajectory does not move {finger: 0.04, thumb: 0}"
         in told
     )
-    assert "has joint 'shoulder' 0.2 off the first point, at 0 s, which counts" in told
+    assert "has joint 'shoulder' 0.2 off the first point, at 0 s; the point is used" in told
     _, notes = read(displayed(plan(point(1.0, 0.1, 0.0), names=("shoulder", "lift")), start))
-    assert any("trajectory_start is not used: it says nothing of lift" in note for note in notes)
+    assert any("trajectory_start is not used: it has no position of lift" in note for note in notes)
 
 
 def test_a_later_segment_does_not_begin_at_the_start():
@@ -211,7 +211,7 @@ def test_a_later_segment_does_not_begin_at_the_start():
     assert trajectory.times.tolist() == [2.0]
     assert notes == (
         "path.json: the first point is at 2 s; how the robot gets there is not in the file",
-        "path.json: said beside the points, and not read: trajectory_start",
+        "path.json: fields beside the points, not read: trajectory_start",
     )
 
 
@@ -246,7 +246,7 @@ def test_what_a_message_says_beside_its_points_is_named(key, value, named):
     for message in ({key: value, "trajectory": trajectory}, trajectory | {key: value}):
         notes = read(message).notes
         assert notes == (
-            (f"path.json: said beside the points, and not read: {named}",) if named else ()
+            (f"path.json: fields beside the points, not read: {named}",) if named else ()
         )
 
 
@@ -263,7 +263,9 @@ def test_what_a_start_state_says_beside_its_joints_is_named():
     box = {"link_name": "tip", "object": {"id": "box"}}
     start = state({"shoulder": 0.0}, attached_collision_objects=[box], is_diff=True)
     notes = read(displayed(plan(point(0.0, 0.0), point(1.0, 0.1)), start)).notes
-    said = "path.json: said beside the points, and not read: trajectory_start.attached_collision_objects"
+    said = (
+        "path.json: fields beside the points, not read: trajectory_start.attached_collision_objects"
+    )
     assert notes == (said,)
 
 
@@ -307,4 +309,4 @@ def test_a_new_case_of_a_goal_proposes_its_start(tmp_path, monkeypatch, capsys):
 
 def test_the_frame_of_a_message_stands_in_the_notes_of_the_case(tmp_path):
     case = load_small(tmp_path, changed("path.csv", "path.yaml"), urdf=TWO_JOINTS, path__yaml=ROS2)
-    assert "path.yaml: said beside the points, and not read: header.frame_id 'base'" in case.notes
+    assert "path.yaml: fields beside the points, not read: header.frame_id 'base'" in case.notes

@@ -347,5 +347,5 @@ def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):
         joint("m", "d", "e", "continuous", ""),
     ]
     arm = load_urdf(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
-    told = "arm.urdf: joints without <limit>, which may go anywhere: 'j', 'k'"
+    told = "arm.urdf: joints without <limit>, taken as unlimited: 'j', 'k'"
     assert [note for note in arm.notes if "without <limit>" in note] == [told]

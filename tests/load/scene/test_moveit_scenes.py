@@ -196,7 +196,7 @@ def test_a_frame_that_is_a_link_elsewhere_is_suspect(tmp_path, frame, base, is_t
 @pytest.mark.parametrize("frame", ["bse", "workshop"])
 def test_a_frame_that_is_nowhere_is_refused_with_the_nearest_name(tmp_path, frame):
     nearest = {"bse": "did you mean 'base'?", "workshop": "valid: base, tip, upper, world"}[frame]
-    told = f"frame: frame '{frame}' is given, which is no link; {re.escape(nearest)}"
+    told = f"frame: frame '{frame}' is no link; {re.escape(nearest)}"
     with pytest.raises(UnknownLink, match=rf"scene: cell\.yaml: {told}"):
         load_small(tmp_path, NAMED, cell__yaml=FRAMED % frame)
     own = f"obstacles: [{{name: post, box: {{size: [1, 1, 1]}}}}]\nframe: {frame}\n"

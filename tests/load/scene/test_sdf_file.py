@@ -134,7 +134,7 @@ def test_collisions_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_p
     assert [*obstacles_of(tmp_path, document)] == ["m/l/c"]
     (notice,) = content_of(tmp_path, document).notices
     assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
-    assert notice.text == "without any size, and not measured: 'm/l/d', 'm/l/e'"
+    assert notice.text == "collisions without a size, not measured: 'm/l/d', 'm/l/e'"
 
 
 def test_included_models_are_found_and_placed(tmp_path):

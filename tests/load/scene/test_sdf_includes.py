@@ -32,11 +32,11 @@ def test_a_model_that_is_missing_is_left_out_or_taken_from_elsewhere_where_the_c
     assert told == [
         (
             Severity.WARNING,
-            "models that are included and not measured, as the case says: 'model://crate'",
+            "included models left out, as the case says: 'model://crate'",
         ),
         (
             Severity.WARNING,
-            f"models that are taken for others, as the case says: post for '{FUEL}'",
+            f"models used in place of others, as the case says: post for '{FUEL}'",
         ),
     ]
     case = with_includes(tmp_path, f"{{'model://crate': 'file://own/post', '{FUEL}': skip}}")
@@ -48,12 +48,13 @@ def test_a_model_that_is_missing_is_left_out_or_taken_from_elsewhere_where_the_c
     [
         (
             "{}",
-            'includes: {"model://crate": skip} in the case leaves it out, a path takes another model',
+            'includes: {"model://crate": skip} in the case leaves it out, '
+            "a path in place of skip uses another model",
         ),
         ("{'model://crate': skip}", f'includes: {{"{FUEL}": skip}} in the case leaves it out'),
         (
             f"{{'model://crate': skip, '{FUEL}': skip, 'model://crat': skip}}",
-            "includes speak of 'model://crat', which is not included; did you mean 'model://crate'?",
+            "includes names 'model://crat', which the scene does not include; did you mean 'model://crate'?",
         ),
         ("{'model://crate': none}", "there is no model"),
     ],
@@ -88,7 +89,7 @@ def test_new_and_convert_leave_models_out_or_take_others_too(tmp_path, monkeypat
     places = [one.world_from_body[0, 3] for one in load_case("out/case.yaml").obstacles]
     assert places == [3, 2]
     assert run(["convert", "w.sdf", "scene.yaml", *said]) == 0
-    told = "models that are included and not measured, as the case says: 'model://crate'"
+    told = "included models left out, as the case says: 'model://crate'"
     assert told in capsys.readouterr().err and told in (tmp_path / "scene.yaml").read_text()
     assert run(["convert", "path.csv", "path.yaml", *said]) == 2
     assert "--include says nothing about" in capsys.readouterr().err

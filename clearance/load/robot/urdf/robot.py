@@ -107,7 +107,7 @@ def _on_empty(empty: list[str]) -> list[Notice]:
     """A warning on shapes that are left out."""
     if not empty:
         return []
-    text = f"without any size, and not measured: {listed(empty, 6)}"
+    text = f"shapes without a size, not measured: {listed(empty, 6)}"
     return [Notice(Severity.WARNING, "geometry", text)]
 
 

@@ -75,7 +75,8 @@ class IncludeReader:
             found = model_path(*asked)
         except BadInput as error:
             if uri.rstrip("/") != SUN:
-                ways = f"includes: {{{flow(uri)}: {SKIP}}} in the case leaves it out, a path takes another model"
+                leave_out = f"includes: {{{flow(uri)}: {SKIP}}} in the case leaves it out"
+                ways = f"{leave_out}, a path in place of skip uses another model"
                 error.valid = f"{error.valid}; {ways}".removeprefix("; ")
                 raise
             note_lookup(self._asked.files, MODEL, *asked, None)
@@ -91,15 +92,15 @@ class IncludeReader:
             return IncludedModel(_only_model(self.root(path)), path.parent, shown)
 
     def notices(self) -> list[Notice]:
-        """A warning on models that are left out or taken for others, as the case says.
+        """A warning on included models that the case leaves out or replaces.
 
         Raises:
-            UnknownKey: the case speaks of a model that is not included.
+            UnknownKey: the case names a model that the scene does not include.
         """
         for uri in self._asked.includes:
             if uri not in self._said:
                 raise UnknownKey(
-                    f"includes speak of {uri!r}, which is not included",
+                    f"includes names {uri!r}, which the scene does not include",
                     valid=nearest_name(uri, self._uris()),
                 )
         left = [repr(uri) for uri in self._said if self._asked.includes[uri] == SKIP]
@@ -108,10 +109,8 @@ class IncludeReader:
             for uri in self._said
             if self._asked.includes[uri] != SKIP
         ]
-        told = [
-            f"models that are included and not measured, as the case says: {listed(left, 6)}"
-        ] * bool(left)
-        told += [f"models that are taken for others, as the case says: {listed(taken, 6)}"] * bool(
+        told = [f"included models left out, as the case says: {listed(left, 6)}"] * bool(left)
+        told += [f"models used in place of others, as the case says: {listed(taken, 6)}"] * bool(
             taken
         )
         return [Notice(Severity.WARNING, "scene", text) for text in told]

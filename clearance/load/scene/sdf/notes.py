@@ -85,7 +85,7 @@ def empty(documents: Sequence[Element]) -> list[Notice]:
     ]
     if not names:
         return []
-    text = f"without any size, and not measured: {listed(names, 6)}"
+    text = f"collisions without a size, not measured: {listed(names, 6)}"
     return [Notice(Severity.WARNING, "geometry", text)]
 
 
