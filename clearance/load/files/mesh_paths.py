@@ -110,12 +110,19 @@ def _on_another_machine(
     parts = PurePosixPath(path).parts[1:] if path.startswith("/") else ()
     for i, package in enumerate(parts[:-1]):
         for place, variable in _package_folders(package, folder, package_dirs):
-            if _is_file(place.joinpath(*parts[i + 1 :])):
-                proven = (place / "package.xml").is_file()
-                found = place.joinpath(*parts[i + 1 :])
+            found = place.joinpath(*parts[i + 1 :])
+            if _is_file(found):
+                given_here = not {place, place.parent}.isdisjoint(package_dirs)
+                proven = given_here or _has_manifest(found, place)
                 return MeshPath(found, "" if proven else package, variable, elsewhere=True)
     remedy = "give the folder of its package in robot.package_dirs" if parts else ""
     raise MissingFile(f"there is no mesh {given!r}", valid=remedy)
+
+
+def _has_manifest(file: Path, place: Path) -> bool:
+    """True for a file in a package, which begins at a place or below it."""
+    folders = (folder for folder in file.parents if folder.is_relative_to(place))
+    return any((folder / "package.xml").is_file() for folder in folders)
 
 
 def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:

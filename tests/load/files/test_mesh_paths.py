@@ -167,6 +167,27 @@ def test_a_folder_that_is_only_called_as_on_another_machine_is_suspect(tmp_path)
     assert "file:///home/jane/arms/meshes/part.stl is taken from meshes/part.stl" in notice.text
 
 
+def test_a_whole_workspace_of_another_machine_is_one_here(tmp_path):
+    """The first folder of that path which is here is the workspace's, and the package lies in it."""
+    asked = robot(link(collision('<mesh filename="/home/jane/ws/src/arms/meshes/part.stl"/>')))
+    part(tmp_path / "ws" / "src" / "arms" / "meshes" / "part.stl")
+    (tmp_path / "ws" / "src" / "arms" / "package.xml").write_text(
+        "<package><name>arms</name></package>"
+    )
+    folder = tmp_path / "case"
+    folder.mkdir()
+    found = load_urdf(folder, asked, [tmp_path / "ws"])
+    assert found.notices == () and found.bodies[0].origin == "../ws/src/arms/meshes/part.stl"
+
+
+@pytest.mark.parametrize("given", ["arms", "."])
+def test_the_folder_that_a_suspect_path_asks_for_settles_it(tmp_path, given):
+    part(tmp_path / "arms" / "meshes" / "part.stl")
+    asked = robot(link(collision('<mesh filename="file:///home/jane/arms/meshes/part.stl"/>')))
+    assert load_urdf(tmp_path, asked).notices
+    assert load_urdf(tmp_path, asked, [tmp_path / given]).notices == ()
+
+
 def test_a_pointer_of_git_lfs_is_named_as_such(tmp_path):
     part(tmp_path / "arms" / "meshes" / "part.stl")
     pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
