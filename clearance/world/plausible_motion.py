@@ -46,11 +46,21 @@ def notices_on_motion(
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
     """
     told = [*_odd_velocities(placed, before), *_creeping(placed, before)]
+    extents = joint_extents(placed) if extents is None else extents
     return [
-        *notices_on_positions(joint_extents(placed) if extents is None else extents, before),
+        *notices_on_positions(_as_given(placed, extents), before),
         *_suspect(told),
         *_way_in(placed),
     ]
+
+
+def _as_given(placed: PlacedRobot, extents: Sequence[JointExtent]) -> list[JointExtent]:
+    """How far joints go by the numbers of their file: what turns round and round is written within one turn."""
+    asked = placed.given_trajectory
+    if asked.given_extents is None:
+        return list(extents)
+    given = dict(zip(asked.joint_names, asked.given_extents.T.tolist(), strict=True))
+    return [JointExtent(one.joint, *given.get(one.joint.name, one[1:])) for one in extents]
 
 
 def _way_in(placed: PlacedRobot) -> list[Notice]:

@@ -72,6 +72,7 @@ class Trajectory:
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
+        given_extents: (2, k) the least and greatest position before whole turns were taken off, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
         wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
             A `PlacedRobot` takes whole turns off those that are meant the shortest way.
@@ -91,6 +92,7 @@ class Trajectory:
     path_error: float = 0.0
     points: Points | None = None
     began: float | None = None
+    given_extents: np.ndarray | None = None
     has_way_in: bool = False
 
     def __post_init__(self) -> None:
@@ -116,12 +118,14 @@ class Trajectory:
         if points is not None:
             values = (points.positions, points.velocities, points.accelerations)
             points = Points(points.times, *(one[:, kept] for one in values))
+        extents = None if self.given_extents is None else self.given_extents[:, kept]
         return replace(
             self,
             joint_names=names,
             positions=self.positions[:, kept],
             velocities=velocities,
             points=points,
+            given_extents=extents,
         )
 
     @property

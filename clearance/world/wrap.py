@@ -72,6 +72,8 @@ def meant(robot: Robot, asked: Trajectory) -> Trajectory:
         positions[:, i] -= 2.0 * np.pi * whole_turns(own.positions[:, i])
     if np.array_equal(positions, own.positions):
         return asked
+    extents = np.stack([own.positions.min(axis=0), own.positions.max(axis=0)])
+    asked = replace(asked, given_extents=extents)
     if isinstance(own, Trajectory):
         return replace(asked, positions=positions)
     plain = replace(asked, times=own.times, positions=positions, velocities=own.velocities)

@@ -48,6 +48,16 @@ def test_a_table_is_suspect_until_the_case_says_which_way_it_goes(tmp_path):
         load(tmp_path, ", wrap: short")
 
 
+def test_a_turntable_that_goes_round_and_round_is_not_in_degrees(tmp_path):
+    """Nine turns, written in (-pi, pi]. What is written beyond two turns still may be, wherever it wraps."""
+    angles = 0.9 * np.arange(63)
+    rows = "".join(f"{t},{(a + np.pi) % (2 * np.pi) - np.pi}\n" for t, a in enumerate(angles))
+    case = load(tmp_path, ", wrap: shortest", "time,shoulder\n" + rows)
+    assert course(case) == pytest.approx(angles) and kinds(case) == []
+    rows = "".join(f"{t},{d}\n" for t, d in enumerate([*range(100, 181), *range(-179, -100)]))
+    assert kinds(load(tmp_path, ", wrap: shortest", "time,shoulder\n" + rows)) == ["units"]
+
+
 def test_the_yaw_of_a_floating_base_wraps_too(tmp_path):
     path = "time,root/yaw,shoulder\n0,3,0\n1,-3,0\n"
     case = load(tmp_path, trajectory=path, urdf=FREE)
