@@ -20,4 +20,4 @@ def why_undecided(case: Case) -> str:
     """Why a level is neither proven nor seen to be passed, and what helps."""
     if case.clock.slack > 0.0:
         return "a finer proof takes a smaller --certify-mm"
-    return "undecided: the motion stays so close to the limit that the most searches allowed were not enough"
+    return "undecided: the motion stays too close to the limit for the searches allowed"
