@@ -15,7 +15,7 @@ from clearance.world.trajectory import Hole
 _MEANING = {
     None: (
         "the recording{whose} has a hole, bridged by a straight line: {holes}; say how joints move in "
-        f"it with gaps: {' | '.join(GAPS)} beside the file"
+        f"it with gaps: {' | '.join(GAPS)} beside the file (--recorded-gaps)"
     ),
     HOLD: "assumed{whose}: joints stay until one usual interval before their next message (gaps: hold); {holes}",
     LINEAR: "assumed{whose}: joints go straight from message to message (gaps: linear); {holes}",

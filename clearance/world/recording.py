@@ -112,10 +112,10 @@ def _times_of_both(driven: Trajectory, commanded: np.ndarray) -> np.ndarray:
     """(n,) [s] the samples of both, from when both are known until one ends, but for what is not measured."""
     start, end = max(driven.times[0], commanded[0]), min(driven.times[-1], commanded[-1])
     if not start < end:
-        spans = [f"{times[0]:g} to {times[-1]:g} s" for times in (driven.times, commanded)]
+        spans = [f"{times[0]:.12g} to {times[-1]:.12g} s" for times in (driven.times, commanded)]
         raise BadTime(
             f"it is of {spans[0]}, and what the robot was asked of {spans[1]}",
-            valid="--recorded-offset S, which is added to the recording's times",
+            valid=f"--recorded-offset {commanded[0] - driven.times[0]:.12g} if both begin at one moment",
         )
     times = np.union1d(driven.times, commanded)
     times = times[(times >= start) & (times <= end)]

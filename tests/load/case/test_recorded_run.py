@@ -23,7 +23,7 @@ from tests.load.making_case import TWO_JOINTS, load_small
 from tests.load.making_cell import load_cell
 
 PATH = "time,shoulder,lift\n0,0,0\n1,0.1,0.01\n2,0.3,0.01\n"
-APART = "it is of 5 to 6 s, and what the robot was asked of 0 to 1 s; --recorded-offset"
+APART = "it is of 5 to 6 s, and what the robot was asked of 0 to 1 s; --recorded-offset -5 if both begin"
 FAR_OFF = (
     "joint 'shoulder' is 0.5 rad off its course at 0.000 s; at most 0.2 rad; is its clock another "
     "(--recorded-offset)?"

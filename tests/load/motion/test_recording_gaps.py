@@ -178,7 +178,8 @@ def test_a_table_is_a_recording_where_it_is_given_as_one(tmp_path):
     assert told.kind == "gaps"
     assert told.text == (
         "the recording has a hole, bridged by a straight line: no message of shoulder, lift from 1 to 3 s "
-        "(2 s, usually 0.02 s); say how joints move in it with gaps: hold | linear | not_measured beside the file"
+        "(2 s, usually 0.02 s); say how joints move in it with gaps: hold | linear | not_measured "
+        "beside the file (--recorded-gaps)"
     )
     held = with_recorded(case, tmp_path / "run.csv", 0.5, gaps="not_measured")
     assert not suspects(held)
