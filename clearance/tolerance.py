@@ -47,6 +47,10 @@ AT_LEVEL = 2.0**-38
 """[-] A clearance is at a level where it is below by no more than this, relative to how far the bodies reach from
 the origin: the rounding of the finest proof, of which 2^-39 was seen. Distances are off by far less."""
 
+SEEN_AT_LEVEL = 4.0
+"""[-] So many times `AT_LEVEL` above a level nothing is told from the level: what a proof sees is told up to twice
+that above what occurs, and a proof to tell them apart takes more than the work for one level."""
+
 LARGEST = 1e150
 """[m] No coordinate may be larger in magnitude: its square must not overflow."""
 

@@ -17,7 +17,7 @@ from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
 from clearance.findings.occurrences import NearCourse, release_level
 from clearance.findings.standing import why_undecided
 from clearance.late_dataclass import dataclass
-from clearance.simulate.certificate import Certificate
+from clearance.simulate.certificate import Certificate, contact_is_open
 from clearance.simulate.moment import Moment
 from clearance.simulate.pairs_alone import can_be_alone, near_alone
 from clearance.simulate.record import Record
@@ -262,6 +262,8 @@ def joints_of(record: Record, moment: Moment) -> dict[str, float]:
 
 def _not_reached(certificate: Certificate, limits: Limits, level: float) -> np.ndarray:
     """(n,) True where the motion to the next step is not proven above a level [m] and not seen below it."""
+    if level <= 0.0:
+        return contact_is_open(certificate, limits)
     seen = limits.below(certificate.upper_bound, level)
     return limits.below(certificate.lower_bound, level) & ~seen
 

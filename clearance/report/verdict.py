@@ -29,10 +29,12 @@ from clearance.report.wording import (
     of_rule,
     span_text,
 )
+from clearance.simulate.certificate import contact_is_open
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
+from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.plausible_recordings import not_measured
@@ -323,11 +325,13 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     step = certificate.worst_interval
     least, limit = float(certificate.lower_bound[step]), getattr(rule.limits, name)
     seen = np.inf if rule.worst is None else rule.worst.clearance
-    if not rule.limits.below(least, limit) or rule.limits.below(seen, limit):
+    is_open = rule.limits.below(least, limit) or (limit <= 0.0 and _contact_is_open(rule))
+    if not is_open or rule.limits.below(seen, limit):
         return None
     times = record.motions[0].times[step : step + 2]
+    above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
     return (
-        f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(rule.name)}: at least "
+        f"not proven to stay {above}{of_rule(rule.name)}: at least "
         f"{mm(least)} mm, {span_text(float(times[0]), float(times[-1]))}; {why_undecided(record.case)}"
     )
 
@@ -335,12 +339,24 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
 def _at_level(judging: Sequence[RuleAnswer]) -> str:
     """That the worst of a rule is at a limit of it but for rounding, and how it is then judged."""
     for rule, name in itertools.product(judging, ("fail", "warn")):
-        level, worst = getattr(rule.limits, name), rule.worst
-        if level > 0.0 and worst is not None:
+        level, worst, limits = getattr(rule.limits, name), rule.worst, rule.limits
+        if worst is None or worst.touches:
+            continue
+        apart = float(np.linalg.norm(np.subtract(worst.point_link, worst.point_obstacle)))
+        if apart <= SEEN_AT_LEVEL * limits.rounding and not _contact_is_open(rule):
+            return f"touches but for rounding ({max(apart, worst.clearance):.2g} m apart)"
+        certificate = rule.certificate
+        proven = worst.clearance if certificate is None else float(certificate.lower_bound.min())
+        if level > 0.0 and not limits.below(proven, level):
             off = abs(worst.clearance - level)
-            if off <= rule.limits.rounding:
+            if off <= limits.rounding:
                 return f"equal to the {name} limit{of_rule(rule.name)} but for rounding ({off:.2g} m): kept"
     return ""
+
+
+def _contact_is_open(rule: RuleAnswer) -> bool:
+    certificate = rule.certificate
+    return certificate is not None and bool(contact_is_open(certificate, rule.limits).any())
 
 
 def profile_text(answer: ProfileAnswer) -> str:

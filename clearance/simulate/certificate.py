@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
+from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Limits
 from clearance.world.notice import Notice
 
@@ -73,5 +74,12 @@ def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.n
         limits.below(lower, limit) & (seen | ~limits.below(upper, limit))
         for limit in (limits.fail, limits.warn)
     ]
-    below[0] |= upper <= 0.0
+    below[0] |= (upper <= 0.0) | contact_is_open(certificate, limits)[steps]
     return np.select([certificate.touches(steps), *below], [3, 2, 1], default=0)
+
+
+def contact_is_open(certificate: Certificate, limits: Limits) -> np.ndarray:
+    """(n,) True where contact is neither seen nor proven not to be, and nothing is seen that touches but for
+    rounding."""
+    lower, upper = certificate.lower_bound, certificate.upper_bound
+    return (lower <= 0.0) & (upper > SEEN_AT_LEVEL * limits.rounding)

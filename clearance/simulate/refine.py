@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.kernels.motion.certify import CertificateGoal, IntervalBounds
 from clearance.late_dataclass import dataclass
+from clearance.tolerance import SEEN_AT_LEVEL
 
 FINER = 2.0**-10
 """The share of a gap that is asked for next; the kernel goes on by itself to a thousandth of a gap at a level."""
@@ -21,6 +22,10 @@ MOST_PARTS = 2**17
 
 MOST_QUERIES = 2**19
 """Searches that are spent on one level: a few seconds."""
+
+MOST_EXPECTED = 4 * MOST_QUERIES
+"""Searches that may be expected of an interval which is at the level all the way: parts are as long as the root of
+their gap, and a quarter of what follows from that was seen."""
 
 Prove = Callable[[int, np.ndarray, CertificateGoal], tuple[IntervalBounds, np.ndarray]]
 """Proves an interval, given the distance (2,) [m] that is asked about at its ends; bounds of it, and counters."""
@@ -45,12 +50,13 @@ class Refinement:
     ) -> tuple[IntervalBounds, np.ndarray]:
         """The bounds, finer in the intervals by which a level [m] is open, and counters.
 
-        Where something is seen below a level, it is decided; one of 0 is that of contact.
+        Where something is seen below a level, it is decided. Contact is a level too: it is open as long as nothing
+        more than rounding is proven.
         """
         counts = np.zeros(4, dtype=np.int64)
-        for level in sorted(set(levels)):
-            held = level - self.rounding
-            if held > 0.0 and ((bounds.lower < held) & (bounds.upper >= held)).any():
+        for level in sorted({0.0, *levels}):
+            held = level - self.rounding if level > self.rounding else self.rounding
+            if ((bounds.lower < held) & (bounds.upper >= held)).any():
                 if not bounds.lower.flags.owndata:
                     bounds = IntervalBounds(*(np.array(column) for column in bounds))
                 counts += self._decide(bounds, held)
@@ -59,16 +65,23 @@ class Refinement:
     def _decide(self, bounds: IntervalBounds, held: float) -> np.ndarray:
         """Proves again, into `bounds`, what is not proven to be `held` [m] apart; counters."""
         counts, gap = np.zeros(4, dtype=np.int64), self.gap
+        expected = np.zeros(len(bounds.lower) - 1)  # searches until an interval is decided
         while True:
             aim = CertificateGoal(gap, held, MOST_PARTS)
+            finer = max(gap * FINER, self.finest)
+            last = finer if held <= self.rounding else self.finest  # contact may still be seen
+            at_level = bounds.upper[:-1] - held <= (SEEN_AT_LEVEL + 1.0) * self.rounding
             is_open = (bounds.lower[:-1] < held) & (bounds.upper[:-1] >= held)
+            is_open &= ~(at_level & (expected > MOST_EXPECTED))
             for step in np.flatnonzero(is_open).tolist():
                 if counts[1] > MOST_QUERIES:
                     return counts
-                counts += self._again(bounds, step, aim)
+                own = self._again(bounds, step, aim)
+                expected[step] = own[1] * np.sqrt(gap / last)
+                counts += own
             if gap <= self.finest or not is_open.any():
                 return counts
-            gap = max(gap * FINER, self.finest)
+            gap = finer
 
     def _again(self, bounds: IntervalBounds, step: int, aim: CertificateGoal) -> np.ndarray:
         own, counts = self.prove(step, np.full(2, bounds.upper[step]), aim)

@@ -24,6 +24,7 @@ from clearance.simulate.parts import blocks
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
+from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.forest import positions_along
 
 LEVELS = ("below_warn", "below_fail", "contact")
@@ -35,7 +36,7 @@ FINEST_TIME, FINEST_SHARE = 1e-3, 0.01
 PART_GAP = 1e-3
 """[m] How far the bound of a part may be below what occurs in it; a thousandth of that at the level."""
 
-MOST_PARTS = 2**10
+MOST_PARTS = 2**6
 """Parts of a part and pair until its gap is widened."""
 
 MOST_SPLIT = 2000
@@ -97,12 +98,28 @@ class RuleStretches:
 
     @cached_property
     def spans(self) -> np.ndarray:
-        """(k, 2) [s] from when until when; contact only where it is seen."""
+        """(k, 2) [s] from when until when; none where contact is the level and none is seen."""
+        if self._is_contact and not self._is_seen:
+            return np.empty((0, 2))
         spans = joined_spans(np.column_stack([self.parts.start, self.parts.end]))
-        if self.level != "contact":
+        if not self._is_contact:
             return spans
         known = np.isfinite(self.parts.least)
         return np.array([one for one in spans if known[self._within(*one)].any()]).reshape(-1, 2)
+
+    @property
+    def _is_contact(self) -> bool:
+        """True where the level is contact, of the bodies or of their paddings."""
+        assert self.rule.pairs is not None, "the sections of a rule are known"
+        return all(threshold_of(one.section, self.level).strict for one in self.rule.pairs.answers)
+
+    @property
+    def _is_seen(self) -> bool:
+        """True if such contact occurs."""
+        worst = self.rule.worst
+        if worst is None:
+            return False
+        return worst.touches or (self.level != "contact" and worst.clearance <= 0.0)
 
     def worst(self, start: float, end: float) -> Moment | None:
         """The moment of the least clearance that was seen from `start` to `end` [s]."""
@@ -178,7 +195,7 @@ def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts
     assert answer.certificate is not None, "the run is certified"
     own = _Intervals(answer, answer.certificate, threshold_of(answer.section, level))
     opened = own.opened
-    inner = own.below(opened) & own.below(opened + 1)
+    inner = own.inside(opened) & own.inside(opened + 1)
     parted = (own.most_parts(opened) > 1) & answer.section.tied
     if own.most_parts(opened[inner]).sum() > MOST_LOOKS:
         parted &= ~inner
@@ -221,6 +238,13 @@ class _Intervals:
         """(k,) True for steps that are known to be below the level."""
         clearance = self.answer.found.clearance[steps]
         return ~(np.isnan(clearance) | self.threshold.above(clearance))
+
+    def inside(self, steps: np.ndarray) -> np.ndarray:
+        """(k,) True for steps that are below the level, or touch but for rounding where that is contact."""
+        rounding = SEEN_AT_LEVEL * self.answer.section.limits.rounding
+        clearance = self.answer.found.clearance[steps]
+        touching = self.threshold.strict & (clearance - self.threshold.distance <= rounding)
+        return self.below(steps) | touching
 
     def most_parts(self, steps: np.ndarray) -> np.ndarray:
         """(k,) how many parts of the intervals after some steps are as long as they should be."""

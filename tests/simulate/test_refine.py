@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.report.intervals import intervals
 from clearance.report.junit_cases import results_of
 from clearance.simulate import refine
 from clearance.world.body import Body, Obstacle
@@ -74,3 +77,50 @@ def test_what_nothing_hangs_on_is_not_proven_again(monkeypatch):
     clear = cl.check(passing(0.03))
     monkeypatch.setattr(refine, "MOST_QUERIES", -1)
     assert cl.check(passing(0.03)).certificate.tally == clear.certificate.tally
+
+
+def turning(off: float, limits: cl.Limits) -> Case:
+    """A plate turns a corner past a wall twice, `off` [m] beyond the fail limit both times."""
+    spin = Joint(
+        "spin", JointKind.REVOLUTE, "base", "plate", at(), np.array([0.0, 0.0, 1.0]), -3, 3
+    )
+    robot = Robot("turner", ("base", "plate"), (spin,), (Body("plate", cl.box((0.6, 0.08, 0.05))),))
+    asked = Trajectory(np.array([0.0, 2.0]), ("spin",), np.array([[-1.0], [1.3]]))
+    away = float(np.hypot(0.3, 0.04)) + limits.fail + off
+    wall = Obstacle(Body("wall", cl.box((0.1, 2.0, 1.0))), at(away + 0.05))
+    return Case("turn", (PlacedRobot(robot, asked),), (wall,), limits)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("off", [1e-8, 1e-9])
+def test_bodies_that_pass_at_a_few_nanometres_are_proven_apart(off):
+    run = cl.check(turning(off, cl.Limits()))
+    assert (run.status, run.verdict.unproven, run.verdict.at_level) == ("clear", None, "")
+    assert 0.0 < run.certificate.lower_bound.min() <= off
+    assert not any(intervals(run.record).values())
+
+
+def test_contact_that_is_neither_seen_nor_excluded_is_not_clear(monkeypatch):
+    monkeypatch.setattr(refine, "MOST_QUERIES", -1)
+    run = cl.check(turning(1e-8, cl.Limits()))
+    assert (run.status, run.passed) == ("violated", False)
+    assert "not proven to stay out of contact" in run.verdict.unproven
+    assert [one.kind for one in run.findings if one.broken] == ["unproven"]
+
+
+def test_what_touches_but_for_rounding_says_so_and_has_no_stretch_of_contact():
+    run = cl.check(sliding(1e-15, cl.Limits()))
+    assert (run.status, run.passed) == ("clear", True)
+    assert run.verdict.at_level.startswith("touches but for rounding (")
+    assert not any(intervals(run.record).values())
+    assert cl.check(sliding(-1e-15, cl.Limits())).status == "contact"
+
+
+def test_what_is_at_its_limit_all_the_way_takes_little_work_and_is_not_called_kept():
+    """A plate turns 0.2 m below a bar."""
+    case = turning(1.0, cl.Limits(0.2))
+    bar = Obstacle(Body("bar", cl.box((0.1, 0.2, 0.05))), at(0.25, 0.0, 0.25))
+    run = cl.check(replace(case, obstacles=(bar,)))
+    assert (run.status, run.verdict.at_level) == ("violated", "")
+    assert "undecided" in run.verdict.unproven
+    assert run.certificate.tally["queries"] < 20_000
