@@ -1,14 +1,14 @@
-"""The orders that kernels rely on, checked where an array is made for them.
+"""Checks the order of arrays that kernels rely on.
 
-A kernel that halves an array, or stops at the first entry that is too far, gives a wrong answer without a word
-where the array is not in order. Each such array passes here once. Not for: what a user gives (`world.timing`).
+A kernel that bisects an array, or stops at the first entry that is too far, gives a wrong answer in silence if the
+array is not in order. Each such array passes here once. Not for: what a user gives (`world.timing`).
 """
 
 import numpy as np
 
 
 def ascending(values: np.ndarray, *, strictly: bool = True) -> np.ndarray:
-    """The values (n,), which rise from each to the next, or do not fall where that is enough.
+    """The values (n,), once they are checked to increase strictly, or not to decrease.
 
     Raises:
         AssertionError: they are not in order, which is a fault of this package.
@@ -19,7 +19,7 @@ def ascending(values: np.ndarray, *, strictly: bool = True) -> np.ndarray:
 
 
 def parents_first(parents: np.ndarray) -> np.ndarray:
-    """The place of the parent of each of (n,) links, which comes before the link; -1 for a root.
+    """The index of the parent of each of (n,) links, checked to come before the link; -1 for a root.
 
     Raises:
         AssertionError: one comes after it, which is a fault of this package.

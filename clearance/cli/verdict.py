@@ -91,7 +91,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
 
 
 def _headline(record: Record, verdict: Verdict) -> Text:
-    """Verdict and least clearance, or what stands worst against which rule, or who is deepest in contact."""
+    """Verdict and least clearance, or the most critical moment and its rule, or the deepest contact."""
     text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.status, "bold red"))
     limits = record.case.limits
     if record.worst.touches:

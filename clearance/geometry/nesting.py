@@ -1,4 +1,4 @@
-"""Which closed parts of a surface lie in which others, and which of them are inside out.
+"""Nesting of the closed components of a surface, and which components are inside out.
 
 A part is a connected component. Not for: whether a body lies in another one (`kernels.search.containment`).
 """
@@ -12,14 +12,14 @@ import numpy as np
 from clearance.geometry.topology import component_volumes
 
 SAMPLES = 16
-"""Corners of a part, beside its six outermost, that are asked whether they lie in another part."""
+"""Corners of a part to test against another part, beside its six outermost."""
 
 ON = 1e-9
-"""[-] Of the product of the distances of a triangle's corners: what rounding makes of 0 for a point on it."""
+"""[-] Rounding error for a point on a triangle, relative to the product of the distances of its corners."""
 
 
 _ASKEW = np.array([[2.0, -3.0, 6.0], [6.0, -2.0, -3.0], [3.0, 6.0, 2.0]]) / 7.0
-"""A turn after which few edges of drawn parts stand along an axis, so that few rays pass one."""
+"""A rotation after which few edges of CAD parts are parallel to an axis, so that few rays hit one."""
 
 
 class _Part(NamedTuple):
@@ -35,9 +35,9 @@ def inside_out_components(
 ) -> np.ndarray:
     """(n_components,) True for closed components that are inside out and not the wall of a cavity.
 
-    Where an outermost one is inside out, those that lie in it are solid at even depth and cavities at odd depth,
-    whatever way they face. Elsewhere one of negative volume is a cavity if something solid is about it, and one of
-    positive volume is solid. What holds nothing but by rounding is never inside out.
+    If an outermost component is inside out, components in it are solid at even depth and cavities at odd depth,
+    whichever way they face. Else a component of negative volume is a cavity if a solid surrounds it, and one of
+    positive volume is solid. A component without volume, up to rounding, is never inside out.
 
     Args:
         vertices: (n, 3) [m]. triangles: (m, 3). component: (m,) of each triangle. closed: (n_components,).
@@ -66,7 +66,7 @@ def inside_out_components(
 def _is_wrong(
     i: int, holders: dict[int, list[int]], volumes: np.ndarray, wrong: np.ndarray
 ) -> bool:
-    """Whether a part is inside out, of which all that holds it is decided."""
+    """Whether a part is inside out, once that is known of all parts around it."""
     about = holders[i]
     is_cavity = bool(volumes[i] < 0.0)
     if any(not holders[j] and volumes[j] < 0.0 for j in [*about, i]):
@@ -90,9 +90,9 @@ def _holders(parts: dict[int, _Part]) -> dict[int, list[int]]:
 
 
 def _lies_in(part: _Part, other: _Part) -> bool:
-    """True if some of a part's corners are in another part and none is off it.
+    """True if some of a part's corners are in another part and none is outside it.
 
-    One is asked where no triangle of the other is near the part's box: nothing is between its corners then.
+    One corner is enough if no triangle of the other part is near this part's box.
     """
     low, high = part.low.min(axis=1), part.high.max(axis=1)
     near = ((other.low.T <= high) & (other.high.T >= low)).T.all(axis=0).any()
@@ -109,9 +109,9 @@ def _points_of(corners: np.ndarray) -> np.ndarray:
 
 
 def _is_inside(part: _Part, point: np.ndarray) -> bool | None:
-    """True if a part goes round a point: by the triangles on a ray along z; None where it may be on the surface.
+    """True if a part encloses a point, by the triangles on a ray along z; None if it may be on the surface.
 
-    Where the ray passes an edge as near as rounding, all solid angles are added up instead.
+    If the ray hits an edge, up to rounding, all solid angles are added up instead.
     """
     x, y, z = point
     met = (part.low[0] <= x) & (part.high[0] >= x) & (part.low[1] <= y) & (part.high[1] >= y)
@@ -136,7 +136,7 @@ def _size(a: np.ndarray) -> np.ndarray:
 
 
 def _is_wound_round(corners: np.ndarray) -> bool | None:
-    """True if a closed surface (m, 3, 3) goes round the origin; None where it is on it.
+    """True if a closed surface (m, 3, 3) encloses the origin; None if the origin is on it.
 
     Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
     """
@@ -151,6 +151,6 @@ def _is_wound_round(corners: np.ndarray) -> bool | None:
 
 
 def _rounding_of_volume(corners: np.ndarray) -> float:
-    """[m^3] what rounding alone can make of the volume of (m, 3, 3) triangles: a flat surface holds no more."""
+    """[m^3] the largest volume that rounding alone can give (m, 3, 3) triangles of a flat surface."""
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     return 1e-15 * len(corners) * size**3

@@ -1,6 +1,6 @@
-"""When the motion of a certified run is below which level, and what is worst then: intervals and events.
+"""Intervals and events of a certified run: the times below each level, and the most critical moment of each.
 
-Not for: runs of which only samples are known (`intervals`).
+Not for: runs that are not certified (`intervals`).
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class MotionLevels:
 
     @cached_property
     def spans(self) -> dict[str, list[Span]]:
-        """From when until when [s], in order, for each level."""
+        """Start and end [s] of each stretch, in order, for each level."""
         found = {}
         for level, rules in self._rules.items():
             joined = joined_spans(np.concatenate([rule.spans for rule in rules]))
@@ -63,7 +63,7 @@ class MotionLevels:
         return np.arange(first, last) if last > first else np.array([first - 1])
 
     def worst(self, level: str, span: Span) -> Moment | None:
-        """The moment of a span that stands worst against its rule."""
+        """The most critical moment of a span."""
         return standing_worst((one.rule, one.worst(*span)) for one in self._rules[level])
 
     def edge(self, level: str, span: Span, *, last: bool) -> Moment | None:
@@ -76,7 +76,7 @@ class MotionLevels:
 
 
 def told_moment(moment: Moment | None, time: float) -> dict[str, Any]:
-    """What is told of a moment; where none is known, of a time [s]."""
+    """The fields of a moment; if none is known, of a time [s]."""
     if moment is None:
         return {"time": time, "clearance": None, "link": None, "obstacle": None, "rule": ""}
     names = ("clearance", "link", "obstacle", "rule")

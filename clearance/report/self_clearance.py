@@ -1,4 +1,4 @@
-"""How many pairs of links of each robot are measured against one another, and why the others are not.
+"""The number of link pairs of each robot that are measured, and of those that are not, by reason.
 
 Not for: which pairs those are (`world.self_pairs`, `world.pairs`), nor each by name (`background.unmeasured`).
 """
@@ -19,8 +19,8 @@ NEIGHBOURS = "neighbours"
 
 
 def self_clearance_of(record: Record) -> list[dict[str, Any]]:
-    """For each robot that asks for it: pairs of links, how many of them are measured, at some time or always, how
-    many are left out by reason, and all that as one line."""
+    """For each robot with self-clearance: the numbers of link pairs, of those measured (always or at some time),
+    and of those left out by reason; and one line with all of these."""
     return [
         _answer(record, i)
         for i, placed in enumerate(record.case.robots)
@@ -29,7 +29,7 @@ def self_clearance_of(record: Record) -> list[dict[str, Any]]:
 
 
 def self_clearance_lines(record: Record) -> tuple[str, ...]:
-    """The line of each robot that asks for it."""
+    """The line of each robot with self-clearance."""
     return tuple(answer["text"] for answer in self_clearance_of(record))
 
 

@@ -106,7 +106,7 @@ class Verdict:
 
     @property
     def scope(self) -> tuple[str, ...]:
-        """Which pairs of links were measured, and what was not looked at, one line each."""
+        """The pairs of links that were measured, and all that was not checked, one line each."""
         return (*self.self_clearance, *(f"{name} not checked" for name in self.not_checked))
 
     @property
@@ -284,9 +284,10 @@ def moment_line(record: Record, moment: Moment) -> str:
 
 
 def contact_line(moment: Moment) -> str:
-    """How deep which two bodies are in each other and when, and the rule that judges them, if there is one."""
+    """The depth of a contact, the two bodies and the moment, and the rule that judges them, if there is one."""
     where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
-    return f"{depth_text(moment.depth)}{_judged_by(moment)}: {where}"
+    near = depth_text(moment.depth) if moment.depth else f"({depth_text(None)})"
+    return f"{near}{_judged_by(moment)}: {where}"
 
 
 def _judged_by(moment: Moment) -> str:
@@ -337,7 +338,7 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
 
 
 def _at_level(judging: Sequence[RuleAnswer]) -> str:
-    """That the worst of a rule is at a limit of it but for rounding, and how it is then judged."""
+    """A line that the least clearance of a rule equals its limit but for rounding; empty if none does."""
     for rule, name in itertools.product(judging, ("fail", "warn")):
         level, worst, limits = getattr(rule.limits, name), rule.worst, rule.limits
         if worst is None or worst.touches:

@@ -73,7 +73,7 @@ def contact_text(contact: dict) -> str:
 
 
 def depth_text(depth: Depth | None) -> str:
-    """How deep bodies are in contact; where that is not exact, the range that holds it."""
+    """The penetration depth of a contact; if it is not exact, its range."""
     if depth is None:
         return "depth not computed"
     return f"{_range(depth_mm(depth.penetration), mm(depth.at_least), depth.exact)} mm deep"
@@ -194,5 +194,5 @@ def certified_text(certified: dict) -> str:
 
 
 def step_text(minimum: PairMinimum) -> str:
-    """The step of a pair's least clearance; with + the one before the moment between two."""
+    """The step of a pair's least clearance; with + for a moment between that step and the next."""
     return f"{minimum.step}{'+' if minimum.between else ''}"

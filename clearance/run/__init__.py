@@ -22,12 +22,12 @@ __all__ = ["Question", "Resources", "Run", "answer", "check"]
 
 
 class CheckOptions(TypedDict, total=False):
-    """The options of `check`, as in `Question`; those of a recorded run are of motion "recorded" alone.
+    """The options of `check`, as in `Question`; options `recorded…` need the motion "recorded".
 
     Attributes:
-        recorded: a bag or a table of what the robot did. recorded_offset: [s] added to its times.
-        recorded_gaps: what joints do in holes of it: "hold", "linear" or "not_measured".
-        recorded_columns: of a table, those that are meant; as a mapping, the column of time and of each joint.
+        recorded: a bag or a table of the motion that the robot made. recorded_offset: [s] added to its times.
+        recorded_gaps: how joints move in holes of the recording: "hold", "linear" or "not_measured".
+        recorded_columns: the columns of a table to read; as a mapping, the column of time and of each joint.
     """
 
     need: str

@@ -53,11 +53,11 @@ class Run:
 
     @property
     def worst(self) -> dict:
-        """The moment that stands worst against its rule, without rules that of least clearance, as a row of
-        `steps`; its bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`.
+        """The most critical moment, as a row of `steps`: worst against its rule, or least clearance without rules.
 
-        Where the certificate found a worse one between two steps, `between` is true, and `step` the one before it.
-        In contact it is the deepest, with its `penetration`, as far as that is known.
+        Bodies have both names of their columns: `link` and `body_a`, `obstacle` and `body_b`. If the certificate
+        found a worse moment between two steps, `between` is true and `step` is the step before it. In contact it
+        is the deepest moment, with its `penetration` if that is known.
         """
         moment = self.record.worst
         if moment is self.record.worst_sample:
@@ -66,8 +66,8 @@ class Run:
 
     @property
     def worst_sample(self) -> dict:
-        """The row of the step that stands worst, with the status of that step by itself: the deepest in contact,
-        else the first."""
+        """The row of the most critical step, with the status of that step alone: the deepest in contact, else
+        the first."""
         return self._of_moment(self.record.worst_sample)
 
     def _of_moment(self, moment: Moment) -> dict:

@@ -86,7 +86,7 @@ class Checker:
     Args:
         case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
             are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
-        accept: kinds of suspect input that are meant ("units", "limits", …), beside those that the case accepts.
+        accept: kinds of suspect input to accept ("units", "limits", …), beside those that the case accepts.
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
@@ -96,7 +96,7 @@ class Checker:
         notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
 
     Raises:
-        SuspectInput: what `check` calls suspect, in the case or in joints that no configuration gives.
+        SuspectInput: suspect input, as in `check`, in the case or in joints that no configuration gives.
         NothingToMeasure: no pair is left. BadInput: a body from a CAD file. BadDimension: a body far beyond any
             place that a robot works at.
     """
@@ -141,7 +141,7 @@ class Checker:
             SuspectInput: a joint far beyond its limits, or in another unit as it seems, unless that is accepted.
 
         Warns:
-            UserWarning: a joint is a little beyond its limits; told once.
+            UserWarning: a joint is slightly beyond its limits; once for each checker.
 
         Exactness, Ties: as `check`, method exact.
         """

@@ -1,6 +1,6 @@
-"""The deepest moment of bodies in contact, of the pairs that some rules judge.
+"""The moment of deepest contact among the pairs that some rules judge.
 
-Not for: finding overlaps and how deep they are (`contact`), nor moments of bodies that are apart (`rule_answer`).
+Not for: finding overlaps and their depth (`contact`), nor moments without contact (`rule_answer`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How deep bodies are in contact between the steps, where steps are too few to tell.
+"""Penetration depth between the steps, for contacts with few steps in them.
 
 Not for: the deepest of the steps (`deepest`), nor when there is contact (`stretches`).
 """
@@ -19,15 +19,15 @@ from clearance.simulate.stretches import RuleStretches
 from clearance.world.forest import forest_of, positions_between
 
 LOOKS = 9
-"""Moments of a stretch of contact at which depth is found if fewer steps are in it, and as many again about the
-best; one takes milliseconds."""
+"""Moments at which the depth of a stretch of contact with fewer steps is computed, and as many again near the
+deepest; each takes milliseconds."""
 
 MOST_STRETCHES = 3
-"""Stretches that are looked into, the longest: a verdict waits for them."""
+"""Most stretches to examine, longest first: the verdict waits for them."""
 
 
 def deepest_between(rules: Sequence[RuleAnswer]) -> Moment | None:
-    """The first of the deepest moments that are found between the steps; None where none is looked for."""
+    """The first of the deepest moments found between the steps; None if no stretch has few steps."""
     spans = sorted(_spans(rules), key=lambda one: one[1] - one[2])[:MOST_STRETCHES]
     return _deepest([_deepest_in(*span) for span in spans])
 
@@ -39,7 +39,7 @@ def _deepest(found: Sequence[Moment | None]) -> Moment | None:
 
 
 def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
-    """The deepest of a stretch: of evenly spread moments, then of as many about the best."""
+    """The deepest moment of a stretch: of evenly spread moments, then of as many near the deepest."""
     best = _deepest([*_moments(rule, start, end)])
     if best is None:
         return None
@@ -49,7 +49,7 @@ def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
 
 
 def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[RuleAnswer, float, float]]:
-    """The stretches of contact of each pair with few steps in them: from when until when [s]."""
+    """Start and end [s] of each pair's stretches of contact that have few steps."""
     for rule in rules:
         within = rule.limits.warn
         if rule.certificate is None or not can_be_alone(rule, within):

@@ -1,6 +1,6 @@
-"""The least clearance of each pair over the motion, where that is certified; else over the samples.
+"""The least clearance of each pair over the certified motion; else over the samples.
 
-Not for: the least at the samples (`Record.pair_minima`), which all this begins with.
+Not for: the least clearance at the samples (`Record.pair_minima`), which is the start of this.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from clearance.simulate.record import PairMinimum, Record
 from clearance.simulate.rule_answer import RuleAnswer
 
 MOST_INTERVALS = 2**14
-"""Intervals times pairs up to which pairs that do not come near are proven as well: a tenth of a second."""
+"""Most intervals times pairs for which far pairs are proven too: a tenth of a second."""
 
 _KNOWN: WeakKeyDictionary[Record, dict[int | None, tuple[PairMinimum, ...]]] = WeakKeyDictionary()
 
 
 def motion_minima(record: Record, most: int | None = None) -> tuple[PairMinimum, ...]:
-    """As `Record.pair_minima`, of the motion; the first `most` of them if that is given.
+    """As `Record.pair_minima`, over the motion; the first `most` of them if that is given.
 
-    Pairs that do not come near are of the samples where there are too many to prove each by itself.
+    Far pairs have their least at the samples if there are too many to prove each on its own.
     """
     known = _KNOWN.setdefault(record, {})
     if most not in known:
@@ -80,7 +80,7 @@ class _RuleMinima:
     def _proven(
         self, asked: dict[int, float], known: dict[int, PairMinimum]
     ) -> dict[int, PairMinimum]:
-        """The least of some pairs, asked about a clearance [m] each, that of the steps where it is known."""
+        """The least of some pairs up to a clearance [m] each; `known`: their least at the steps."""
         told = least_between(self.rule, asked) if asked else {}
         return {
             pair: _lesser(known.get(pair), moment, proven)
@@ -96,7 +96,7 @@ class _RuleMinima:
 
 
 def _lesser(sampled: PairMinimum | None, moment: Moment | None, proven: float) -> PairMinimum:
-    """The least of a pair: at a step, if that is known and no moment is nearer."""
+    """The least of a pair: at a step, unless a moment between has a lower clearance."""
     if sampled is not None and (moment is None or sampled.clearance <= moment.clearance):
         return replace(sampled, proven=proven)
     assert moment is not None

@@ -1,7 +1,7 @@
-"""The pairs of a certified rule one by one: which of them come near between the steps, and how near.
+"""Proves the pairs of a certified rule one by one: which come near between the steps, and how near.
 
-The proof of a rule is of all its pairs and names the nearest of each interval; what another hides is proven here
-by itself. Not for: the clearance of pairs at the steps (`rule_pairs`).
+The proof of a rule covers all its pairs but names only the nearest in each interval. Here each other pair is
+proven on its own. Not for: the clearance of pairs at the steps (`rule_pairs`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from clearance.simulate.run_answer import joined, joined_certificates
 from clearance.simulate.section_answer import SectionAnswer
 
 FAR_GAP = 0.01
-"""[-] How far the bound of a pair that is not near may be below what occurs: a hundredth is enough for a table."""
+"""[-] Largest gap of the bound of a pair that is not near: a hundredth of its clearance is enough for a table."""
 
 _KNOWN: WeakKeyDictionary[RuleAnswer, dict[float, dict[int, RuleAnswer]]] = WeakKeyDictionary()
 
@@ -38,7 +38,7 @@ def can_be_alone(rule: RuleAnswer, within: float) -> bool:
 
 
 def near_alone(rule: RuleAnswer, within: float) -> dict[int, RuleAnswer]:
-    """What a rule comes to of each pair that comes within [m], at a step or between; pairs are the run's."""
+    """The answer of a rule for each pair that comes within [m], at a step or between; pairs of the run."""
     known = _KNOWN.setdefault(rule, {})
     if within not in known:
         assert rule.pairs is not None, "the sections of a rule are known"
@@ -51,7 +51,7 @@ def near_alone(rule: RuleAnswer, within: float) -> dict[int, RuleAnswer]:
 
 
 def _of_pair(rule: RuleAnswer, pair: int, within: float, rows: Sequence[NearRows]) -> RuleAnswer:
-    """What a rule comes to of a pair alone; `rows` are what is near at the steps, by section."""
+    """The answer of a rule for one pair; `rows`: its clearances at steps where it is near, by section."""
     assert rule.pairs is not None
     own = [
         _alone(answer, near, pair, within)
@@ -91,7 +91,7 @@ def _runs(is_open: np.ndarray) -> list[slice]:
 
 
 def _nearer(answer: SectionAnswer, pairs: np.ndarray, steps: slice, reach: float) -> set[int]:
-    """Of some pairs of a section, those that are seen within reach [m] between some steps."""
+    """Those of some pairs of a section that are measured within reach [m] between some steps."""
     if not len(pairs):
         return set()
     assert answer.certificate is not None
@@ -103,8 +103,8 @@ def _nearer(answer: SectionAnswer, pairs: np.ndarray, steps: slice, reach: float
 def least_between(
     rule: RuleAnswer, pairs: dict[int, float]
 ) -> dict[int, tuple[float, Moment | None]]:
-    """Of some pairs, each with a clearance [m]: the least that is proven of it [m], up to that, and the moment
-    between two steps at which it is less; None where it is not."""
+    """For each of some pairs with a clearance [m]: its proven bound up to that [m], and a moment between two steps
+    with a lower clearance, or None."""
     found: dict[int, tuple[float, Moment | None]] = {}
     assert rule.pairs is not None, "the sections of a rule are known"
     for answer in rule.pairs.answers:
@@ -133,7 +133,7 @@ class _Path:
         return path_of(what.layout.world.links, what.case, what.motions, self.steps)
 
     def proven(self, pairs: np.ndarray, asked: float, gap: float = 0.0) -> IntervalBounds:
-        """What is proven of some pairs of the section, asked about a distance [m]; `pair` counts these."""
+        """Proven bounds of some pairs of the section up to a distance [m]; `pair` counts these pairs."""
         layout, certificate = self.answer.section.in_motion.layout, self.answer.certificate
         assert certificate is not None, "the run is certified"
         n, own = len(self.path.times), layout.world.pairs[pairs]
@@ -147,7 +147,7 @@ class _Path:
         return prove_path(layout.whole_faces, world, self.path, steps, aim)[0]
 
     def least(self, place: int, clearance: float, rule: str) -> tuple[float, Moment | None]:
-        """Of a pair of the section: the least that is proven [m] up to a clearance [m], and where it is less."""
+        """For a pair of the section: its proven bound [m] up to a clearance [m], and the moment of a lower one."""
         section = self.answer.section
         distance = clearance + section.padding
         bounds = self.proven(np.array([place]), distance, FAR_GAP * distance)

@@ -1,7 +1,7 @@
-"""Goes on proving where a decision hangs on it: a level lies between what is proven and what occurs.
+"""Refines the proof of intervals where a level is undecided: it lies between bound and occurring clearance.
 
-The gap of such an interval is made a thousandth, down to rounding, until the level is decided or a budget of work
-is spent. Not for: the first proof (`certify`).
+The gap of such an interval is reduced to a thousandth, down to rounding, until the level is decided or the budget
+of searches is used up. Not for: the first proof (`certify`).
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from clearance.late_dataclass import dataclass
 from clearance.tolerance import SEEN_AT_LEVEL
 
 FINER = 2.0**-10
-"""The share of a gap that is asked for next; the kernel goes on by itself to a thousandth of a gap at a level."""
+"""The share of a gap to ask for next; the kernel itself refines to a thousandth of a gap at a level."""
 
 MOST_PARTS = 2**17
-"""Parts of one interval and pair until its gap is widened: no more is spent on one of them."""
+"""Most parts of one interval and pair; then its gap is widened."""
 
 MOST_QUERIES = 2**19
-"""Searches that are spent on one level: a few seconds."""
+"""Most searches for one level: a few seconds."""
 
 MOST_EXPECTED = 4 * MOST_QUERIES
 """Searches that may be expected of an interval which is at the level all the way: parts are as long as the root of
@@ -63,7 +63,7 @@ class Refinement:
         return bounds, counts
 
     def _decide(self, bounds: IntervalBounds, held: float) -> np.ndarray:
-        """Proves again, into `bounds`, what is not proven to be `held` [m] apart; counters."""
+        """Proves again, into `bounds`, the intervals not proven to have a clearance of `held` [m]; counters."""
         counts, gap = np.zeros(4, dtype=np.int64), self.gap
         expected = np.zeros(len(bounds.lower) - 1)  # searches until an interval is decided
         while True:

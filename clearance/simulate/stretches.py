@@ -1,7 +1,7 @@
-"""When something is below a level, proven from outside: what is not in a stretch is proven to be above the level.
+"""Stretches of time below a level: every moment outside a stretch is proven to be above the level.
 
 Intervals that are not proven as a whole are proven in parts of a millisecond, or of a hundredth of the interval if
-that is more; what is not proven then is in the stretch. Not for: whether a level is kept (`certificate`).
+that is more. Parts that are not proven belong to the stretch. Not for: whether a level is kept (`certificate`).
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ LEVELS = ("below_warn", "below_fail", "contact")
 """The levels, the widest first."""
 
 FINEST_TIME, FINEST_SHARE = 1e-3, 0.01
-"""[s] and [-] The greater of both is how long a part of an interval is."""
+"""[s] and [-] The length of a part of an interval: the greater of both."""
 
 PART_GAP = 1e-3
-"""[m] How far the bound of a part may be below what occurs in it; a thousandth of that at the level."""
+"""[m] Largest gap between the bound of a part and a clearance in it; a thousandth of that at the level."""
 
 MOST_PARTS = 2**6
 """Parts of a part and pair until its gap is widened."""
 
 MOST_SPLIT = 2000
-"""Intervals of a section in which a level is passed that are proven in parts; more of them are taken whole."""
+"""Most intervals of a section that are proven in parts as a level is passed in them; others count as a whole."""
 
 MOST_LOOKS = 700
-"""Parts of all intervals of a section of which both ends are below the level, if they are proven in parts: it may
-be left there for a while. These are seven long intervals, or 35 of 20 ms; if there are more, samples are many."""
+"""Most parts in all intervals of a section with both ends below the level: between them it may be exceeded.
+These are seven long intervals, or 35 of 20 ms; with more, samples are dense enough."""
 
 
 class Threshold(NamedTuple):
@@ -59,7 +59,7 @@ class Threshold(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """Parts of the motion that are not proven to be above a level, and steps that are below it.
+    """Parts of the motion that are not proven to be above a level, and steps below it.
 
     Attributes:
         start, end: (k,) [s], the same for a step.
@@ -83,7 +83,7 @@ class Parts(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RuleStretches:
-    """When the pairs of a rule of a certified run are below one of `LEVELS`, or below a clearance [m]."""
+    """The times at which pairs of a certified rule are below one of `LEVELS`, or below a clearance [m]."""
 
     rule: RuleAnswer
     level: str | float
@@ -128,7 +128,7 @@ class RuleStretches:
         return self._moment(own, int(known[np.argmin(own.least[known])])) if len(known) else None
 
     def at(self, time: float, start: float, end: float) -> Moment | None:
-        """The pair that was seen soonest before or after a time [s] within a stretch, at that time."""
+        """The pair measured nearest to a time [s] within a stretch, at that time."""
         own = self.parts.only(self._within(start, end))
         known = np.flatnonzero(np.isfinite(own.least))
         if not len(known):
@@ -140,7 +140,7 @@ class RuleStretches:
         return np.flatnonzero((self.parts.start >= start) & (self.parts.end <= end))
 
     def _moment(self, parts: Parts, row: int, time: float | None = None) -> Moment:
-        """The moment that is known of a part, or its pair at another time [s]."""
+        """The known moment of a part, or its pair at another time [s]."""
         assert self.rule.pairs is not None
         answer = self.rule.pairs.answers[int(parts.answer[row])]
         section, step = answer.section, int(parts.step[row])
@@ -164,7 +164,7 @@ class RuleStretches:
 
 
 def joined_spans(spans: np.ndarray) -> np.ndarray:
-    """(k, 2) the spans (n, 2) of all that overlap or meet, in order of time."""
+    """(k, 2) the unions of spans (n, 2) that overlap or meet, in order of time."""
     if not len(spans):
         return np.empty((0, 2))
     spans = spans[np.argsort(spans[:, 0], kind="stable")]
@@ -180,7 +180,7 @@ def _places(n: int, test: Callable[[slice], np.ndarray]) -> np.ndarray:
 
 
 def threshold_of(section: Section, level: str | float) -> Threshold:
-    """What distances of a section, paddings left out, are held against."""
+    """The threshold for distances of a section without padding."""
     if level == "contact":
         return Threshold(0.0, strict=True)
     limits = section.limits
@@ -212,7 +212,7 @@ def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts
 
 @dataclass(frozen=True, eq=False)
 class _Intervals:
-    """The intervals of a section; what is made of them has distances without padding."""
+    """The intervals of a section; their distances are without padding."""
 
     answer: SectionAnswer
     certificate: Certificate

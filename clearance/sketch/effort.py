@@ -1,7 +1,7 @@
-"""How long a solve may take: asked between the steps of its searches, which stop where it has passed.
+"""The time limit of a solve, checked between the steps of its searches.
 
-A solve that ends in time never sees the clock, so that its answer does not depend on it; of one that is stopped
-nothing is used. Not for: how hard a search tries (`execution.run`).
+The answer of a solve that ends in time does not depend on the limit; a solve that is stopped changes
+nothing. Not for: how hard a search tries (`execution.run`).
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from collections.abc import Callable
 from clearance.errors import BadDimension
 
 SECONDS = 10.0
-"""[s] Of processor time, if nothing else is asked for; sketches of a hundred points take milliseconds."""
+"""[s] Default limit of processor time; sketches of a hundred points take milliseconds."""
 
 
 class OutOfTime(Exception):
-    """A search has passed its limit; told within this room only."""
+    """A search has passed its limit; raised within this package only."""
 
 
 class TimeLimit:
@@ -53,4 +53,4 @@ class TimeLimit:
 
 
 UNLIMITED = TimeLimit(math.inf, clock=lambda: 0.0)
-"""For problems that nobody has limited."""
+"""For problems without a limit."""

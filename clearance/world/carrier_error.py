@@ -1,9 +1,9 @@
-"""An error of what something hangs on, as it is seen from there, now or at the moment when a part changed hands.
+"""An error of the carrier of a body, seen from that body, now or at the moment of a grasp or release.
 
-A gripper that is off closes on a part that is not. Let the carrier be at C(g) d(g) when it grips, d what its
-errors make of C, at C(t) d(t) later, and the part at P before. Then the part is at C(t) d(t) d(g)^-1 C(g)^-1 P. It
-has the errors of both moments, and keeps those of each moment when it is laid down or handed on. Axes and places
-stay where they were, seen from the part. Not for: how large errors are (`budget`), what carries what (`grips`).
+A gripper with an error closes on a part without one. Let the carrier be at C(g) d(g) at the grasp, where d is its
+error, and at C(t) d(t) later, and the part at P before. Then the part is at C(t) d(t) d(g)^-1 C(g)^-1 P. It has
+the errors of both moments, and keeps them when it is laid down or handed on. Axes and places stay constant, seen
+from the part. Not for: how large errors are (`budget`), what carries what (`grips`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ALIKE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class CarrierError:
-    """One error of what something hangs on, at a moment.
+    """One error of the carrier of a body, at a moment.
 
     Attributes:
         owner: the robot or obstacle. joint: of the robot; empty for its base, or for the place of an obstacle.
@@ -31,7 +31,7 @@ class CarrierError:
         axis: (3,) unit, of the joint itself, seen from there; None where the frame, base or place is off.
         slides: True for a joint that slides.
         deed, time: `GRASP` or `RELEASE`, and when [s]; an empty deed is now.
-        inverse: True where what hangs there is moved against the error: what gripped it was off.
+        inverse: True if the body is moved against the error, since the gripper had it at the grasp.
     """
 
     owner: str

@@ -1,6 +1,6 @@
-"""The errors of a carrier at the moment when it picks a part up, or lets it go, seen from the part.
+"""The errors of a carrier at the moment of a grasp or release, seen from the part.
 
-Not for: which part is in whose hands (`hands`), nor how large errors are (`budget`).
+Not for: which carrier holds which part (`hands`), nor how large errors are (`budget`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from clearance.world.robot import Joint, JointKind
 
 @dataclass(frozen=True, eq=False)
 class Grip:
-    """One of a phase's own steps, at which a part changes hands.
+    """A step of a phase at which a part is gripped or released.
 
     Attributes:
         world_from_part: (4, 4) [m] where that is. deed: as of `CarrierError`.
@@ -33,7 +33,7 @@ class Grip:
     deed: str
 
     def errors_on(self, name: str) -> Iterator[CarrierError]:
-        """The errors of a link or obstacle and of all that it hangs on, from there to the base."""
+        """The errors of a link or obstacle and of all its carriers, from there to the base."""
         case = self.phase.case
         carrier = next((one for one in case.obstacles if one.name == name), None)
         if carrier is None:
@@ -47,7 +47,7 @@ class Grip:
             yield from self.errors_on(carrier.mount.on)
 
     def against(self, name: str) -> list[CarrierError]:
-        """The same of what grips the part: the other way round, from the base to there."""
+        """The same errors of the gripper, inverse: from the base to there."""
         return [replace(one, inverse=not one.inverse) for one in reversed([*self.errors_on(name)])]
 
     def _of_robot(self, i_robot: int, i_link: int) -> Iterator[CarrierError]:

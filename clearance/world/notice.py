@@ -22,15 +22,15 @@ class Severity(StrEnum):
 KINDS = ("units", "limits", "axis", "inside", "frame", "package", "gaps", "clocks", "wrap", "start")
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
 limits, meshes turned by their file's axis tag, solids of which inside and outside cannot be decided, scenes in the
-frame of a link that moves or stands elsewhere, files that stand in for those of a missing package, holes in
-recordings, which are then bridged straight, tables that never move together, turns that could go either way round,
-which then go as written, and goals whose start nobody says, which then are poses."""
+frame of a link that moves or stands elsewhere, files read in place of those of a missing package, holes in
+recordings (then bridged straight), tables that never move at the same time, turns that could go either way (then
+as written), and goals without a start (then single poses)."""
 
 WRAP, START = "wrap", "start"
 
 HOLD, LINEAR, NOT_MEASURED = GAPS = ("hold", "linear", "not_measured")
-"""What joints do in a hole of a recording, as a case says it: they stay until just before their next message, they
-go straight, or the stretch is left out."""
+"""How joints move in a hole of a recording, as the case says: they stay until just before their next message, they
+go straight, or the stretch is not measured."""
 
 
 @dataclass(frozen=True)

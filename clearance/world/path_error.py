@@ -1,4 +1,4 @@
-"""What joints off their path do to clearances. Not for: how far they are off (`quintic`), or tolerances."""
+"""The effect on clearances of joints off their path. Not for: how far they are off (`quintic`), or tolerances."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ ROOT_3 = 3.0**0.5
 
 
 def path_error_of(case: Case, motions: Sequence[Motion]) -> float:
-    """[m] By how much less the clearance of any pair may be than along the cubics of the motions.
+    """[m] The most that the clearance of any pair can be below its value along the cubics of the motions.
 
-    A joint that is off by an angle moves what is below it, against all else, by no more than the angle times its
-    distance. A part in hand has the joints' errors of when it is taken, of now, or of when it is laid down.
+    A joint that is off by an angle moves each point below it by at most the angle times its distance. A carried
+    part has the joint errors of the grasp, of now, or of the release.
 
     Exactness: an upper bound: no point is farther from a joint than its robot is long or, where robots carry
         others, than the cell is wide, and a part than that from each that has carried it.

@@ -19,7 +19,7 @@ from clearance.tolerance import LARGEST, PATH_ERROR
 from clearance.world.trajectory import Points, Trajectory
 
 MOST_SAMPLES = 1_000_000
-"""Samples that a trajectory may come to: an acceleration in the wrong unit asks for more."""
+"""Most samples of a trajectory: an acceleration in the wrong unit needs more."""
 
 ROUNDING = 2.0**-42
 """What rounding of a sample's position and velocity does to the path, relative to the sum of a quintic's terms:
@@ -57,7 +57,7 @@ def quintics_of(
 
 
 def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajectory:
-    """A trajectory with samples so near to each other that its cubics are within `PATH_ERROR` of the quintics.
+    """A trajectory with enough samples that its cubics are within `PATH_ERROR` of the quintics.
 
     Args:
         asked: with velocities; its samples stay. accelerations: (n, k) [rad/s^2] or [m/s^2].
@@ -90,7 +90,7 @@ def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajecto
 
 
 def _parted(times: np.ndarray, n_parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) [s] the times with each interval in so many parts, one or more, and (m - 1,) the interval of each part.
+    """(m,) [s] the times with each interval split into its parts, and (m - 1,) the interval of each part.
 
     Raises:
         BadShape, BadTime: as `with_accelerations`.

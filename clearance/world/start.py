@@ -1,4 +1,4 @@
-"""A motion that begins somewhere before the samples of its file. Not for: who says where (`load`)."""
+"""Adds a start at 0 s to a trajectory. Not for: reading the start from a file (`load`)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from clearance.world.trajectory import Points, Trajectory
 def started(
     asked: Trajectory, positions: np.ndarray, velocities: np.ndarray | None = None
 ) -> Trajectory:
-    """The trajectory after a sample at 0 s, from which joints go to the first as they go between samples.
+    """The trajectory with a sample at 0 s added; joints go to its first sample as between samples.
 
     Args:
         positions: (k,) [rad] or [m]. velocities: (k,) where it has some; at rest if not given.

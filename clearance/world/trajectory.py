@@ -19,8 +19,8 @@ class Hole:
     """A stretch of a recording without a message, many times longer than usual.
 
     Attributes:
-        joints: those that nobody tells of. start, end: [s] of the trajectory's own time.
-        usual: [s] between two messages. means: one of `notice.GAPS`; None where nobody says it.
+        joints: those without a message. start, end: [s] of the trajectory's own time.
+        usual: [s] between two messages. means: one of `notice.GAPS`; None if the case does not say.
     """
 
     joints: tuple[str, ...]
@@ -40,7 +40,7 @@ class Hole:
 
 SHORTEST, AS_WRITTEN = "shortest", "as_written"
 WRAPS = (SHORTEST, AS_WRITTEN)
-"""What a step of more than half a turn of a continuous joint is meant as."""
+"""How to read a step of more than half a turn of a continuous joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +68,14 @@ class Trajectory:
         joint_names: (k,) of the robot's moving joints, in column order.
         positions: (n, k) [rad] or [m].
         velocities: (n, k) [rad/s] or [m/s], or None.
-        path_error: [rad or m] how far joints may be off between samples, and at those that the file does not have.
+        path_error: [rad or m] how far joints may be off between samples, and at samples added to the file's.
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
         given_extents: (2, k) the least and greatest position before whole turns were taken off, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
-        wrap: one of `WRAPS`, or None where it is not known, which is suspect in a case where there is such a step.
-            A `PlacedRobot` takes whole turns off those that are meant the shortest way.
+        wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
+            With the shortest way, a `PlacedRobot` takes whole turns off.
 
     Raises:
         BadShape, NotFinite: not one finite number for each time and joint. BadTime: times that do not increase.

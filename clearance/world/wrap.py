@@ -1,4 +1,4 @@
-"""Which way round a continuous joint goes in a step of more than half a turn: as its numbers say, or the shortest.
+"""The direction of a continuous joint in a step of more than half a turn: as written, or the shortest way.
 
 A planner that interpolates angles goes the shortest way, a controller's spline may follow the numbers; what was
 recorded in (-pi, pi] went the shortest way. Half a turn, down to rounding, is as long either way and goes as
@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 
 
 class LongStep(NamedTuple):
-    """The longest step of a continuous joint, of those by more than half a turn.
+    """The longest of the steps by more than half a turn of a continuous joint.
 
     Attributes:
         start, end: [s] in the table's time. before, after: [rad] as written. n_steps: how many there are.
@@ -60,7 +60,7 @@ def long_steps(robot: Robot, asked: Trajectory) -> list[LongStep]:
 
 
 def meant(robot: Robot, asked: Trajectory) -> Trajectory:
-    """The trajectory with its continuous joints going the shortest way, if that is meant; else the same.
+    """The trajectory with its continuous joints going the shortest way, if `wrap` says so; else unchanged.
 
     Exactness: whole turns are taken off, each to the rounding of a position.
     """
@@ -81,7 +81,7 @@ def meant(robot: Robot, asked: Trajectory) -> Trajectory:
 
 
 def _columns(robot: Robot, asked: Trajectory) -> Iterator[tuple[int, np.ndarray]]:
-    """The column of each continuous joint that turns by more than half a turn, and its steps that do."""
+    """The column of each continuous joint with steps of more than half a turn, and these steps."""
     turning = wrapping_joints(robot)
     for i, name in enumerate(asked.joint_names):
         if name in turning:

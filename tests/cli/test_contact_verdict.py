@@ -99,5 +99,5 @@ def test_the_headline_says_how_deep(folder, capsys):
     )
     assert run(["check", case, "--contact", "none"]) == 1
     assert capsys.readouterr().out.startswith(
-        "CONTACT depth not computed: slider - a at 0.000 s, step 0 (rail)\n"
+        "CONTACT (depth not computed): slider - a at 0.000 s, step 0 (rail)\n"
     )

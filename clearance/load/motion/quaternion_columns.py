@@ -20,11 +20,11 @@ from clearance.world.notice import listed
 PARTS, ANGLES = ("/qx", "/qy", "/qz", "/qw"), ("/yaw", "/pitch", "/roll")
 
 STEEPEST = np.radians(85.0)
-"""[rad] Beyond this pitch yaw and roll turn wildly between two samples, which the motion itself does not."""
+"""[rad] Beyond this pitch yaw and roll jump between two samples though the body turns little."""
 
 
 def turned_joints(names: Sequence[str], turns: Mapping[str, bool]) -> list[str]:
-    """The joints of which all four columns are there, and which go by angles as far as the robot is known."""
+    """The joints with all four columns that the robot, if known, moves by yaw, pitch and roll."""
     stems = dict.fromkeys(name[: -len(PARTS[0])] for name in names if name.endswith(PARTS))
     return [
         stem
@@ -49,9 +49,9 @@ def joints_by_angles(names: Sequence[str], turned: Sequence[str]) -> tuple[str, 
 def by_angles(
     values: np.ndarray, names: Sequence[str], turned: Sequence[str], table: TextTable
 ) -> tuple[np.ndarray, list[str]]:
-    """(n, k) the values of `joints_by_angles`, of those of the names; and notes.
+    """(n, k) the values for the names of `joints_by_angles`, from the values for `names`; and notes.
 
-    Angles go on from one sample to the next the short way.
+    Angles go the shortest way from one sample to the next.
 
     Raises:
         BadPose: a quaternion that is not of length one, with its line. BadInput: a pitch of nearly a quarter turn.

@@ -1,4 +1,4 @@
-"""Holes in recordings: intervals many times longer than usual, and where the case says that a joint is meanwhile.
+"""Holes in recordings: intervals many times longer than usual, and the motion of joints in them, as the case says.
 
 Not for: messages (`joint_states`), nor what a verdict says of holes (`world.plausible_recordings`).
 """
@@ -28,7 +28,7 @@ LATE = 2.0
 """Usual intervals by which a joint may begin after the others, or end before them: one is by chance."""
 
 FEW = 10
-"""Messages that show no usual interval of their own: it is then that of the joints told of more often."""
+"""A joint of so few messages has no usual interval of its own; that of more frequent joints is used."""
 
 
 class Track(NamedTuple):
@@ -53,7 +53,7 @@ class Track(NamedTuple):
         return max(n_usual * self.usual, self.brief)
 
     def held(self) -> Track:
-        """The track that stays over each hole until a usual interval before its next sample."""
+        """The track that holds its position in each hole until one usual interval before its next sample."""
         after = self.holes + 1
         if not len(after):
             return self
@@ -65,9 +65,9 @@ class Track(NamedTuple):
 def tracks_of(
     samples: Mapping[str, tuple[np.ndarray, np.ndarray]], unit: float = 1.0
 ) -> dict[str, Track]:
-    """The tracks of joints, of times and positions (n,) each, with the median of their intervals as the usual one.
+    """The tracks of joints, from times and positions (n,) each, with the median interval as the usual one.
 
-    A joint that is told of a few times only, while others are all the time, has theirs.
+    A joint with few messages has the usual interval of the others, if that is shorter.
 
     Args:
         unit: as in `holes_of`.
@@ -83,7 +83,7 @@ def tracks_of(
 
 
 def _median(lengths: np.ndarray) -> float:
-    """The shorter of the two in the middle; infinite for none."""
+    """The lower median; infinite for none."""
     return float(np.sort(lengths)[(len(lengths) - 1) // 2]) if len(lengths) else np.inf
 
 
@@ -127,10 +127,10 @@ def holes_of(
 
 
 def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
-    """A table that was recorded, with its holes as the case says.
+    """A recorded table, with its holes read as the case says.
 
     Raises:
-        BadInput: joints that are to hold, and velocities by which they go on.
+        BadInput: `gaps: hold` for a table with velocities.
     """
     given, own = read.trajectory, read.trajectory.written
     columns = zip(given.joint_names, own.positions.T, strict=True)

@@ -11,7 +11,7 @@ import numpy as np
 from clearance.world.notice import listed
 
 PLANE_SIDE, PLANE_DEPTH = 40.0, 1.0
-"""[m] A plane, which has no end and no thickness, as a box below it; arms work within 20 m of where they stand."""
+"""[m] The box that stands for an infinite plane, below it; arms work within 20 m of their base."""
 
 PLANE_SIZE = (PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH)
 
@@ -24,6 +24,6 @@ def plane_from_box() -> np.ndarray:
 
 
 def note_on_planes(names: Sequence[str]) -> str:
-    """What planes were taken for."""
+    """A note on the boxes that stand for planes."""
     size = f"{PLANE_SIDE:g} m wide and {PLANE_DEPTH:g} m deep"
     return f"planes are boxes {size} below them: {listed(names, 6)}"

@@ -58,8 +58,8 @@ class Robot(StrictModel):
 class Carry(WindowedEntry):
     """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some.
 
-    `grasp: exact` says that the gripper itself puts the part in its place. With tolerances the part then has
-    none of the errors that the carrier has when it grips.
+    `grasp: exact` says that the gripper itself positions the part. With tolerances, errors of the carrier at the
+    grasp then do not count.
     """
 
     FILLED = frozenset({"until"})

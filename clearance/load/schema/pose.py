@@ -121,11 +121,10 @@ def _by_itself(given: Any) -> Any:
 class TrajectoryFile(TimedFile):
     """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
     `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
-    Of a table with other columns besides, `columns` names those that are meant, `{joint: column}` where they are
-    called otherwise. `topic` is that of a bag. `gaps` says what joints do in holes of a recording: hold, go
-    straight (linear), or are not measured. `wrap` says which way round a continuous joint goes in a step of more
-    than half a turn. `start_state` says where a motion begins at 0 s whose first sample is later: positions, or
-    names of states.
+    `columns` names the columns of a table to read, and no others; `{joint: column}` if names differ. `topic` is
+    a topic of a bag. `gaps` says how joints move in holes of a recording: they hold, go straight (linear), or are
+    not measured. `wrap` says which way a continuous joint goes in a step of more than half a turn. `start_state`
+    is the start at 0 s if the first sample is later: positions, or names of states.
     """
 
     FILLED = frozenset(

@@ -1,4 +1,4 @@
-"""Which columns of a table a case means, and what is told of their names.
+"""Selects the columns of a table that a case names, and writes notes on column names.
 
 Not for: how a header is written (`csv_table`), nor units (`column_units`).
 """
@@ -20,7 +20,7 @@ def chosen_columns(
     turns: Mapping[str, bool],
     units: tuple[str, str] | None,
 ) -> list[Column]:
-    """The columns of a header that a case names, called as it says, in its order.
+    """The columns of a header that a case names, with the case's names, in its order.
 
     Args:
         chosen: the column of the header for `time`, a joint, or a joint and `/velocity`; one that stands for
@@ -44,7 +44,7 @@ def chosen_columns(
 
 
 def notes_on_names(header: Sequence[str], columns: Sequence[Column]) -> list[str]:
-    """A line each on the column that is taken for time, and on those that are left out."""
+    """Notes on the column read as time, and on columns that are not read."""
     notes = [
         f"column {one.header!r} is taken for time"
         for one in columns

@@ -1,4 +1,4 @@
-"""Moments between the steps of a certified run that its replay and chart need: dips, and ways between far samples.
+"""Moments between the steps of a certified run for its replay and chart: dips, and steps between distant samples.
 
 Not for: the frames that are made of them (`frames`).
 """
@@ -22,17 +22,17 @@ from clearance.tolerance import REACH
 from clearance.world.forest import positions_along
 
 MOST_DIPS = 500
-"""Most intervals whose least moment is a frame of its own, those that stand worst first."""
+"""Most intervals whose least moment is a frame of its own, the most critical first."""
 
 BEYOND_REACH = 4.0 * REACH
-"""[m] More than any margin: what stands worse by its status comes first."""
+"""[m] More than any margin, so that a worse status comes first."""
 
 FINE = 200
-"""Parts of a run of which each has a frame, if its samples are farther apart."""
+"""Parts of a run; each has a frame, even if samples are farther apart in time."""
 
 
 def curve_moments(record: Record) -> list[Moment]:
-    """The moments, in order of time; the one that stands worst and the nearest of all are among them."""
+    """The moments, in order of time, with the most critical and the nearest of all among them."""
     if record.certificate is None:
         return []
     told = [one for one in (record.nearest, record.worst) if one.between]
@@ -42,7 +42,7 @@ def curve_moments(record: Record) -> list[Moment]:
 
 
 def _dips(record: Record) -> Iterator[Moment]:
-    """The least moment of each interval that comes nearer than its ends, by the rule that stands worst then."""
+    """The least moment of each interval that comes nearer than its ends, by the most critical rule."""
     worst: dict[int, tuple[float, Certificate]] = {}
     for rule in record.rules:
         own = rule.certificate
@@ -77,7 +77,7 @@ def _is_dip(rule: RuleAnswer, certificate: Certificate, block: slice) -> np.ndar
 
 
 def _evenly(record: Record) -> list[Moment]:
-    """Moments in intervals that are longer than a part of the run, by the pair that stands worst then."""
+    """Moments in intervals that are longer than a part of the run, by the most critical pair."""
     times = record.motions[0].times
     part = (times[-1] - times[0]) / FINE
     answers = [(rule, one) for rule in record.rules if rule.pairs for one in rule.pairs.answers]

@@ -1,8 +1,8 @@
-"""Which pairs of bodies an MJCF model lets collide, as a matrix of those that it does not, with a reason each.
+"""The pairs of bodies that an MJCF model filters from collision, with a reason each.
 
-MuJoCo asks about two geoms where a `<pair>` says so; else where no `<exclude>` names their bodies, neither body is
-the other's parent (bodies welded together count as one, and what is welded to the world is no parent), and the
-bits of contype and conaffinity meet. Not for: what the pairs do (`world.self_pairs`).
+MuJoCo tests two geoms if a `<pair>` names them. Else it tests them if no `<exclude>` names their bodies, neither
+body is the parent of the other, and the bits of contype and conaffinity meet. Bodies welded together count as one;
+a body welded to the world is no parent. Not for: what the pairs do (`world.self_pairs`).
 
 Source: MuJoCo, Computation, "Collision detection: selection"; engine_collision_driver.c (`filterBodyPair`).
 """
@@ -21,7 +21,7 @@ from clearance.world.notice import listed
 PARENT = "MuJoCo's filter of parent and child"
 EXCLUDE = "<exclude> in the model"
 BITS = "contype and conaffinity"
-"""Why MuJoCo asks nothing about two bodies, where one joint alone does not say it."""
+"""Reasons why MuJoCo does not test two bodies, beside being neighbours on one joint."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class MjcfFilters:
 
     Args:
         measured: bodies with a shape.
-        colliding: those of them whose shape is the geoms that collide; of others the bits say nothing.
+        colliding: those of them whose shape consists of geoms that collide; bits do not filter the others.
         neighbours: pairs of bodies that one joint joins.
     """
 
@@ -41,7 +41,7 @@ class MjcfFilters:
 
     @cached_property
     def rows(self) -> tuple[tuple[str, str, str], ...]:
-        """Pairs of bodies with a shape, and why MuJoCo asks nothing about them."""
+        """Pairs of bodies with a shape that MuJoCo does not test, and why."""
         bodies = self.model.bodies
         return tuple(
             (bodies[a].name, bodies[b].name, reason)
@@ -55,7 +55,7 @@ class MjcfFilters:
         return CollisionMatrix(disabled=self.rows)
 
     def notes(self) -> Iterator[str]:
-        """A line for each filter that leaves out more than neighbours, and for pairs that are asked for."""
+        """A line for each filter that leaves out more than neighbours, and for pairs of `<pair>`."""
         for reason in (EXCLUDE, PARENT, BITS):
             told = [f"{a} - {b}" for a, b, why in self.rows if why == reason]
             if told:
@@ -97,7 +97,7 @@ class MjcfFilters:
         return None
 
     def _is_parent(self, a: int, b: int) -> bool:
-        """True if one is welded to what the other, or what that is welded to, hangs on; the world is no parent."""
+        """True if one is the parent of the other, welded bodies counting as one; the world is no parent."""
         bodies = self.model.bodies
         one, other = bodies[a].welded_to, bodies[b].welded_to
         parents = [bodies[bodies[end].parent].welded_to for end in (one, other)]
