@@ -368,8 +368,8 @@ def test_what_no_table_says_of_a_motion_stays_in_a_file_that_does(tmp_path):
     text = Path("made/case.yaml").read_text()
     assert "trajectory: ../cell/bags/run/run.mcap  # from" in text
     assert (
-        "# trajectory: {file: ../cell/bags/run/run.mcap, gaps: hold}  # or linear, or not_measured: a hole"
-        in text
+        "# trajectory: {file: ../cell/bags/run/run.mcap, gaps: hold}  # or linear, or not_measured: the "
+        "recording has a hole" in text
     )
     assert run(["check", "made/case.yaml"]) == 2
     bent = ROS2.replace("accelerations: []", "accelerations: [0.5, 0.0]")
