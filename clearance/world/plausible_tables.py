@@ -1,4 +1,7 @@
-"""Tables of poses that look like millimetres or milliseconds. Not for: joints (`plausible_motion`)."""
+"""Tables of poses that look like millimetres or milliseconds, or do not say which way round a body turns.
+
+Not for: joints (`plausible_motion`).
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import numpy as np
 
 from clearance.world.case import Case
 from clearance.world.extents import metres
-from clearance.world.notice import Notice, Severity
+from clearance.world.notice import WRAP, Notice, Severity
 from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
 from clearance.world.pose_table import PoseTable
 
@@ -14,13 +17,32 @@ LARGE_TRAVEL = 100.0
 """[m] Nothing in a cell goes so far; in millimetres it is usual."""
 
 
+HALF_TURN = 2e-3
+"""[rad] A turn that is as near to half a turn is one: quaternions of three digits are off by so much."""
+
+
 def notices_on_tables(case: Case) -> list[Notice]:
-    """What of the tables of obstacles looks like another unit."""
-    told = []
+    """What of the tables of obstacles looks like another unit, or is not said in them."""
+    told, halves = [], []
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
             told += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
-    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+            halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
+    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+    return [*notices, *(Notice(Severity.SUSPECT, WRAP, text) for text in halves)]
+
+
+def _half_turns(what: str, table: PoseTable) -> list[str]:
+    """That a body turns by half a turn in a step, which is as far either way round."""
+    cosines = np.abs((table.quaternions[1:] * table.quaternions[:-1]).sum(axis=1))
+    steps = np.flatnonzero(2.0 * cosines < HALF_TURN)
+    if not len(steps):
+        return []
+    start, end = table.times[steps[0] : steps[0] + 2].tolist()
+    return [
+        f"{what} turns by half a turn in one step, from {start:g} to {end:g} s, and its table does not say which "
+        "way round; give a row between"
+    ]
 
 
 def _odd(what: str, table: PoseTable) -> list[str]:

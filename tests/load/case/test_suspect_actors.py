@@ -45,9 +45,23 @@ def test_a_table_in_millimetres(tmp_path):
 
 
 def test_a_table_of_a_turn_about_a_place_in_millimetres(tmp_path):
-    door = f"{HEADER}\n0,900,900,0,0,0,0,1\n1,900,900,0,0,0,1,0\n"
+    door = f"{HEADER}\n0,900,900,0,0,0,0,1\n1,900,900,0,0,0,0.8,0.6\n"
     (text,) = told(tmp_path, door=door)
     assert text.startswith("CHECK UNITS: obstacle 'door' stands 1268 m away")
+
+
+@pytest.mark.parametrize("turn", ["0,0,1,0", "0,0.707,-0.707,0.0005"])
+def test_a_turn_by_half_a_turn_in_one_step_can_go_either_way(tmp_path, turn):
+    door = f"{HEADER}\n0,4,0,0,0,0,0,1\n1,4,0,0,{turn}\n"
+    (text,) = told(tmp_path, door=door)
+    assert text == (
+        "obstacle 'door' turns by half a turn in one step, from 0 to 1 s, and its table does not say which way "
+        "round; give a row between"
+    )
+    between = door.replace("\n1,", "\n0.5,4,0,0,0,0,0.6,0.8\n1,").replace(
+        "0,0.707,-0.707,0.0005", "0,0,1,0"
+    )
+    assert told(tmp_path, door=between) == []
 
 
 def test_a_place_on_a_link_in_millimetres(tmp_path):
