@@ -39,6 +39,7 @@ def can_be_alone(rule: RuleAnswer, within: float) -> bool:
 
 def near_alone(rule: RuleAnswer, within: float) -> dict[int, RuleAnswer]:
     """The answer of a rule for each pair that comes within [m], at a step or between; pairs of the run."""
+    within = max(within, rule.limits.rounding)  # bodies in contact are near, whatever the limit
     known = _KNOWN.setdefault(rule, {})
     if within not in known:
         assert rule.pairs is not None, "the sections of a rule are known"

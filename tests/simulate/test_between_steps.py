@@ -229,9 +229,10 @@ def test_a_proof_that_takes_too_many_parts_is_widened_and_ends(monkeypatch):
     assert wide.tally["queries"] < tight.tally["queries"]
 
 
-def test_contact_between_two_steps_has_its_depth():
+@pytest.mark.parametrize("limits", [LIMITS, cl.Limits()])
+def test_contact_between_two_steps_has_its_depth(limits):
     """Half way the fore arm, 40 mm thick, is 45 mm deep in the post: half of both, the shortest way out."""
-    run = cl.check(sweeping(THROUGH))
+    run = cl.check(sweeping(THROUGH, limits=limits))
     depth = run.record.worst.depth
     assert depth.penetration == pytest.approx(0.045, abs=1e-9) and depth.exact
     assert run.worst["between"] and run.worst["time"] == pytest.approx(1.0)
