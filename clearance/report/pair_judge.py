@@ -29,5 +29,8 @@ class PairJudge:
     def status_of(self, minimum: PairMinimum) -> str:
         """The status; what padding alone brings to 0 or below is violated, no contact."""
         padding = sum(self.paddings.get(name, 0.0) for name in (minimum.link, minimum.obstacle))
-        touches = minimum.clearance + padding + self.path_error <= 0.0
+        lessened = (
+            padding + self.path_error
+        )  # one sum, as it was taken off: a distance of 0 stays 0
+        touches = minimum.clearance <= -lessened
         return status_of(minimum.clearance, self.limits[minimum.rule], touches)

@@ -12,6 +12,7 @@ from clearance.report.pair_judge import PairJudge
 from clearance.simulate import motion_minima as room
 from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.pairs_alone import least_between, near_alone
+from clearance.simulate.record import PairMinimum
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from tests.made_cases import at
@@ -99,3 +100,14 @@ def test_a_pair_that_is_not_nearer_than_asked_has_no_moment():
     rule = cl.check(two_posts()).record.rules[0]
     for proven, moment in least_between(rule, {0: 0.001, 1: 0.001}).values():
         assert moment is None and proven > 0.0009
+
+
+@pytest.mark.parametrize(("padding", "off"), [(0.018, 4.042974363421338e-08), (0.003, 1e-8)])
+def test_a_padded_pair_in_contact_is_in_contact_whatever_paths_are_off(padding, off):
+    """A distance of 0 less both; added to it one after the other they leave 1e-18 m."""
+    clearance = 0.0 - (padding + off)
+    minimum = PairMinimum("fore", "post", clearance, 0, 0.0, (0.0,) * 3, (0.0,) * 3)
+    judge = PairJudge({minimum.rule: cl.Limits()}, {"post": padding}, off)
+    assert judge.status_of(minimum) == "contact"
+    apart = replace(minimum, clearance=1e-12 + clearance)
+    assert judge.status_of(apart) == "violated"
