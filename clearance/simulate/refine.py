@@ -24,8 +24,8 @@ MOST_QUERIES = 2**19
 """Most searches for one level: a few seconds."""
 
 MOST_EXPECTED = 4 * MOST_QUERIES
-"""Searches that may be expected of an interval which is at the level all the way: parts are as long as the root of
-their gap, and a quarter of what follows from that was seen."""
+"""Most expected searches of an interval that is at the level throughout. A part is as long as the root of its gap;
+a quarter of the searches estimated from that was measured."""
 
 Prove = Callable[[int, np.ndarray, CertificateGoal], tuple[IntervalBounds, np.ndarray]]
 """Proves an interval, given the distance (2,) [m] that is asked about at its ends; bounds of it, and counters."""
@@ -50,8 +50,8 @@ class Refinement:
     ) -> tuple[IntervalBounds, np.ndarray]:
         """The bounds, finer in the intervals by which a level [m] is open, and counters.
 
-        Where something is seen below a level, it is decided. Contact is a level too: it is open as long as nothing
-        more than rounding is proven.
+        A clearance measured below a level decides it. Contact is a level too, undecided while the bound is
+        no more than rounding.
         """
         counts = np.zeros(4, dtype=np.int64)
         for level in sorted({0.0, *levels}):

@@ -98,7 +98,7 @@ class RuleStretches:
 
     @cached_property
     def spans(self) -> np.ndarray:
-        """(k, 2) [s] from when until when; none where contact is the level and none is seen."""
+        """(k, 2) [s] start and end of each stretch; no stretch of contact without measured contact."""
         if self._is_contact and not self._is_seen:
             return np.empty((0, 2))
         spans = joined_spans(np.column_stack([self.parts.start, self.parts.end]))

@@ -55,7 +55,7 @@ def notices_on_motion(
 
 
 def _as_given(placed: PlacedRobot, extents: Sequence[JointExtent]) -> list[JointExtent]:
-    """How far joints go by the numbers of their file: what turns round and round is written within one turn."""
+    """The ranges of joints as their file has them: a joint that turns on and on may be logged within one turn."""
     asked = placed.given_trajectory
     if asked.given_extents is None:
         return list(extents)
@@ -78,7 +78,7 @@ def _way_in(placed: PlacedRobot) -> list[Notice]:
         return []
     text = (
         f"not measured: how robot {about!r} comes to its first point at {first:.6g} s; "
-        "trajectory: {start_state: …} says where it begins at 0 s"
+        "give its start at 0 s with trajectory: {start_state: …}"
     )
     return [Notice(Severity.WARNING, START, text, about)]
 

@@ -97,7 +97,7 @@ LATE = plan(point(4.0, 1.0, 0.05), point(6.0, 0.0, 0.05), names=("shoulder", "li
 def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
     says = (
         "not measured: how robot 'arm' comes to its first point at 4 s; "
-        "trajectory: {start_state: …} says where it begins at 0 s"
+        "give its start at 0 s with trajectory: {start_state: …}"
     )
     case = load(tmp_path, LATE)
     assert [one.text for one in notices_of(case)] == [says]
