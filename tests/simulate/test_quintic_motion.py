@@ -80,7 +80,7 @@ def test_a_cart_that_its_accelerations_take_to_the_wall_and_back(tmp_path):
     assert 0.2 - CERTIFY_GAP <= bound <= 0.2
     assert run.worst["clearance"] == pytest.approx(0.2, abs=1e-7) and run.worst["clearance"] <= 0.2
     (note,) = [text for text in run.record.case.notes if "quintics" in text]
-    assert "2 points are followed by cubics through" in note
+    assert "2 points become cubics through" in note
     assert run.summary["certified"]["joints"] == "quintic"
     assert run.summary["actors"][0]["between_samples"] == "quintic"
 
