@@ -10,6 +10,8 @@ from dataclasses import replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.pairs_alone import can_be_alone, least_between, near_alone, near_between
@@ -25,7 +27,8 @@ _KNOWN: WeakKeyDictionary[Record, dict[int | None, tuple[PairMinimum, ...]]] = W
 def motion_minima(record: Record, most: int | None = None) -> tuple[PairMinimum, ...]:
     """As `Record.pair_minima`, over the motion; the first `most` of them if that is given.
 
-    Far pairs have their least at the samples if there are too many to prove each on its own.
+    Far pairs have their least at the samples if there are too many to prove each on its own. So have pairs of two
+    clocks, and pairs hidden by a nearer one among them; the nearest of an interval has what the proof saw.
     """
     known = _KNOWN.setdefault(record, {})
     if most not in known:
@@ -40,10 +43,24 @@ def _found(record: Record, most: int | None) -> tuple[PairMinimum, ...]:
         own = [one for one in sampled if one.rule == rule.name]
         within = max(rule.limits.warn, rule.limits.fail)
         if rule.pairs is None or not can_be_alone(rule, within):
-            found += own
+            found += _with_seen(rule, own)
         else:
             found += _RuleMinima(rule, within).of(own, most)
     return tuple(sorted(found, key=lambda one: one.clearance)[:most])
+
+
+def _with_seen(rule: RuleAnswer, sampled: Sequence[PairMinimum]) -> list[PairMinimum]:
+    """The least of pairs at the steps, or between them where the proof of their rule saw them nearer."""
+    certificate = rule.certificate
+    if certificate is None or not sampled:
+        return list(sampled)
+    found = {(one.link, one.obstacle): one for one in sampled}
+    for pair in np.unique(certificate.pair[certificate.pair >= 0]).tolist():
+        own = np.flatnonzero(certificate.pair == pair)
+        moment = certificate.moment_of(int(own[np.argmin(certificate.upper_bound[own])]))
+        names = moment.link, moment.obstacle
+        found[names] = _lesser(found.get(names), moment, None)
+    return list(found.values())
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +112,9 @@ class _RuleMinima:
         return dict(zip(self.rule.pairs.names, places, strict=True))
 
 
-def _lesser(sampled: PairMinimum | None, moment: Moment | None, proven: float) -> PairMinimum:
+def _lesser(
+    sampled: PairMinimum | None, moment: Moment | None, proven: float | None
+) -> PairMinimum:
     """The least of a pair: at a step, unless a moment between has a lower clearance."""
     if sampled is not None and (moment is None or sampled.clearance <= moment.clearance):
         return replace(sampled, proven=proven)

@@ -81,6 +81,16 @@ def test_where_pairs_are_too_many_those_that_are_far_are_of_the_samples(monkeypa
     assert found["other"].proven is not None and found["wall"].proven is None
 
 
+def test_where_no_pair_can_be_proven_by_itself_those_that_the_proof_saw_nearest_stand_so(
+    monkeypatch,
+):
+    """As between two clocks: a finding said violated, and the table of pairs clear."""
+    monkeypatch.setattr(room, "can_be_alone", lambda *_: False)
+    found = statuses(two_posts())
+    assert found["fore", "post"] == (pytest.approx(0.003, abs=1.1e-4), "violated")
+    assert found["fore", "other"][1] == "clear"  # hidden by the first
+
+
 def test_without_a_proof_they_are_of_the_samples():
     record = cl.check(two_posts(), certify=False).record
     assert motion_minima(record) == tuple(record.pair_minima)
