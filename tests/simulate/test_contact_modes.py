@@ -12,7 +12,7 @@ from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
 from clearance.simulate.contact import events as contact_events
 from clearance.simulate.contact import work as contact_work
-from clearance.simulate.contact.events import deepest_of, events_of
+from clearance.simulate.contact.events import events_of, rated_places
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
@@ -74,10 +74,10 @@ def asked(monkeypatch):
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
 @pytest.mark.cold
 def test_the_verdict_works_out_what_is_asked_for_and_no_more(asked, shape):
-    """It says how deep, unless nothing was asked for."""
+    """It says how deep, unless nothing was asked for; between the steps nothing is looked at here."""
     for how, n_asked in (("none", 0), ("events", 2), ("every", 5)):
         asked.clear()
-        run = cl.check(sliding(shape), contact=how)
+        run = cl.check(sliding(shape), contact=how, certify=False)
         assert asked == []
         assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
         assert (run.worst["penetration"] is None) == (how == "none")
@@ -186,8 +186,26 @@ def test_the_deepest_of_many_is_found_among_few(top):
         looked.extend(few.tolist())
         return -np.abs(few - top).astype(float)
 
-    assert abs(deepest_of(1000, rated) - top) <= 1
+    places, ratings = rated_places(1000, rated)
+    assert abs(places[0] - top) <= 1
+    assert (np.diff(ratings) <= 0.0).all() and len(set(places.tolist())) == len(places)
     assert len(looked) <= 2 * contact_events.MOST_RATED + 3
+
+
+@pytest.mark.parametrize("first", [-0.2, -0.13, -0.05])
+def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all(first):
+    """Hulls are rated by a few directions, and none of those is the way out of a ball: the best rated is another."""
+    turn = Joint("turn", JointKind.REVOLUTE, "ground", "bar", np.eye(4), np.array([0.0, 0.0, 1.0]))
+    robot = Robot("arm", ("ground", "bar"), (turn,), (Body("bar", cl.box((0.8, 0.05, 0.05))),))
+    angles = np.linspace(first, 0.3, 25)
+    path = Trajectory(np.arange(25.0), ("turn",), angles[:, None])
+    pose = np.eye(4)
+    pose[:3, 3] = 0.37, 0.075, 0.03
+    case = Case(
+        "pass", (PlacedRobot(robot, path),), (Obstacle(Body("ball", cl.sphere(0.1)), pose),)
+    )
+    every, chosen = (cl.check(case, contact=what).worst for what in ("every", "events"))
+    assert chosen["penetration"] == every["penetration"] and chosen["step"] == every["step"]
 
 
 def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():

@@ -22,11 +22,12 @@ from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
 from clearance.simulate.contact.events import (
+    MOST_DEEPER,
     MOST_RATED,
     ContactEvent,
-    deepest_of,
     events_of,
     hull_depths,
+    rated_places,
 )
 from clearance.simulate.contact.rows import ContactRows
 from clearance.simulate.contact.work import ContactWork
@@ -143,14 +144,35 @@ class _OverlapFinder:
             row = event.rows[n_rows // 2]
             return int(row), self._bounded(i_pair, int(steps[row]), budget.why)
         pair = self._pair(i_pair)
-        if isinstance(pair, str):
+        if isinstance(pair, str) or n_rows == 1:
             row = event.rows[n_rows // 2]
-        else:
-            by_volume = pair.is_rated_by_volume
-            self._made[i_pair] = pair = self._near(pair, i_pair, steps[event.rows])
-            rated = partial(self._rated, pair, i_pair, steps[event.rows], by_volume)
-            row = event.rows[deepest_of(n_rows, rated, *([MOST_VOLUMES] if by_volume else []))]
-        return int(row), self.contact(int(steps[row]), i_pair)
+            return int(row), self.contact(int(steps[row]), i_pair)
+        by_volume = pair.is_rated_by_volume
+        self._made[i_pair] = pair = self._near(pair, i_pair, steps[event.rows])
+        rated = partial(self._rated, pair, i_pair, steps[event.rows], by_volume)
+        if by_volume:
+            row = event.rows[rated_places(n_rows, rated, MOST_VOLUMES)[0][0]]
+            return int(row), self.contact(int(steps[row]), i_pair)
+        places, depths = rated_places(n_rows, rated)
+        return self._deepest_by_hulls(i_pair, event.rows[places], depths, steps, budget)
+
+    def _deepest_by_hulls(
+        self,
+        i_pair: int,
+        rows: np.ndarray,
+        depths: np.ndarray,
+        steps: np.ndarray,
+        budget: ContactWork,
+    ) -> tuple[int, Contact]:
+        """The deepest of some rows; `depths` [m], decreasing: none is deeper than that."""
+        best, found = int(rows[0]), self.contact(int(steps[rows[0]]), i_pair)
+        for row, depth in zip(rows[1:MOST_DEEPER].tolist(), depths[1:].tolist(), strict=False):
+            if depth <= found.penetration or not budget.take_deeper():
+                break
+            other = self.contact(int(steps[row]), i_pair)
+            if other.penetration > found.penetration:
+                best, found = row, other
+        return best, found
 
     def _near(self, pair: BodyPair, i_pair: int, steps: np.ndarray) -> BodyPair:
         """The pair with what of large solids can be reached in an event."""

@@ -16,6 +16,9 @@ from clearance.geometry.envelope import TWENTY_SIX
 MOST_RATED = 32
 """Steps of an event that are rated, evenly spread; as many again on both sides of the best."""
 
+MOST_DEEPER = 32
+"""Steps of an event that are worked out after its best rated one, as long as they may be deeper."""
+
 MOST_NORMALS = 32
 """Normals of a body along which hulls are rated."""
 
@@ -43,24 +46,24 @@ def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[ContactEvent]:
             yield ContactEvent(int(pairs[rows[0]]), rows)
 
 
-def deepest_of(
+def rated_places(
     n_steps: int, rated: Callable[[np.ndarray], np.ndarray], most: int = MOST_RATED
-) -> int:
-    """The place of greatest rating among so many of `n_steps` places, then among as many about it; the first.
+) -> tuple[np.ndarray, np.ndarray]:
+    """At most `most` of `n_steps` places and as many about the best of them, with their ratings, greatest first.
 
     Args:
         rated: the ratings of some places.
     """
-    if n_steps == 1:
-        return 0
-    few = np.unique(np.linspace(0, n_steps - 1, min(n_steps, most)).round().astype(np.int64))
-    best = int(np.argmax(rated(few)))
-    if len(few) == n_steps:
-        return best
-    low, high = few[max(0, best - 1)], few[min(len(few) - 1, best + 1)]
-    near = np.unique(np.linspace(low, high, min(high - low + 1, most)).round().astype(np.int64))
-    near = np.union1d(near, few[best])
-    return int(near[np.argmax(rated(near))])
+    places = np.unique(np.linspace(0, n_steps - 1, min(n_steps, most)).round().astype(np.int64))
+    ratings = rated(places)
+    if len(places) < n_steps:
+        best = int(np.argmax(ratings))
+        low, high = places[max(0, best - 1)], places[min(len(places) - 1, best + 1)]
+        near = np.linspace(low, high, min(high - low + 1, most)).round().astype(np.int64)
+        near = np.setdiff1d(near, places)
+        places, ratings = np.append(places, near), np.append(ratings, rated(near))
+    order = np.lexsort((places, -ratings))
+    return places[order], ratings[order]
 
 
 def hull_depths(

@@ -31,6 +31,7 @@ class ContactWork:
 
     n_triangles: int
     left: int = field(default_factory=lambda: WORK)
+    left_for_deeper: int = field(default_factory=lambda: WORK // 2)
 
     @property
     def why(self) -> str:
@@ -44,4 +45,12 @@ class ContactWork:
         if work > self.left:
             return False
         self.left -= work
+        return True
+
+    def take_deeper(self) -> bool:
+        """True if one more overlap may be worked out to find a deeper one; it is counted then, by itself."""
+        work = ROW + PER_TRIANGLE * self.n_triangles
+        if work > self.left_for_deeper:
+            return False
+        self.left_for_deeper -= work
         return True
