@@ -194,7 +194,7 @@ def test_the_deepest_of_many_is_found_among_few(top):
 
 @pytest.mark.parametrize("first", [-0.2, -0.13, -0.05])
 def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all(first):
-    """Hulls are rated by a few directions, and none of those is the way out of a ball: the best rated is another."""
+    """A few directions rate hulls, none of them the way out of a ball: the best rated step is not the deepest."""
     turn = Joint("turn", JointKind.REVOLUTE, "ground", "bar", np.eye(4), np.array([0.0, 0.0, 1.0]))
     robot = Robot("arm", ("ground", "bar"), (turn,), (Body("bar", cl.box((0.8, 0.05, 0.05))),))
     angles = np.linspace(first, 0.3, 25)
