@@ -100,6 +100,7 @@ def _of_section(
     if answer.certificate is not None:
         between = proven_between(pairs, steps, answer.certificate.gap)
         expected_there = expected_between(found, answer.certificate, expected)
+    expected = np.where(found.touches(slice(None)), 0.0, expected)  # nothing is left of contact
     expected = np.maximum(expected, steps.proven)  # no estimate says less than a proof
     return SectionBudget(answer, pairs, steps, between, expected, expected_there)
 

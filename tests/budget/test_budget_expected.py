@@ -190,3 +190,10 @@ def test_what_is_expected_of_a_motion_is_never_more_than_what_occurs_in_it(heigh
     found, truth = (least_expected(record.budget[0]) for record in (coarse, fine))
     assert found <= coarse.worst.clearance < 0.02
     assert found == pytest.approx(truth, abs=1e-3)
+
+
+def test_a_contact_at_samples_leaves_nothing_to_be_expected():
+    """The arm is in the post at its first two samples and far from it at the last."""
+    budget = Budget({"arm": RobotTolerance({"shoulder": JointTolerance(1e-3)})})
+    case = sweeping([[0.0, 0.0], [0.001, 0.0], [1.0, 0.0]])
+    assert least_expected(cl.check(case, tolerance=budget).record.budget[0]) <= 0.0
