@@ -83,4 +83,4 @@ def hull_depths(
         turns, shifts = b_from_a[i : i + at_once, :3, :3], b_from_a[i : i + at_once, :3, 3]
         lowest = (directions @ turns @ corners_a.T).min(axis=2) + shifts @ directions.T
         found.append((highest - lowest).min(axis=1))
-    return np.concatenate(found)
+    return np.concatenate([np.empty(0), *found])  # no step may be near the best
