@@ -42,10 +42,11 @@ def _found(record: Record, most: int | None) -> tuple[PairMinimum, ...]:
     for rule in record.rules:
         own = [one for one in sampled if one.rule == rule.name]
         within = max(rule.limits.warn, rule.limits.fail)
+        seen = _with_seen(rule, own)
         if rule.pairs is None or not can_be_alone(rule, within):
-            found += _with_seen(rule, own)
+            found += seen
         else:
-            found += _RuleMinima(rule, within).of(own, most)
+            found += _RuleMinima(rule, within).of(seen, most)
     return tuple(sorted(found, key=lambda one: one.clearance)[:most])
 
 

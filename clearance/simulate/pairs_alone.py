@@ -150,16 +150,21 @@ class _Path:
     def least(self, place: int, clearance: float, rule: str) -> tuple[float, Moment | None]:
         """For a pair of the section: its proven bound [m] up to a clearance [m], and the moment of a lower one."""
         section = self.answer.section
-        distance = clearance + section.padding
-        bounds = self.proven(np.array([place]), distance, FAR_GAP * distance)
-        if not len(bounds.lower):
-            return clearance, None
+        nearest, distance, seen = clearance + section.padding, np.inf, None
+        while nearest < 0.5 * distance:  # the gap was of a clearance far above the least
+            distance = nearest
+            bounds = self.proven(np.array([place]), distance, FAR_GAP * distance)
+            if not len(bounds.lower):
+                return clearance, None
+            step = int(np.argmin(np.where(bounds.pair >= 0, bounds.upper, np.inf)))
+            if bounds.pair[step] >= 0:
+                nearest, seen = float(bounds.upper[step]), (step, float(bounds.share[step]))
         proven = float(bounds.lower.min()) - section.padding
-        step = int(np.argmin(np.where(bounds.pair >= 0, bounds.upper, np.inf)))
-        if bounds.pair[step] < 0:
+        if seen is None:
             return proven, None
+        step, share = seen
         moments = MomentQuery(section.phase.case, section.phase.motions, section.pairs)
-        found = moments.between(step, float(bounds.share[step]), place)
+        found = moments.between(step, share, place)
         return proven, replace(
             found,
             step=found.step + section.phase.first,

@@ -57,6 +57,16 @@ def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
     assert sampled["other"] > 0.5
 
 
+@pytest.mark.parametrize("fail", [0.0, 0.0029])
+def test_the_least_of_the_nearest_pair_is_that_of_the_run(fail):
+    """From samples half a metre away, a hundredth of the samples' clearance is more than the dip is deep."""
+    case = sweeping(THROUGH, PAST)
+    record = cl.check(replace(case, limits=cl.Limits(fail=fail))).record
+    (nearest,) = motion_minima(record, 1)
+    assert nearest.clearance == record.worst.clearance
+    assert nearest.proven <= nearest.clearance < nearest.proven + 2e-4
+
+
 def test_the_first_few_are_those_of_all():
     record = cl.check(sweeping(TWICE, PAST)).record
     every = motion_minima(record)
@@ -89,6 +99,12 @@ def test_where_no_pair_can_be_proven_by_itself_those_that_the_proof_saw_nearest_
     found = statuses(two_posts())
     assert found["fore", "post"] == (pytest.approx(0.003, abs=1.1e-4), "violated")
     assert found["fore", "other"][1] == "clear"  # hidden by the first
+
+
+def test_a_hidden_pair_that_comes_much_nearer_than_at_its_samples_is_told_to_a_hundredth():
+    record = cl.check(replace(two_posts(), limits=cl.Limits())).record
+    other = next(one for one in motion_minima(record) if one.obstacle == "other")
+    assert 0.0038 < other.proven <= other.clearance < other.proven + 2e-4
 
 
 def test_without_a_proof_they_are_of_the_samples():
