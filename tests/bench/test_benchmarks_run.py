@@ -85,3 +85,10 @@ def test_contact_tells_what_the_deepest_moments_cost(tmp_path):
     assert row["case"] == "torus_2000" and int(row["events"]) == 1
     assert 0 < int(row["steps_in_contact"]) == int(row["rows"])
     assert 0.0 < float(row["deepest_at_least_mm"]) <= float(row["deepest_mm"]) < 500.0
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout of git")
+def test_the_fence_finds_the_last_commit_the_same():
+    said = ran("fence.py", "HEAD", "--cases", "box_box", "--cells", 1, "--passes", 1)
+    assert [line.split()[0] for line in said.splitlines()] == ["box_box", "cell", "0"]
+    assert said.endswith("0 differ\n")
