@@ -6,7 +6,6 @@ Not for: finding what is left at each step (`proven`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import cached_property, partial
 from typing import TypeVar
 
@@ -104,12 +103,7 @@ class WorstMoments(LazyItems[BudgetMoment]):
                 section.phase.case, what.budget, _witness(low, moment)
             )
             expected = max(moment.clearance - float(taken[0]) - section.padding, low.proven)
-        told = replace(
-            moment,
-            step=moment.step + section.phase.first,
-            clearance=moment.clearance - section.padding,
-            rule=self._rule,
-        )
+        told = moment.of_run(section.phase.first, section.padding, self._rule)
         return BudgetMoment(
             told, low.proven, expected, LazyItems(lambda: self._sources(low, moment))
         )

@@ -91,10 +91,6 @@ def _moments(rule: RuleAnswer, start: float, end: float) -> Iterator[Moment]:
                 query = MomentQuery(case, phase.motions, answer.section.pairs)
                 moment = query.between(step, share, 0, touches=True)
                 exact = bool(found.exact[0])
-                yield replace(
-                    moment,
-                    step=moment.step + phase.first,
-                    clearance=moment.clearance - answer.section.padding,
-                    rule=rule.name,
-                    depth=Depth(found.penetration, found.penetration_at_least, exact),
-                )
+                depth = Depth(found.penetration, found.penetration_at_least, exact)
+                told = moment.of_run(phase.first, answer.section.padding, rule.name)
+                yield replace(told, depth=depth)

@@ -6,6 +6,7 @@ Not for: finding which moment is the worst (`measure`, `certify`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -61,6 +62,15 @@ class Moment:
     touches: bool = False
     time_b: float | None = None
     depth: Depth | None = None
+
+    def of_run(self, first: int, padding: float, rule: str) -> Moment:
+        """The same moment of a section as the run reports it.
+
+        Args:
+            first: the step of the run at which the section begins. padding: [m] by which clearances are reduced.
+            rule: what judges the pair.
+        """
+        return replace(self, step=self.step + first, clearance=self.clearance - padding, rule=rule)
 
 
 @dataclass(frozen=True, eq=False)

@@ -165,12 +165,7 @@ class _Path:
         step, share = seen
         moments = MomentQuery(section.phase.case, section.phase.motions, section.pairs)
         found = moments.between(step, share, place)
-        return proven, replace(
-            found,
-            step=found.step + section.phase.first,
-            clearance=found.clearance - section.padding,
-            rule=rule,
-        )
+        return proven, found.of_run(section.phase.first, section.padding, rule)
 
 
 def _alone(answer: SectionAnswer, rows: NearRows, pair: int, within: float) -> SectionAnswer:

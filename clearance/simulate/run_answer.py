@@ -7,7 +7,6 @@ to its fail limit; without rules that is the nearest pair of all. Not for: measu
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -224,13 +223,7 @@ def joined_certificates(
         answer = answers[int(owner[step])]
         assert answer.certificate is not None
         found = answer.certificate.moment_of(step - answer.section.phase.first)
-        return replace(
-            found,
-            step=found.step + answer.section.phase.first,
-            clearance=found.clearance - answer.section.padding,
-            touches=found.touches,
-            rule=rule,
-        )
+        return found.of_run(answer.section.phase.first, answer.section.padding, rule)
 
     certificates = [answer.certificate for answer in answers if answer.certificate is not None]
     return Certificate(

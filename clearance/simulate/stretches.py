@@ -7,7 +7,6 @@ that is more. Parts that are not proven belong to the stretch. Not for: whether 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -157,10 +156,7 @@ class RuleStretches:
             moments = MomentQuery(phase.case, phase.motions, section.pairs)
             pair = int(parts.pair[row])
             found = moments.between(step, share, pair) if share > 0.0 else moments.at(step, pair)
-        clearance = found.clearance - section.padding
-        return replace(
-            found, step=found.step + phase.first, clearance=clearance, rule=self.rule.name
-        )
+        return found.of_run(phase.first, section.padding, self.rule.name)
 
 
 def joined_spans(spans: np.ndarray) -> np.ndarray:
