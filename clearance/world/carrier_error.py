@@ -45,7 +45,7 @@ class CarrierError:
 
     @property
     def moment(self) -> str:
-        """When it is made, in words; empty for now."""
+        """The moment in words; empty for the present one."""
         return f"{self.deed} ({self.time:.9g} s)" if self.deed else ""
 
     @property

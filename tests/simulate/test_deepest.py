@@ -91,6 +91,6 @@ def test_a_cloud_has_no_depth_and_a_body_that_has_is_worse():
 
 
 def test_no_more_steps_than_were_rated_have_no_more_depths():
-    """An event of which all steps about the best are rated already."""
+    """All steps near the best one may be rated already."""
     cube = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
     assert hull_depths(cube, cube, np.eye(3), np.empty((0, 4, 4))).shape == (0,)

@@ -62,7 +62,7 @@ def trajectory_of_states(
     are between their own samples.
 
     Args:
-        turns: names the joints that the robot can move; empty where it is not known.
+        turns: names the joints that the robot can move; empty if the robot is not known.
         gaps: what joints do where they are not told of for long, one of `GAPS`; with "hold", after their last
             message too.
         wrapping: joints of which whole turns may have been taken off; any where it is not known.

@@ -58,8 +58,8 @@ def read_bag(
     """The trajectory of the topic that is meant.
 
     Args:
-        turns: names the joints that the robot can move; empty where it is not known. wrapping: those of which a
-            recording may have taken whole turns off; None where that is not known.
+        turns: names the joints that the robot can move; empty if the robot is not known.
+        wrapping: joints that a recording may have reduced by whole turns; None if they are not known.
 
     Raises:
         BadInput: with the topic. Unavailable: rosbags is not installed.
