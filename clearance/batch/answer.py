@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter, defaultdict
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import zip_longest
 from operator import itemgetter
@@ -29,7 +29,6 @@ from clearance.batch.shared_waivers import (
 )
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
-from clearance.late_dataclass import dataclass
 
 STALE = "stale waiver"
 

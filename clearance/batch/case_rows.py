@@ -6,6 +6,7 @@ Not for: what they come to (`answer`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -17,7 +18,6 @@ from clearance.batch.digest_table import NONE
 from clearance.batch.outcome import Outcome
 from clearance.batch.rows import VERDICT, error_row
 from clearance.batch.store import Store
-from clearance.late_dataclass import dataclass
 
 PART = 512
 """Rows that are read at a time."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,6 @@ from clearance.findings.comparison import Comparison, FindingChange, compared
 from clearance.findings.doubts import Doubt
 from clearance.findings.finding import AppliedWaiver, Finding
 from clearance.findings.findings_file import FindingList, conditions_in
-from clearance.late_dataclass import dataclass
 
 _COLUMNS = (
     "case",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import glob
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 
@@ -19,7 +19,6 @@ from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import read_bytes
 from clearance.load.schema.manifest import Manifest, TrajectoryOptions, is_manifest, load_manifest
 from clearance.load.tolerance.tolerance_file import tolerance_digest

@@ -9,7 +9,7 @@ import json
 import time
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -20,7 +20,6 @@ from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import ClearanceError, Incomplete
-from clearance.late_dataclass import dataclass
 from clearance.load.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.files.mesh_paths import variables_of
 from clearance.load.robot.urdf.xacro_variables import variables_asked

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.load.tolerance.tolerance_file import tolerance_digest, with_tolerance
 from clearance.run import Question
 from clearance.run.question import with_levels

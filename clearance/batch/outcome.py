@@ -6,12 +6,11 @@ Not for: measuring them (`run`), and what is written of them (`answer`).
 from __future__ import annotations
 
 from array import array
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from clearance.batch.cases import SomeOrAll
 from clearance.batch.digest_table import NONE
 from clearance.batch.measuring import Fault
-from clearance.late_dataclass import dataclass
 from clearance.world.waiver import Waiver
 
 

@@ -10,7 +10,7 @@ import json
 import os
 from array import array
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from clearance.batch.cases import SomeCases
@@ -20,7 +20,6 @@ from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.outcome import Outcome
 from clearance.batch.store import MOST_TEXTS, Store
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import InputFiles
 from clearance.load.files.lookups import leads_to
 from clearance.load.motion.bag_files import files_of

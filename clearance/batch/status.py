@@ -5,6 +5,8 @@ Not for: the answer (`answer`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.faults import faults_in
 from clearance.batch.file_hashes import FileHashes
@@ -14,7 +16,6 @@ from clearance.batch.plan import planned
 from clearance.batch.rows import ERROR
 from clearance.batch.store import Store
 from clearance.batch.tables import CASES
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

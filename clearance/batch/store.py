@@ -12,7 +12,7 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import accumulate
 from pathlib import Path
 
@@ -25,7 +25,6 @@ from clearance.batch.row_index import RowIndex
 from clearance.batch.rows import STORED
 from clearance.batch.segments import generation_of, is_whole, name_of, rows_in
 from clearance.errors import Incomplete, Unwritable, unwritable
-from clearance.late_dataclass import dataclass
 from clearance.report.folder import is_partial, write_file, written_file
 
 FORMAT = 1

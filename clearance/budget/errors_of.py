@@ -8,7 +8,7 @@ changed hands has those of its carriers at these moments too. Not for: what the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from clearance.errors import BadInput
 from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
-from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import IN_WORLD, Layout, SeenBody
 from clearance.world.body import Obstacle
 from clearance.world.budget import (

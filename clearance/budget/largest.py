@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -18,7 +18,6 @@ from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.kernels.motion.certify_pair import FINEST
-from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget
 from clearance.world.case import Case

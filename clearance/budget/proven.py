@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
 
@@ -34,7 +34,6 @@ from clearance.kernels.budget.sweep_state import (
     new_state,
 )
 from clearance.kernels.motion.joint_path import JointPath
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.measurement import Measurement

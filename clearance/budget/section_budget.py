@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.budget.proven import PairsWithErrors
 from clearance.kernels.budget.sweep import BudgetRows
-from clearance.late_dataclass import dataclass
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
 

@@ -7,7 +7,7 @@ error, times their factor, so that what it does to both bodies is added up with 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,6 @@ from clearance.budget.errors_of import (
     surface_of,
 )
 from clearance.kernels.motion.kinematics import NO_PARENT
-from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
     Budget,

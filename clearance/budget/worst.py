@@ -6,6 +6,7 @@ Not for: finding what is left at each step (`proven`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TypeVar
 
@@ -25,7 +26,6 @@ from clearance.budget.sources import (
     units_of,
     with_sizes,
 )
-from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
 from clearance.simulate.contact.rows_on_demand import RowsOnDemand
 from clearance.simulate.moment import Moment, MomentQuery

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from clearance.batch.answer import answer_of
@@ -21,7 +22,6 @@ from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
-from clearance.late_dataclass import dataclass
 from clearance.progress import COMPILING
 from clearance.simulate.parts import usable_cores
 from clearance.world.waiver import Waiver

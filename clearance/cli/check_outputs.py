@@ -6,12 +6,12 @@ Whatever can be refused is refused before anything is measured. Not for: what is
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.cli.for_ci import CiOutputs
 from clearance.cli.more_files import MoreFiles
-from clearance.late_dataclass import dataclass
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +15,6 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli.options import OutputPath, in_order
-from clearance.late_dataclass import dataclass
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison

@@ -6,13 +6,13 @@ Whatever can be refused is refused before anything is measured. Not for: what is
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 from clearance.cli.options import OutputPath
-from clearance.late_dataclass import dataclass
 
 if TYPE_CHECKING:
     from clearance.load.motion.trajectory_writer import WrittenTrajectory

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,6 @@ from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
 from clearance.geometry.point_cloud import PointCloud
-from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case

@@ -8,13 +8,13 @@ nearest.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxes, world_boxes
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
-from clearance.late_dataclass import dataclass
 from clearance.simulate.record import Samples
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair

@@ -6,6 +6,7 @@ Not for: the faces that we measure; those stay polygons (`geometry.polyhedron`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy as np
 from clearance.geometry.closing import closing_of
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

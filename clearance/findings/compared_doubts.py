@@ -7,11 +7,11 @@ before. Not for: findings (`comparison`), nor what a doubt is (`doubts`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measurement_conditions import MeasurementConditions
-from clearance.late_dataclass import dataclass
 
 MOST_NAMED = 3
 """Pairs that are named of those that are not measured any more."""

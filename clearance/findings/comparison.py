@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
@@ -20,7 +21,6 @@ from clearance.findings.compared_doubts import (
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measurement_conditions import MeasurementConditions
-from clearance.late_dataclass import dataclass
 from clearance.simulate.status import Status
 
 TOLERANCE = 1e-4

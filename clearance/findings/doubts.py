@@ -7,9 +7,9 @@ the verdict that is drawn from it (`report.verdict`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from clearance.late_dataclass import dataclass
 from clearance.world.notice import Notice, Severity
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import dataclass
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.status import Status
 
 CLEARANCE = "clearance"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,7 +16,6 @@ from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.measurement_conditions import MeasurementConditions, conditions_of
 from clearance.findings.of_record import findings_of, why_incomplete
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import read_bytes
 from clearance.load.schema.errors import place
 from clearance.simulate.record import Record

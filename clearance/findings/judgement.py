@@ -7,7 +7,7 @@ Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`repor
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -15,7 +15,6 @@ from weakref import WeakKeyDictionary
 from clearance.findings.finding import UNPROVEN, AppliedWaiver, Finding, FindingName
 from clearance.findings.of_rule import RuleFindings
 from clearance.findings.standing import code_of, why_undecided
-from clearance.late_dataclass import dataclass
 from clearance.simulate.record import PairTest, Record
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status

@@ -10,10 +10,10 @@ import hashlib
 import itertools
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Literal
 from weakref import WeakKeyDictionary
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.fingerprint import robot_digest
 from clearance.simulate.names import pair_names
 from clearance.simulate.record import Record

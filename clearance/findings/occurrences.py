@@ -9,12 +9,12 @@ pairs are near when (`simulate.rule_pairs`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Limits
 
 HYSTERESIS = 0.001

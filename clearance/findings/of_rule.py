@@ -7,7 +7,7 @@ nothing is below that, the nearest pair has one. Not for: profiles and joints (`
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,7 +16,6 @@ import numpy as np
 from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
 from clearance.findings.occurrences import NearCourse, release_level
 from clearance.findings.standing import why_undecided
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate, contact_is_open
 from clearance.simulate.moment import Moment
 from clearance.simulate.pairs_alone import can_be_alone, near_alone

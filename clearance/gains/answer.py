@@ -6,7 +6,7 @@ Not for: how it is written down (`changed_files`), told (`sentences`) or shown (
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Unpack
@@ -45,7 +45,6 @@ from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
-from clearance.late_dataclass import dataclass
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
 

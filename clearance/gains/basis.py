@@ -6,11 +6,10 @@ Source: de Boor 1978, by scipy's `BSpline`. Not for: what offsets do (`offsets`)
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-
-from clearance.late_dataclass import dataclass
 
 DEGREE = 3
 

@@ -10,7 +10,7 @@ Not for: changes of place (`search`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import moves_with_joints
 from clearance.simulate.record import Record

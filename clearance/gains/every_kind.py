@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import Gain, gain
 from clearance.gains.request import OWN
 from clearance.gains.sentences import bound_text, size_text
-from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
 from clearance.world.case import Case, PlacedRobot
 

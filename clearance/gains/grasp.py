@@ -9,11 +9,11 @@ part is where (`world.hands`), carriers that are such parts themselves, of which
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.world.forest import WORLD, forest_of, link_poses_at
 from clearance.world.pairs import BodyIndex

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS

@@ -6,12 +6,11 @@ Not for: what is too far to reach (`lower_bounds`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
 from clearance.simulate.transfers import CombinedTransfers, Transfers

@@ -7,7 +7,7 @@ that are as large the least in sum is taken. Not for: by how much (`search`).
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -22,7 +22,6 @@ from clearance.gains.programme import Box, Inequalities, reachable, within_reach
 from clearance.gains.shortfalls import Rows
 from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import motion_of_frame, moves_apart
 from clearance.simulate.transfers import Transfers

@@ -5,7 +5,7 @@ Not for: one robot (`offsets`).
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,6 @@ import numpy as np
 from clearance.gains.offsets import JointOffsets, least_greatest
 from clearance.gains.programme import Box, Inequalities
 from clearance.gains.shortfalls import Rows
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.transfers import CombinedTransfers
 from clearance.world.case import Case

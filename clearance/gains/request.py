@@ -6,6 +6,7 @@ Not for: whether a case has what is named (`answer`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, TypedDict
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
 from clearance.gains.tool_poses import ToolKeep
 from clearance.gains.turn import Turn
-from clearance.late_dataclass import dataclass
 
 KINDS = ("waypoints", "obstacle", "base", "timing")
 

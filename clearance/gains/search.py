@@ -6,7 +6,7 @@ by least. What is measured decides: a step that makes it worse halves the region
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -23,7 +23,6 @@ from clearance.gains.shortfalls import (
     proven,
     raised,
 )
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
 from clearance.world.case import Case

@@ -9,7 +9,7 @@ Not for: by how much (`search`).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
 from clearance.geometry.pose import inverse, pose_from_quaternion
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
 from clearance.simulate.transfers import Transfers

@@ -6,7 +6,7 @@ Not for: what may be changed (`shift`, `offsets`), nor by how much it then is (`
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -14,7 +14,6 @@ import numpy as np
 
 from clearance.findings.standing import code_of
 from clearance.gains.moments import with_moments
-from clearance.late_dataclass import dataclass
 from clearance.run import Question, answer
 from clearance.simulate.approaches import Approach, OfPair, approaches
 from clearance.simulate.certificate import motion_codes

@@ -6,13 +6,13 @@ of them (`tool_poses`, `tool_path`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, Links
-from clearance.late_dataclass import dataclass
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import links_of_robot, moving_positions, poses_by_link
 

@@ -7,7 +7,7 @@ for: how far the tool is off between samples (`tool_path_error`), limits of join
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +23,6 @@ from clearance.gains.tool_joints import REACHED, joints_for, least_squares
 from clearance.gains.tool_limits import limit_rows
 from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot

@@ -8,6 +8,7 @@ matrices, whose difference has the length sqrt(8) sin(angle / 2). Not for: what 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,6 @@ import numpy as np
 from clearance.gains.between_samples import values_between
 from clearance.gains.tool import Tool
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING
-from clearance.late_dataclass import dataclass
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import extremes_of, joint_courses
 from clearance.world.joint_speeds import greatest_rates

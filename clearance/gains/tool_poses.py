@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from clearance.errors import BadDimension, BadInput
 from clearance.gains.shortfalls import Rows
 from clearance.gains.tool import Tool, apart
 from clearance.gains.turn import ARM
-from clearance.late_dataclass import dataclass
 
 _SIDES = np.array([side for side in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(side)])
 DIRECTIONS = _SIDES / np.linalg.norm(_SIDES, axis=1)[:, None]

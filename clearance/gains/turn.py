@@ -6,12 +6,13 @@ far the point is from the axis. Not for: by how much (`search`), what is moved (
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.errors import BadInput, NotFinite
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import quaternions_of
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.world.pairs import BodyIndex
 from clearance.world.pose_table import PoseTable

@@ -8,6 +8,7 @@ exactly.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +16,6 @@ import numpy as np
 
 from clearance.errors import BadPolygon
 from clearance.extras import importing, is_installed
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ bound it, and `note` says in one line what they are. Not for: measuring distance
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -18,7 +19,6 @@ from clearance.geometry import boolean, decompose
 from clearance.geometry.envelope import envelope, is_clearly_concave
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
-from clearance.late_dataclass import dataclass
 from clearance.tolerance import TESSELLATION
 
 FLAT = 1e-9

@@ -9,6 +9,7 @@ for: reading files (room `load`) and making shapes (`shapes`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from typing import Any, Self
@@ -29,7 +30,6 @@ from clearance.geometry.nesting import inside_out_components
 from clearance.geometry.planes import Planes, planes_of
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.topology import Topology, component_volumes, topology_of
-from clearance.late_dataclass import dataclass
 
 
 def require_polyhedron(given: object, where: str) -> Polyhedron:

@@ -6,6 +6,7 @@ the kernels walk on are made when first asked for and then kept. Not for: concav
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
@@ -29,7 +30,6 @@ from clearance.geometry.polytope_hull import (
 )
 from clearance.kernels.polytope.body import PackedBody
 from clearance.kernels.polytope.faces import face_areas, ring_moments
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -5,11 +5,12 @@ Not for: fitting points, or arcs that need not follow the curve's parameter.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.kernels.curve.arc import CX, EPS, RADIUS, S0, SENSE, X0, X1, distances_to_arcs
 from clearance.kernels.curve.arc_fit import fit_leaves
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve, checked_number
 from clearance.tolerance import FINEST_BIARC

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.assembly import assembled
 from clearance.planar.curve_facts import CurveFacts
 from clearance.planar.entries import checked_transform

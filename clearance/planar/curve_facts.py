@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ import numpy as np
 from clearance.kernels.curve.arc_fit import Leaves, box_tree, fit_leaves
 from clearance.kernels.curve.bezier import Pieces, control_box, points_on, rough_joints
 from clearance.kernels.hausdorff.segments import segment_boxes
-from clearance.late_dataclass import dataclass
 from clearance.planar.entries import BadCurve
 from clearance.planar.extent import least_box
 from clearance.tolerance import BIARC, CLOSED, MEETING, TANGENT, UNIT_ROUNDOFF

@@ -6,12 +6,12 @@ the length between, which `spacing` states. Not for: the greatest distance, whic
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from clearance.kernels.curve.feet import feet
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.entries import BadCurve, checked_number

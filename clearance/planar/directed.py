@@ -7,12 +7,12 @@ Not for: searching.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput
 from clearance.kernels.curve.pair import CurveArrays
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 
 KINDS = ("end", "common_normal", "self_bisector")

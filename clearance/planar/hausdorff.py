@@ -7,13 +7,13 @@ numbers get names. Not for: profiles along a curve (`deviation`), the least dist
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
 from clearance.kernels.hausdorff.both_directions import both_directions
 from clearance.kernels.hausdorff.state import SearchGoal
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.directed import DirectedDistance, SearchTally, arrays_of, directed_of, placed
 from clearance.planar.entries import checked_number

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.kernels.hausdorff.gap import least_distance
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.tolerance import LEAST_GAP

@@ -8,9 +8,10 @@ Not for: evaluation at a parameter of the caller's (`curve`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.assembly import assembled
 from clearance.planar.curve import Curve
 from clearance.tolerance import WEIGHTS

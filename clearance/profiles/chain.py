@@ -8,13 +8,13 @@ points of a body (`chain_bounds`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from clearance.kernels.motion.kinematics import BALL, NO_COLUMN, NO_PARENT, Links
-from clearance.late_dataclass import dataclass
 from clearance.profiles.course import columns_at, located, positions_at, rates_about
 from clearance.world.case import Case
 from clearance.world.forest import carried_by, forest_of

@@ -5,10 +5,11 @@ How far it may is bounded by `chain_bounds`. Not for: clearances between the ste
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 from clearance.profiles.chain import Chain
 from clearance.profiles.chain_bounds import ChainBounds
 from clearance.profiles.plane import Plane

@@ -5,11 +5,11 @@ Not for: reading files (`outline_file`) or drawing (`picture`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.deviation import Deviation, deviation
 from clearance.planar.hausdorff import Hausdorff, hausdorff
 from clearance.profiles.outline_file import DrawnOutline

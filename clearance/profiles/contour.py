@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import ContourPieces

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff
 from clearance.sketch import Sketch

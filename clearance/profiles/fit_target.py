@@ -5,9 +5,10 @@ Not for: the search (`fit_search`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
 from clearance.profiles.fit_placed import PlacedShape

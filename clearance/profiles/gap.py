@@ -6,11 +6,11 @@ Not for: swept bounds, which come on top (`answer`), or searching (`fit_search`)
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined

@@ -8,11 +8,12 @@ be trusted. Not for: the region itself (`sweep`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.errors import BadDimension
 from clearance.kernels.profile.outline_arcs import arcs_of_ring
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
 from clearance.profiles.contour import Contour, joined

@@ -5,6 +5,7 @@ Not for: writing (`profile_file`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +14,6 @@ import numpy as np
 
 from clearance.errors import BadShape, BadSyntax, MissingFile, at
 from clearance.kernels.curve.arc import RADIUS
-from clearance.late_dataclass import dataclass
 from clearance.plain_yaml import plain_data
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve

@@ -6,11 +6,11 @@ Not for: what is projected on it (`sweep`) or cut by it (`section`).
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 
 _AXES = {"xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 VALID = 'xy, xz, yz or "px py pz nx ny nz" (a point and a normal)'

@@ -5,13 +5,12 @@ Not for: making one from a motion (`sweep`), or files (`profile_file`).
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour, joined
 

@@ -9,6 +9,7 @@ faces at the first instant only edges that may bound something need be looked at
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -17,7 +18,6 @@ from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, add_cover
 from clearance.kernels.profile.swept_hulls import edge_hulls, triangle_hulls
-from clearance.late_dataclass import dataclass
 from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 

@@ -6,13 +6,13 @@ Not for: sweeping them (`sweep`).
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from clearance.errors import BadShape, UnknownLink, UnknownObstacle, nearest_name
-from clearance.late_dataclass import dataclass
 from clearance.profiles.chain import Chain, chain_of
 from clearance.profiles.chords import BodyKnots, knots_of, standing
 from clearance.profiles.plane import Plane

@@ -8,6 +8,7 @@ distance from its own centroid. Not for: the paper's way (`common_point_paper`),
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,7 +22,6 @@ from clearance.kernels.polytope.depth import (
     WARM,
     deepen_all,
 )
-from clearance.late_dataclass import dataclass
 
 ROUNDING = 16 * 2.0**-53
 """[-] What counts as touching, relative to the bodies' size: a few roundings of the planes' offsets."""

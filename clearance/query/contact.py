@@ -7,7 +7,7 @@ whether bodies are in contact (`distance`), which never depends on parts.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +20,6 @@ from clearance.geometry.point_cloud import require_surface
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.pose import inverse, validated_pose
-from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import ConvexCorners, Penetration, depths_at_most, penetration

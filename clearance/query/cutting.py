@@ -6,6 +6,7 @@ their digits. Not for: deciding whether there is a region (`common_point`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -28,7 +29,6 @@ from clearance.kernels.polytope.cut import (
 )
 from clearance.kernels.polytope.faces import face_rings, trivalent_moments
 from clearance.kernels.polytope.patch import lay_patch, mark_patch
-from clearance.late_dataclass import dataclass
 
 ON_PLANE = 8 * 2.0**-53
 """[-] How far from a plane counts as on it, relative to the greatest coordinate about the inner point."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Future
+from dataclasses import dataclass
 from functools import cached_property
 from threading import Thread
 
@@ -18,7 +19,6 @@ import numpy as np
 from clearance.errors import BadDimension
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
-from clearance.late_dataclass import dataclass
 from clearance.query.common_point import CommonPoint, checked_bodies, common_point
 from clearance.query.cutting import BrokenRim, Cutting, CuttingTask, cut_down, cut_whole
 from clearance.query.duals import dual_region

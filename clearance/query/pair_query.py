@@ -9,6 +9,7 @@ import os
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernels.search.pair_query import POSES_ARE_RIGID, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
-from clearance.late_dataclass import dataclass
 from clearance.query.one_pair import OnePair, answer_rows
 from clearance.query.result import Nearest
 

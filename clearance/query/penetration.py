@@ -8,6 +8,7 @@ be pushed out any farther. Not for: concave bodies (`retreat`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,6 @@ import numpy as np
 from clearance.errors import BadShape
 from clearance.geometry.envelope import TWENTY_SIX
 from clearance.geometry.polytope import Polytope
-from clearance.late_dataclass import dataclass
 
 ROUNDING = 32 * 2.0**-53
 """[-] What upper and lower bound may differ by, relative to the bodies' size: a few roundings of a plane."""

@@ -5,11 +5,12 @@ A region cut in two halves is sewn together here. Not for: finding the region (`
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.geometry.edges import rings_of
 from clearance.kernels.polytope.faces import ring_moments
-from clearance.late_dataclass import dataclass
 from clearance.query.cutting import Cutting, CuttingTask, cut_whole
 
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
-
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

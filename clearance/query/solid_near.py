@@ -5,6 +5,7 @@ Not for: the region itself (`contact`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ import numpy as np
 from clearance.geometry import boolean
 from clearance.geometry.convex_parts import ConvexParts, solid_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 
 LARGE = 5000
 """Triangles from which on it is worth to cut a solid down: one boolean, 0.1 s at 490,000."""

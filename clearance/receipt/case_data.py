@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.receipt.case_errors import errors_of, is_covered, surfaces_of
 from clearance.receipt.proof.joint_paths import arcs_of
 from clearance.receipt.proof.motion_data import NONE, Errors, Joints, Shape, Stretch

@@ -9,13 +9,13 @@ from __future__ import annotations
 import hashlib
 import json
 import lzma
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from clearance.errors import BadSyntax, MissingFile, at, shown
-from clearance.late_dataclass import dataclass
 from clearance.receipt.proof.proving import SIZES, BadEvidence
 
 FILE_NAME = "receipt.bin"

@@ -7,12 +7,11 @@ nor the report beside one (`verifying`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import shown
-from clearance.late_dataclass import dataclass
 from clearance.receipt.case_data import CaseData
 from clearance.receipt.claims import judged, missing
 from clearance.receipt.proof.depths import depths_reached

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from markupsafe import Markup
 
-from clearance.late_dataclass import dataclass
 from clearance.report.markup import element
 
 WIDTH, HEIGHT = 1000, 340

@@ -5,11 +5,11 @@ Not for: judging a step.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.report.motion_intervals import MotionLevels, Span, motion_levels, told_moment
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.record import Record

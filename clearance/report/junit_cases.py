@@ -6,6 +6,7 @@ Not for: writing them (`junit`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from clearance.findings.finding import (
     CLEARANCE,
@@ -17,7 +18,6 @@ from clearance.findings.finding import (
 from clearance.findings.judgement import Judgement, judgement_of
 from clearance.findings.of_budget import of_budget
 from clearance.findings.standing import code_of
-from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import bodies_text, finding_line, waived_text
 from clearance.report.pair_judge import PairJudge
 from clearance.report.rules import name_shown

@@ -6,11 +6,11 @@ A cell is coloured by the rule that judges its pair; of a pair that several judg
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from markupsafe import Markup
 
-from clearance.late_dataclass import dataclass
 from clearance.report.markup import element, section
 from clearance.report.wording import mm, seconds
 from clearance.simulate.status import STATUSES, Status

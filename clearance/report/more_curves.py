@@ -6,10 +6,10 @@ Thinned so that the least of every stretch is kept. Not for: the curve itself (`
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_columns import least_between, least_expected, least_proven
 from clearance.simulate.record import Record
 

@@ -5,13 +5,13 @@ Not for: runs that are not certified (`intervals`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import Record
 from clearance.simulate.rule_answer import standing_worst

@@ -10,11 +10,11 @@ messages, of which none holds all of it.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.load.message.times import split_time
 from clearance.report.actors import paddings_of
 from clearance.report.pair_judge import PairJudge

@@ -5,9 +5,10 @@ Not for: the table of every pair at every step (`tables`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.record import Record
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows

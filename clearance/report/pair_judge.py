@@ -5,7 +5,8 @@ Not for: moments, which know whether bodies touch (`Moment`).
 
 from __future__ import annotations
 
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass
+
 from clearance.report.actors import paddings_of
 from clearance.simulate.record import PairMinimum, Record
 from clearance.simulate.status import status_of

@@ -5,10 +5,11 @@ Not for: reading trajectories (`load`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.findings.finding import Finding
-from clearance.late_dataclass import dataclass
 from clearance.load.motion.trajectory_lines import line_of_sample
 from clearance.simulate.record import Record
 from clearance.world.case import PlacedRobot

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
 from clearance.findings.standing import code_of, why_undecided
-from clearance.late_dataclass import dataclass
 from clearance.report.finding_text import finding_line, waived_lines
 from clearance.report.self_clearance import self_clearance_lines
 from clearance.report.wording import (

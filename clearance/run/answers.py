@@ -7,12 +7,11 @@ asked (`question`), nor what it comes to (`result`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
-from clearance.late_dataclass import dataclass
 from clearance.run.commanded_case import commanded_case
 from clearance.run.notices import notices_of
 from clearance.run.question import Question

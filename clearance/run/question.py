@@ -5,13 +5,12 @@ Not for: answering (`answers`).
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput
-from clearance.late_dataclass import dataclass
 from clearance.simulate.measure import NEEDS
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits

@@ -5,12 +5,12 @@ Not for: finding it (`answers`), nor how a report looks (room `report`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of

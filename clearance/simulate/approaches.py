@@ -7,11 +7,10 @@ direction . (v_b - v_a) in first order. Not for: what moves (`point_motion`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
 from clearance.simulate.overlaps import Overlaps
 from clearance.simulate.point_motion import motion_by_columns

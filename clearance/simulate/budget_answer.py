@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.world.case import Limits
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Limits

@@ -6,6 +6,7 @@ Not for: the clearance at the steps (`measure`), which it starts from.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,7 +22,6 @@ from clearance.kernels.motion.certify import (
 from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
 from clearance.kernels.motion.kinematics import BALL, TURNING, Links
 from clearance.kernels.motion.world import World
-from clearance.late_dataclass import dataclass
 from clearance.ordered import ascending
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.layout import PairsInMotion

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
-from clearance.late_dataclass import dataclass
 from clearance.simulate.asked_positions import AskedPositions
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import pyarrow as pa
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
 from clearance.simulate.parts import BLOCK
 from clearance.world.rules import DEFAULT

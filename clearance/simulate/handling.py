@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.simulate.record import Record
 from clearance.simulate.sections import Section, SectionPlan, section_plan

@@ -7,12 +7,12 @@ pairs where a winding number decides (`kernels.search.containment`); those are i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
-from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.query.inside import PossibleContainment, doubt_of
 from clearance.simulate.sections import Section, SectionPlan

@@ -6,6 +6,7 @@ Not for: the measuring (`measure`) and the motion itself (`world.motion`, `physi
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -16,7 +17,6 @@ from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.world import World
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Case, Limits
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions

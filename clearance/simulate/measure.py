@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +19,6 @@ from clearance.kernels.motion.sweep import sweep
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.sweep_state import NOT_LESS
-from clearance.late_dataclass import dataclass
 from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.measurement import SWEEP_COUNTERS, Measurement, Minima
 from clearance.simulate.parts import blocks, in_order, parts

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-
-from clearance.late_dataclass import dataclass
 
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 

@@ -6,12 +6,11 @@ Not for: finding which moment is the worst (`measure`, `certify`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.world.case import Case
 from clearance.world.forest import forest_of, joined_positions, positions_between

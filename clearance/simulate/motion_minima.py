@@ -6,13 +6,12 @@ Not for: the least clearance at the samples (`Record.pair_minima`), which is the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.pairs_alone import can_be_alone, least_between, near_alone, near_between
 from clearance.simulate.record import PairMinimum, Record

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.pairs import Pair

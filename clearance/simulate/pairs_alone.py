@@ -7,7 +7,7 @@ proven on its own. Not for: the clearance of pairs at the steps (`rule_pairs`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from weakref import WeakKeyDictionary
 
@@ -15,7 +15,6 @@ import numpy as np
 
 from clearance.kernels.motion.certify import CertificateGoal, CertifiedSteps, IntervalBounds
 from clearance.kernels.motion.joint_path import JointPath
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import BEYOND, MOST_PARTS, certify_motion, path_of, prove_path
 from clearance.simulate.measurement import Measurement
 from clearance.simulate.moment import Moment, MomentQuery

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import date
 from functools import cached_property
 from typing import Protocol
@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 import pyarrow as pa
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact.sequence import ContactSequence, StepContact

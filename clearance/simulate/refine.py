@@ -7,11 +7,11 @@ of searches is used up. Not for: the first proof (`certify`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.kernels.motion.certify import CertificateGoal, IntervalBounds
-from clearance.late_dataclass import dataclass
 from clearance.tolerance import SEEN_AT_LEVEL
 
 FINER = 2.0**-10

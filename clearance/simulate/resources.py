@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.simulate.parts import usable_cores
 from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows

@@ -5,11 +5,11 @@ Not for: what a rule comes to as a whole (`record.RuleAnswer`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import motion_codes
 from clearance.simulate.moment import Moment
 from clearance.simulate.name_codes import codes_of

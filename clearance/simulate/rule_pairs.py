@@ -7,11 +7,10 @@ how the rule stands as a whole (`rule_answer`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.measure import NearestPairs, pairs_within
 from clearance.simulate.moment import Moment, MomentQuery
 from clearance.simulate.names import pair_names

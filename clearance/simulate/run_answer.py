@@ -7,11 +7,11 @@ to its fail limit; without rules that is the nearest pair of all. Not for: measu
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate, motion_codes
 from clearance.simulate.measurement import Measurement, Minima
 from clearance.simulate.moment import Moment

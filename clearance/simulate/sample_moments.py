@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.measurement import Measurement
 from clearance.simulate.moment import Moment
 from clearance.world.motion import Motion

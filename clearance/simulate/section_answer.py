@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass
+
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.layout import PairsInMotion
 from clearance.tolerance import AT_LEVEL

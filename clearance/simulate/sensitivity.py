@@ -9,12 +9,12 @@ rows for a search, one pair at many steps (`approaches`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
 from clearance.simulate.moment import Moment
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot

@@ -7,6 +7,7 @@ that is more. Parts that are not proven belong to the stretch. Not for: whether 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from clearance.kernels.motion.certify import CertificateGoal, CertifiedSteps, IntervalBounds
 from clearance.kernels.motion.certify_pair import FINEST
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import finer_path, prove_path
 from clearance.simulate.measure import nearest_at

@@ -7,9 +7,9 @@ it moves follows from how far its carrier does. Not for: which part is where (`w
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.approaches import Approach
 from clearance.simulate.point_motion import Thing, owners_of, things_under
 from clearance.world.case import Case

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from clearance.late_dataclass import dataclass
 from clearance.sketch import rows
 from clearance.sketch.entities import Circle, Entity, Line, Point
 from clearance.sketch.faults import BadConstraint

@@ -9,13 +9,12 @@ whose assumptions are counted: Fig. 13 (a) and (b) lack one edge, (c) is two bod
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
 from clearance.kernels.sketch.graph.plan_steps import IN_BODY, block_of
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True)

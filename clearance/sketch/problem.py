@@ -7,6 +7,7 @@ which is how conflicts are searched.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,6 @@ from clearance.kernels.sketch.graph.graph import (
 from clearance.kernels.sketch.graph.plan import ConstructionPlan, make_plan, peeled_plan
 from clearance.kernels.sketch.solve.place import System
 from clearance.kernels.sketch.solve.start import counts, row_parts
-from clearance.late_dataclass import dataclass
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
 

@@ -6,9 +6,10 @@ of the conflict share the change by least squares.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.sketch.constraints import measured
 from clearance.sketch.problem import Tables, joined
 from clearance.sketch.trials import Trials

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from clearance.errors import BadInput, BadShape, at
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.late_dataclass import dataclass
 from clearance.world.carrier_error import CarrierError
 from clearance.world.mount import Mount
 from clearance.world.padding import checked_padding

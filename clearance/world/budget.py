@@ -7,9 +7,7 @@ Each number is the greatest magnitude of one error, in any direction, at once wi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
-
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass, field
 
 COVERAGE = 3.0
 """[-] How many standard deviations the expected value takes off, if nothing is given."""

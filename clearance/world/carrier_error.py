@@ -9,11 +9,9 @@ from the part. Not for: how large errors are (`budget`), what carries what (`gri
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-
-from clearance.late_dataclass import dataclass
 
 GRASP, RELEASE = "grasp", "release"
 

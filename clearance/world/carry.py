@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from clearance.errors import BadInput, BadTime
-from clearance.late_dataclass import dataclass
 from clearance.world.timing import Window
 
 

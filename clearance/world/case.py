@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, overload
 
@@ -19,7 +19,6 @@ from clearance.errors import (
     at,
 )
 from clearance.geometry.pose import validated_pose
-from clearance.late_dataclass import dataclass
 from clearance.world.bodies_apart import (
     require_names_apart,
     require_other_names,

@@ -5,9 +5,8 @@ Not for: reading it from a file (`load.robot.srdf`), and whether an excuse is ri
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
-
-from clearance.late_dataclass import dataclass
 
 ADJACENT, NEVER = "Adjacent", "Never"
 

@@ -9,12 +9,12 @@ quaternion). Not for: when a part changes hands (`timeline`); a forest is of a c
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput, UnknownLink, at, nearest_name
 from clearance.kernels.motion.kinematics import FIXED, NO_COLUMN, NO_PARENT, Links
-from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell

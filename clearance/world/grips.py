@@ -6,13 +6,12 @@ Not for: which carrier holds which part (`hands`), nor how large errors are (`bu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.late_dataclass import dataclass
 from clearance.world.carrier_error import CarrierError
 from clearance.world.forest import WORLD, forest_of, link_poses_at, links_by_name
 from clearance.world.phase import Phase

@@ -5,11 +5,11 @@ Not for: poses in the world (`kinematics`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.world.mimics import followers, range_of
 from clearance.world.robot import Joint, JointKind, Robot
 

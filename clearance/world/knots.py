@@ -8,12 +8,12 @@ axis at constant speed. A knot has a value on either side, since a table that lo
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
 
 from clearance.errors import BadTime
-from clearance.late_dataclass import dataclass
 from clearance.world.cubic import Cubics, position_on, velocity_on
 from clearance.world.slerp import slerp
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import cubics_of, position_on, velocity_on
 from clearance.world.kinematics import link_poses, moving_positions, moving_velocities

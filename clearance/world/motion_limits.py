@@ -6,9 +6,9 @@ Not for: what is faster than it may be (`joint_speeds`), limits of position (`ro
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from clearance.errors import BadDimension
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True)

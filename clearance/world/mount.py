@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import at
 from clearance.geometry.pose import validated_pose
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,8 @@ Not for: errors (`clearance.errors`), and notes on what loading mended, which ar
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
-
-from clearance.late_dataclass import dataclass
 
 
 class Severity(StrEnum):

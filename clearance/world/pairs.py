@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -12,7 +12,6 @@ import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 from clearance.world.body import Body
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Omission, SelfClearance

@@ -6,10 +6,10 @@ Not for: where phases begin and end (`timeline`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.world.carry import Carry
 from clearance.world.case import Case
 from clearance.world.motion import Motion

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.errors import BadPose, BadShape, BadTime, NotFinite
-from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.slerp import aligned, slerp
 from clearance.world.timing import AS_GIVEN, Timing, require_increasing

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime, MissingKey
-from clearance.late_dataclass import dataclass
 from clearance.world.cubic import positions_along
 from clearance.world.notice import listed
 from clearance.world.timing import Timing

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from clearance.errors import BadDimension, BadInput
-from clearance.late_dataclass import dataclass
 from clearance.world.timing import ALWAYS, Window
 
 DEFAULT = "default"

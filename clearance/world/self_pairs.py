@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from clearance.late_dataclass import dataclass
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import JointKind, Robot
 

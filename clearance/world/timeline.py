@@ -8,12 +8,11 @@ belongs to both, as it is come to and as it is left. Not for: where an actor is 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime, UnknownObstacle, at, nearest_name
-from clearance.late_dataclass import dataclass
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.forest import (

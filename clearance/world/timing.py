@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import BadInput, BadTime
-from clearance.late_dataclass import dataclass
 
 AFTER = ("hold", "loop", "absent")
 """What an actor does after its last sample: it stays there, begins again, or is not in the cell, which it is not

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
-from clearance.late_dataclass import dataclass
 from clearance.tolerance import LARGEST
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing

@@ -6,10 +6,10 @@ Not for: whether a run needs one and keeps to it (`findings.judgement`), nor the
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 from datetime import date
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.world.rules import PairPattern, checked_level, matches
 
 

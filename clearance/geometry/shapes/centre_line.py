@@ -5,11 +5,12 @@ Not for: radii of the pipe and its faces (`pipe`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from clearance.errors import BadDimension
 from clearance.geometry.shapes.dimension import MOST_SECTIONS, positive
-from clearance.late_dataclass import dataclass
 
 
 @dataclass(frozen=True, eq=False)

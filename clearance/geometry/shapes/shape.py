@@ -6,11 +6,10 @@ Not for: the shapes themselves, nor how a file format writes them (room `load`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 
 
 class Measure(Enum):

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Case
 from clearance.world.rules import Allowance, matches
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from clearance.errors import BadInput, at
-from clearance.late_dataclass import dataclass
 from clearance.load.files.foreign_files import refuse_foreign
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.scene.formats import read_scene, with_own_words

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
 from clearance.errors import BadInput, at
-from clearance.late_dataclass import dataclass
 from clearance.load.case.allow import body_names, checked_allowances, require_patterns
 from clearance.load.case.case_document import ScenePlace, read_schema
 from clearance.load.case.held_parts import with_held_parts

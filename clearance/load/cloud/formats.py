@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, at
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
-from clearance.late_dataclass import dataclass
 from clearance.load.cloud.pcd_file import read_pcd
 from clearance.load.cloud.ply_points import read_ply_points
 from clearance.load.cloud.points import Points

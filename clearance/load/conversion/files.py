@@ -6,12 +6,11 @@ Not for: which of these a file is (`file_kind`), nor writing the files.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import NamedTuple
 
 from clearance.errors import BadInput, at
-from clearance.late_dataclass import dataclass
 from clearance.load.conversion.file_kind import FileKind
 from clearance.load.conversion.scene import SCENE_SUFFIXES, converted_scene
 from clearance.load.files.input_files import InputFiles

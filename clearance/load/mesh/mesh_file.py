@@ -7,6 +7,7 @@ each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
@@ -14,7 +15,6 @@ import numpy as np
 
 from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import read_bytes
 from clearance.load.mesh.formats import READERS
 from clearance.load.mesh.placing import Z_FROM_Y_UP, UpAxis

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput
 from clearance.geometry.quaternions import of_unit_length
-from clearance.late_dataclass import dataclass
 from clearance.load.table.csv_table import Opener
 from clearance.load.text.notes import note_on_rounded
 from clearance.world.pose_table import PoseTable

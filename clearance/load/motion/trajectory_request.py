@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field, fields
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.load.table.csv_table import Opener
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory

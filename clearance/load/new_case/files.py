@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.errors import MissingKey, NothingToMeasure, at
-from clearance.late_dataclass import dataclass
 from clearance.load.case.case_file import read_case
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.files.written_paths import path_from

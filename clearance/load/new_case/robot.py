@@ -6,12 +6,11 @@ Not for: its motion and its scene (`files`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from clearance.errors import NothingToMeasure
-from clearance.late_dataclass import dataclass
 from clearance.load.case.robots import RobotReader
 from clearance.load.files.input_files import resolved
 from clearance.load.files.written_paths import path_from

@@ -6,11 +6,10 @@ Not for: reading it (`scene.formats`), nor the text of it (`scene.writer`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from clearance.late_dataclass import dataclass
 from clearance.load.case.held_parts import with_held_parts
 from clearance.load.case.scene_rows import with_scene_rows
 from clearance.load.files.input_files import resolved

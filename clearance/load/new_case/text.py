@@ -6,11 +6,10 @@ Not for: what stands in it (`files`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from clearance.errors import shown
-from clearance.late_dataclass import dataclass
 from clearance.load.text.yaml_text import flow
 from clearance.world.notice import KINDS
 

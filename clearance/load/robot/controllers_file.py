@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from clearance.errors import BadDimension, BadInput, MissingKey, at
-from clearance.late_dataclass import dataclass
 from clearance.load.message.documents import Fields, told
 from clearance.load.message.parameter_values import mapping, number, parameters, require_keys
 from clearance.world.motion_limits import PathTolerance

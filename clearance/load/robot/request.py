@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import resolved
 from clearance.load.mesh.placing import UpAxis
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.world.notice import Notice
 

@@ -7,11 +7,10 @@ Not for: the keys of the block (`schema.tolerance`), what rows are of (`targets`
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from clearance.errors import at
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import InputFiles
 from clearance.load.schema.tolerance import (
     ObstacleRow,

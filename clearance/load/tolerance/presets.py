@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass
+
 from clearance.load.preset_files import FOLDER
 from clearance.load.schema.errors import validated
 from clearance.load.schema.strict_model import StrictModel

@@ -6,6 +6,7 @@ A pattern that is of nothing is refused. Not for: the numbers in the rows (`bloc
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from clearance.errors import (
@@ -16,7 +17,6 @@ from clearance.errors import (
     UnknownRobot,
     nearest_name,
 )
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Case
 from clearance.world.joint_positions import turns
 from clearance.world.robot import JointKind

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from clearance.errors import BadInput, MissingKey, UnknownJoint, at, nearest_name
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import InputFiles, resolved
 from clearance.load.robot.controllers_file import parse_controllers
 from clearance.load.robot.limit_files import widest

@@ -7,10 +7,10 @@ least foreshortened. Not for: drawing.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.report.still.scene import Still, box_of
 
 FIELD_OF_VIEW = math.radians(40.0)

@@ -7,11 +7,11 @@ Colours and the room that the camera frames are those of the page (`page.css`, `
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.late_dataclass import dataclass
 from clearance.report.still.points import as_solids
 from clearance.simulate.replay.bodies import LINK, MOVING, PART, STANDING, DrawnBody
 from clearance.simulate.replay.replay import Replay

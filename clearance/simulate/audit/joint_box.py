@@ -14,12 +14,12 @@ Not for: which boxes are asked (`pair`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.late_dataclass import dataclass
 from clearance.world.kinematic_chain import KinematicChain
 
 SLACK = 1e-9

@@ -9,11 +9,11 @@ motions (`certify`), the bounds (`joint_box`), and which pairs are asked (`world
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.query.pair_query import Query
 from clearance.simulate.audit.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
 from clearance.world.kinematic_chain import KinematicChain, chain_between

@@ -5,7 +5,8 @@ Not for: one pair (`pair`), nor how it is reported (`report.srdf`).
 
 from __future__ import annotations
 
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass
+
 from clearance.progress import Progress
 from clearance.simulate.audit.pair import PairFinding, PairStatus, audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix

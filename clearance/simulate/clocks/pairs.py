@@ -6,12 +6,11 @@ Not for: how near they come (`unsynchronised`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair

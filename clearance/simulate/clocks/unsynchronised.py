@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -36,7 +36,6 @@ from clearance.kernels.motion.unsynchronised_steps import (
     least_of_unsynchronised_steps,
 )
 from clearance.kernels.motion.world import World
-from clearance.late_dataclass import dataclass
 from clearance.ordered import ascending
 from clearance.query.distance import distance
 from clearance.simulate.certify import (

@@ -7,7 +7,7 @@ load this room, and nothing is found before somebody looks. Not for: whether the
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
@@ -16,7 +16,6 @@ from clearance.errors import ClearanceError
 from clearance.geometry.convex_parts import ConvexParts, convex_parts
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
-from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact

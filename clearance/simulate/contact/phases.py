@@ -5,12 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.simulate.contact.contacts import find_contacts
 from clearance.simulate.contact.rows import ContactRows

@@ -8,14 +8,13 @@ moment of every event, of all, or of none. Any other row is worked out when it i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 
 from clearance.geometry.boolean import ClosedMesh
-from clearance.late_dataclass import dataclass
 from clearance.progress import Progress
 from clearance.query.contact import Contact
 from clearance.simulate.contact.rows_on_demand import RowsOnDemand

@@ -6,12 +6,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.contact.rows_on_demand import RowsOnDemand
 
 if TYPE_CHECKING:

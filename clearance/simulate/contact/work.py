@@ -5,9 +5,7 @@ Counted in triangles looked at, not in seconds: the same input gives the same by
 
 from __future__ import annotations
 
-from dataclasses import field
-
-from clearance.late_dataclass import dataclass
+from dataclasses import dataclass, field
 
 WORK = 30_000_000
 """Of one pair: about 2 s of the machine on which the figures of `query/CONTACT.md` were measured."""

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,6 @@ import numpy as np
 
 from clearance.errors import BadInput, NotFinite
 from clearance.extras import importing
-from clearance.late_dataclass import dataclass
 from clearance.simulate.physics.model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot

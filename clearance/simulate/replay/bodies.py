@@ -7,13 +7,13 @@ stands on something that moves rides with it. Not for: which frames there are (`
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.quaternions import quaternions_of
-from clearance.late_dataclass import dataclass
 from clearance.query.distance import distance
 from clearance.simulate.record import Record
 from clearance.world.case import Case

@@ -6,10 +6,10 @@ Not for: finding them (`contact.contacts`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.contact.sequence import StepContact
 from clearance.simulate.record import Record
 

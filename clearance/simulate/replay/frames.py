@@ -6,12 +6,12 @@ Not for: shapes and poses (`replay`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.parts import blocks

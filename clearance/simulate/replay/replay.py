@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from clearance.errors import BadSyntax, MissingFile
-from clearance.late_dataclass import dataclass
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import Record
 from clearance.simulate.replay.bodies import (

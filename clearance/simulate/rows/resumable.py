@@ -15,14 +15,13 @@ import time
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.errors import unwritable
-from clearance.late_dataclass import dataclass
 from clearance.simulate.rows.folder import clear, own_folder, take_away
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ Not for: what it passes through (`swept_pieces`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.late_dataclass import dataclass
 from clearance.simulate.holders import robots_below
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import forest_of, link_poses_at

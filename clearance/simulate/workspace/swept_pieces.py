@@ -8,6 +8,7 @@ is far tighter.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple
@@ -20,7 +21,6 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
-from clearance.late_dataclass import dataclass
 from clearance.simulate.certify import path_of
 from clearance.simulate.holders import holding_link
 from clearance.world.cubic import cubics_of, extremes_between

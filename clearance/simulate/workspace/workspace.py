@@ -8,6 +8,7 @@ Not for: whether the robots collide at one time.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -18,7 +19,6 @@ from clearance.extras import install
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
-from clearance.late_dataclass import dataclass
 from clearance.query.common_point import common_point
 from clearance.simulate.workspace.robot_in_cell import RobotInCell, robots_in_cell
 from clearance.simulate.workspace.swept_pieces import SweptPiece, swept_pieces

@@ -12,12 +12,11 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, at
-from clearance.late_dataclass import dataclass
 from clearance.load.files.input_files import InputFiles
 from clearance.load.text.xml_document import plain_root
 

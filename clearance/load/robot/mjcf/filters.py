@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 
-from clearance.late_dataclass import dataclass
 from clearance.load.robot.mjcf.model import MjcfGeom, MjcfModel
 from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
 from clearance.world.notice import listed

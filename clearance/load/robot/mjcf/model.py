@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-
-from clearance.late_dataclass import dataclass
 
 
 class MjcfMesh(NamedTuple):

@@ -7,7 +7,7 @@ Source: SDF specification 1.11, "Pose Frame Semantics" and "Composition". Not fo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -15,7 +15,6 @@ import numpy as np
 
 from clearance.errors import BadInput, at
 from clearance.geometry.pose import inverse
-from clearance.late_dataclass import dataclass
 from clearance.load.scene.sdf.document import base_of, name_of, pose_of, text_of
 from clearance.load.scene.sdf.frames import ROOT, NamedFrames
 from clearance.load.scene.sdf.geometry import geometry_of
