@@ -47,7 +47,8 @@ class AskedPositions:
 
     def are_usual(self, given: np.ndarray) -> bool:
         """True if all configurations (..., k) are finite and within limits."""
-        return bool(((given >= self._least) & (given <= self._greatest)).all())
+        is_usual = (given >= self._least) & (given <= self._greatest)
+        return np.count_nonzero(is_usual) == is_usual.size  # half the time of `all`
 
     def at_rest(self) -> list[Notice]:
         """The notices on joints that no configuration gives; a case with motion has these notices itself."""

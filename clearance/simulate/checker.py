@@ -7,24 +7,23 @@ real robots. Not for: motions (`run.check`, which also says what happens between
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
+from clearance.compile.kernel_table import call, prepared
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.asked_positions import AskedPositions
-from clearance.simulate.inside import doubts_of, is_in_doubt
+from clearance.simulate.inside import DoubtfulPairs
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measurement import SWEEP_COUNTERS
 from clearance.simulate.names import pair_names
 from clearance.tolerance import REACH
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.forest import forest_of
 from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
 from clearance.world.notice import worst_first
@@ -114,20 +113,21 @@ class Checker:
         pairs, _ = measured_pairs(case)
         bodies = [body.body_in(case) for pair in pairs for body in pair]
         require_no_shortfall(bodies, "a Checker")
-        self._doubts = [(pairs[i], i, doubt) for i, doubt in doubts_of(case, pairs).items()]
+        self._doubtful = DoubtfulPairs(case, pairs)
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
-        self._placing = _placing(case, self._names)
+        self._fixed, self._columns = _placing(case, self._names)
         self._layout = lay_out(case, pairs)
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
         )
-        self._held = hold_scene(
-            self._layout.surface, self._layout.world, no_rows, len(self._placing[0])
-        )
+        self._held = hold_scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
         self._lock = threading.Lock()
         self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
-        self._row = _rows(1)
+        self._row, self._position = _rows(1), self._fixed[None].copy()
+        self._nearest = prepared(
+            nearest_at_positions, self._held, self._position, self._row, self._counts
+        )
 
     def distance(self, configuration: Configuration) -> Clearance:
         """The least clearance at one configuration and where it is attained.
@@ -144,13 +144,15 @@ class Checker:
 
         Exactness, Ties: as `check`, method exact.
         """
-        positions = self._positions(self._given(configuration)[None])
+        given = self._given(configuration)
         with self._lock:
-            call(nearest_at_positions, self._held, positions, self._row, self._counts)
-            self._layout.to_world(positions, self._row.pair, self._row.points)
-            link, obstacle = self.pairs[self._row.pair[0]]
-            distance, points = float(self._row.clearance[0]), self._row.points[0].copy()
-        undecided = tuple(self.pairs[i] for i, open_at in self._in_doubt(positions) if open_at[0])
+            positions, row = self._position, self._row
+            positions[0, self._columns] = given
+            call(self._nearest, self._held, positions, row, self._counts)
+            self._layout.to_world(positions, row.pair, row.points)
+            link, obstacle = self.pairs[row.pair[0]]
+            distance, points = row.clearance.item(), row.points[0].copy()
+            undecided = tuple([self.pairs[i] for i, _ in self._doubtful.at(positions)])
         return Clearance(distance, link, obstacle, points[0], points[1], undecided)
 
     def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
@@ -159,27 +161,20 @@ class Checker:
         Raises:
             BadShape, NotFinite, BadInput, SuspectInput: as `distance`.
         """
-        positions = self._positions(self._given(configurations, n_dimensions=2))
-        rows = _rows(len(positions))
+        given = self._given(configurations, n_dimensions=2)
+        positions, rows = np.tile(self._fixed, (len(given), 1)), _rows(len(given))
+        positions[:, self._columns] = given
         with self._lock:
-            call(nearest_at_positions, self._held, positions, rows, self._counts)
+            call(self._nearest, self._held, positions, rows, self._counts)
         self._layout.to_world(positions, rows.pair, rows.points)
         undecided = np.zeros(len(positions), dtype=bool)
-        for _, open_at in self._in_doubt(positions):
-            undecided |= open_at
+        for _, i in self._doubtful.at(positions):
+            undecided[i] = True
         return ClearanceOfMany(rows.clearance, rows.pair, rows.points, undecided)
-
-    def _in_doubt(self, positions: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
-        """Of each pair that can be in doubt, whether it is at each of n positions of all moving joints."""
-        if not self._doubts:
-            return
-        poses = forest_of(self.case).poses(positions)
-        for pair, i_pair, doubt in self._doubts:
-            yield i_pair, is_in_doubt(self.case, pair, doubt, poses)
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""
-        if isinstance(configuration, Mapping):
+        if not isinstance(configuration, np.ndarray) and isinstance(configuration, Mapping):
             configuration = self._by_name(configuration)
         try:
             given = np.asarray(configuration, dtype=np.float64)
@@ -217,14 +212,6 @@ class Checker:
     def _wanted(self, n_dimensions: int) -> str:
         rows = "n rows of " if n_dimensions == 2 else ""
         return f"{rows}one number for each of {', '.join(self.joint_names)}"
-
-    def _positions(self, given: np.ndarray) -> np.ndarray:
-        """(n, columns) of all moving joints."""
-        fixed, columns = self._placing
-        positions = np.empty((len(given), len(fixed)))
-        positions[:] = fixed
-        positions[:, columns] = given
-        return positions
 
 
 def _placing(case: Case, names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, list[int]]:

@@ -11,14 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.compile.kernel_table import call, prepared
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.motion.boxes_at_positions import overlaps_at_positions
 from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
 from clearance.query.distance import distance
 from clearance.query.inside import PossibleContainment, doubt_of
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
-from clearance.world.forest import link_poses_at
+from clearance.world.forest import forest_of, link_poses_at
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import BodyIndex, Pair
 
@@ -83,8 +85,9 @@ class _OpenPairs:
         """
         spans = np.empty((len(self.pairs), 2), dtype=np.int64)
         steps_together(self.boxes, self.pairs, link_poses, spans)
-        for k in np.flatnonzero(spans[:, 1]).tolist():
-            yield k, slice(*spans[k].tolist())
+        for k, (first, end) in enumerate(spans.tolist()):
+            if end:
+                yield k, slice(first, end)
 
 
 def _open_pairs(case: Case, pairs: Sequence[Pair]) -> _OpenPairs:
@@ -93,7 +96,7 @@ def _open_pairs(case: Case, pairs: Sequence[Pair]) -> _OpenPairs:
 
 @once_a_cell(16)
 def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
-    doubts = doubts_of(case, pairs)
+    doubts = _doubts_of(case, pairs)
     bodies = sorted({body for i in doubts for body in pairs[i]})
     number = {body: k for k, body in enumerate(bodies)}
     standing = [
@@ -110,25 +113,54 @@ def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
     return _OpenPairs(tuple(doubts), tuple(doubts.values()), boxes, numbered)
 
 
-def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, PossibleContainment]:
+def _doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, PossibleContainment]:
     """What can be in doubt, by the pairs of which something can be."""
-    return dict(_doubts_of(case, tuple(pairs)))
-
-
-@once_a_cell(16)
-def _doubts_of(case: Case, pairs: tuple[Pair, ...]) -> dict[int, PossibleContainment]:
     doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
     return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
 
-def is_in_doubt(
-    case: Case, pair: Pair, doubt: PossibleContainment, poses: np.ndarray
-) -> np.ndarray:
-    """(n,) whether a pair is in doubt and not in contact, at `poses` (n, links, 4, 4) of all links."""
-    found = np.zeros(len(poses), dtype=bool)
-    for k in _in_doubt(case, pair, doubt, BodyPoses(case, poses), slice(0, len(poses))):
-        found[k] = True
-    return found
+class DoubtfulPairs:
+    """The pairs of a case that can be in doubt, asked about at any positions of all that moves.
+
+    A pair whose boxes do not overlap is in no doubt; only others are looked into.
+    """
+
+    def __init__(self, case: Case, pairs: Sequence[Pair]) -> None:
+        self._case, self._pairs, self._open = case, pairs, _open_pairs(case, pairs)
+        self._held = forest_of(case).links, self._open.boxes, self._open.pairs
+        if self._open.places:
+            any_positions = np.empty((1, 0))  # only its type is asked for
+            arguments = *self._held, any_positions, *self._room(1)
+            self._overlaps = prepared(overlaps_at_positions, *arguments)
+
+    def at(self, positions: np.ndarray) -> Sequence[tuple[int, int]]:
+        """The place of a pair and the row, wherever a pair is in doubt and not in contact.
+
+        Args:
+            positions: (n, columns) [rad or m] as `world.forest` has its columns.
+        """
+        if not self._open.places:
+            return ()
+        poses, spans = self._room(len(positions))
+        if call(self._overlaps, *self._held, positions, poses, spans) == 0:
+            return ()
+        return list(self._in_doubt(BodyPoses(self._case, poses), spans.tolist()))
+
+    def _room(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Arrays for the poses of all links at n positions, and for a span of each pair."""
+        links, _, pairs = self._held
+        poses = np.empty((n, len(links.parents), 4, 4))
+        return poses, np.empty((len(pairs), 2), dtype=np.int64)
+
+    def _in_doubt(
+        self, poses: BodyPoses, spans: Sequence[Sequence[int]]
+    ) -> Iterator[tuple[int, int]]:
+        of_pairs = zip(self._open.places, self._open.doubts, spans, strict=True)
+        for place, doubt, (first, end) in of_pairs:
+            if end:
+                span = slice(first, end)
+                for row in _in_doubt(self._case, self._pairs[place], doubt, poses, span):
+                    yield place, row
 
 
 def _text(link: str, obstacle: str, step: int, time: float) -> str:

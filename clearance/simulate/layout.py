@@ -74,27 +74,39 @@ class Layout:
             positions: (k, columns) of the joints [rad or m]. pairs: (k,) of which the points are, or -1.
             points: (k, 2, 3) [m].
         """
-        rows = np.flatnonzero((pairs >= 0) & (self.references[pairs] != IN_WORLD))
+        rows = self._is_seen_from_link[pairs].nonzero()[0]
         if len(rows):
             seen_from = self._references_at(positions[rows], pairs[rows])
             turned = np.einsum("kij,knj->kni", seen_from[:, :3, :3], points[rows])
             points[rows] = turned + seen_from[:, None, :3, 3]
-        swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
-        points[swapped] = points[swapped][:, ::-1]
+        swapped = self._is_swapped[pairs].nonzero()[0]
+        if len(swapped):
+            points[swapped] = points[swapped][:, ::-1]
 
     def from_world(
         self, positions: np.ndarray, pairs: np.ndarray, points: np.ndarray
     ) -> np.ndarray:
         """(k, 2, 3) [m] witness points in the world as their pairs are measured; the inverse of `to_world`."""
         points = points.copy()
-        swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
-        points[swapped] = points[swapped][:, ::-1]
-        rows = np.flatnonzero((pairs >= 0) & (self.references[pairs] != IN_WORLD))
+        swapped = self._is_swapped[pairs].nonzero()[0]
+        if len(swapped):
+            points[swapped] = points[swapped][:, ::-1]
+        rows = self._is_seen_from_link[pairs].nonzero()[0]
         if len(rows):
             seen_from = self._references_at(positions[rows], pairs[rows])
             away = points[rows] - seen_from[:, None, :3, 3]
             points[rows] = np.einsum("kji,knj->kni", seen_from[:, :3, :3], away)
         return points
+
+    @cached_property
+    def _is_seen_from_link(self) -> np.ndarray:
+        """(p + 1,) True where a pair is measured in the frame of a link; the last is no pair, -1."""
+        return np.append(self.references != IN_WORLD, False)
+
+    @cached_property
+    def _is_swapped(self) -> np.ndarray:
+        """(p + 1,) `swapped`; the last is no pair, -1."""
+        return np.append(self.swapped, False)
 
     @cached_property
     def _reference_links(self) -> tuple[Links, np.ndarray]:

@@ -1,0 +1,31 @@
+"""Whether boxes about bodies may overlap with the joints at some positions, in one call.
+
+A caller that asks about one position after another has no other use for the poses of the links, and two calls from
+Python cost more than all that they do. Not for: poses that are known (`search.boxes_along_path`).
+"""
+
+import numpy as np
+
+from clearance.compile.jit import kernel
+from clearance.kernels.motion.kinematics import place_links
+from clearance.kernels.search.boxes_along_path import steps_together
+
+
+@kernel
+def overlaps_at_positions(links, boxes, pairs, positions, poses, spans, table):
+    """The number of pairs whose boxes may overlap at one of n positions.
+
+    Args:
+        links: a `Links`. boxes, pairs, spans: as `steps_together` takes them, and fills them.
+        positions: (n, columns) [rad or m]. poses: (n, links, 4, 4) [m] where those of the links are written.
+        table: as `call` hands it over; nothing here is compiled apart.
+    """
+    all_wanted = np.zeros(len(links.parents), dtype=np.int64)
+    for i in range(len(positions)):
+        place_links(links, positions[i], poses[i], all_wanted, 0)
+    steps_together(boxes, pairs, poses, spans)
+    n_pairs = 0
+    for pair in range(len(pairs)):
+        if spans[pair, 1] > 0:
+            n_pairs += 1
+    return n_pairs
