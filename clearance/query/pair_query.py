@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,13 +72,11 @@ class Query:
         self._lock = threading.Lock()
         self._pair = OnePair(self.a, self.b, new_scratch(), goes_on=True)
 
-    @contextmanager
-    def _alone(self) -> Iterator[OnePair]:
-        """The pair, for this thread alone."""
+    def _alone(self) -> threading.Lock:
+        """The lock under which the pair is asked; both are made anew in a process that was forked off."""
         if self._process != _processes:
             self._begin()
-        with self._lock:
-            yield self._pair
+        return self._lock
 
     def distance(
         self, world_from_a: np.ndarray | None = None, world_from_b: np.ndarray | None = None
@@ -95,8 +91,8 @@ class Query:
 
         Exactness, Ties: as `distance`.
         """
-        with self._alone() as pair:
-            return pair.nearest(world_from_a, world_from_b)
+        with self._alone():
+            return self._pair.nearest(world_from_a, world_from_b)
 
     def distances(
         self, worlds_from_a: np.ndarray | None = None, worlds_from_b: np.ndarray | None = None
@@ -120,15 +116,15 @@ class Query:
                 f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each"
             )
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
-        with self._alone() as pair:
-            held = pair.held
+        with self._alone():
+            held = self._pair.held
             if call(nearest_at_poses, held, poses_a, poses_b, 0, numbers, points, counts) != -1:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 how = POSES_ARE_RIGID
                 call(nearest_at_poses, held, poses_a, poses_b, how, numbers, points, counts)
         distances = numbers[:, 0].copy()
-        undecided = _undecided(pair, distances, poses_a, poses_b)
+        undecided = _undecided(self._pair, distances, poses_a, poses_b)
         return NearestAtPoses(
             distances, points, counts[:, :2].copy(), numbers[:, 1].copy(), undecided
         )
