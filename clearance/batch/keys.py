@@ -17,8 +17,7 @@ from pathlib import PurePath
 
 from clearance.batch.item import Item
 from clearance.extras import is_installed
-from clearance.import_closure import PACKAGE, digest_of
-from clearance.load.preset_files import FOLDER as PRESETS
+from clearance.package_digest import package_digest
 from clearance.world.case import LOOKUP
 
 FORMAT = 1
@@ -53,13 +52,10 @@ def value_digest(name: str) -> str:
 @functools.cache
 def program() -> str:
     """sha256 of all sources of this package, presets among them, and of the versions below them."""
-    sources = [*PACKAGE.rglob("*.py"), *PRESETS.glob("*.yaml")]
-    digest = hashlib.sha256(digest_of(sorted(sources)).encode())
     versions = [(name, metadata.version(name)) for name in (*LIBRARIES, "pyarrow")]
     versions += [(name, metadata.version(name)) for name in READERS if is_installed(name)]
-    told = (FORMAT, versions, platform.python_version(), platform.machine())
-    digest.update(repr(told).encode())
-    return digest.hexdigest()
+    told = (package_digest(), FORMAT, versions, platform.python_version(), platform.machine())
+    return hashlib.sha256(repr(told).encode()).hexdigest()
 
 
 def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:

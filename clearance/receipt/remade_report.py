@@ -13,13 +13,12 @@ from pathlib import Path
 
 from clearance.compile.machine import processor
 from clearance.errors import BadInput, BadSyntax, MissingFile, shown
-from clearance.import_closure import PACKAGE
+from clearance.package_digest import package_digest
 from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
 from clearance.report.output import CONTENT, write
 from clearance.report.provenance import versions
 from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.simulate.record import Record
-from clearance.source_digests import closure_digest
 
 PAGE = "report.html"
 
@@ -34,10 +33,9 @@ SHOWN = 48
 
 def maker() -> dict[str, str]:
     """The programs and the machine that make a report; if all are the same, so are the bytes."""
-    sources = closure_digest([PACKAGE / "run" / "__init__.py", PACKAGE / "report" / "output.py"])
     machine = repr((platform.machine(), processor()))
     digest = hashlib.sha256(machine.encode()).hexdigest()[:8]
-    own = {"sources": sources[:16], "processor": f"{processor()[1]} {digest}"}
+    own = {"sources": package_digest()[:16], "processor": f"{processor()[1]} {digest}"}
     return versions() | own
 
 

@@ -8,24 +8,18 @@ from __future__ import annotations
 import hashlib
 import platform
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from clearance.compile.machine import numba_version, processor
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.import_closure import PACKAGE, import_closure
-from clearance.source_digests import closure_digest
+from clearance.package_digest import package_digest
 from clearance.world.case import Case
 from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
 from clearance.world.robot import Robot
-
-_ENTRY = PACKAGE / "run" / "__init__.py"
-_BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
-"""Rooms that `run` uses and that decide no row: what is loaded is hashed itself, the others come later."""
 
 
 def fingerprint(
@@ -83,11 +77,6 @@ def robot_digest(robot: Robot) -> str:
     return digest.hexdigest()
 
 
-def sources() -> list[Path]:
-    """The files of this package that decide a run's rows."""
-    return import_closure([_ENTRY], leave_out=_BEFORE_AND_AFTER)
-
-
 def _add_mount(digest: hashlib._Hash, mount: Mount | None) -> None:
     if mount is not None:
         digest.update(mount.on.encode())
@@ -109,6 +98,5 @@ def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
 
 def _program() -> str:
     """Sources, versions and machine: on another processor the last bits may differ."""
-    digest = closure_digest([_ENTRY], leave_out=_BEFORE_AND_AFTER)
     versions = (np.__version__, numba_version(), platform.python_version(), platform.machine())
-    return f"{digest} {versions} {processor()}"
+    return f"{package_digest()} {versions} {processor()}"

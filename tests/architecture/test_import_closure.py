@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from clearance.import_closure import PACKAGE, UnknownImport, digest_of, import_closure
-from clearance.simulate import fingerprint
 
 
 def _package(folder: Path, **sources: str) -> Path:
@@ -97,19 +96,3 @@ def test_a_digest_knows_content_and_place(tmp_path):
 
 def test_every_file_of_the_package_can_be_followed():
     assert len(import_closure(PACKAGE.rglob("*.py"))) == len([*PACKAGE.rglob("*.py")])
-
-
-def test_a_runs_fingerprint_covers_what_decides_its_rows():
-    found = {path.relative_to(PACKAGE).as_posix() for path in fingerprint.sources()}
-    names = {Path(name).stem for name in found}
-    assert {"run/__init__.py", "run/answers.py", "tolerance.py", "import_closure.py"} <= found
-    assert {
-        "kernel_table",
-        "sweep",
-        "certify",
-        "lanes",
-        "motion",
-        "bullet",
-        "measure_paper",
-    } <= names
-    assert not {name for name in found if name.startswith(("report/", "view/", "load/"))}
