@@ -27,7 +27,6 @@ MAIN_KERNELS = {
     "certify": "motion.certify._certify",
     "polytope": "polytope.clip.cut_by_bodies",
     "hausdorff": "hausdorff.both_directions.both_directions",
-    "sketch": "sketch.graph.plan.make_plan",
 }
 """Of each domain a kernel that is kept once the domain is compiled; neighbours have most in common."""
 

@@ -27,7 +27,7 @@ from clearance.cli.options import LengthParamType, OutputPath
     "--most-seconds",
     type=click.FloatRange(min=0.0),
     default=10.0,
-    help="Processor time after which the solve of the sketch stops [s].  [default: 10]",
+    help="Processor time after which the solve of the sketch stops [s].  [default: 5]",
 )
 @click.option("--out", required=True, type=OutputPath(), help="Sketch to write, .yaml.")
 @click.option("--picture", type=OutputPath(), help="Picture to write, .svg or .png.")

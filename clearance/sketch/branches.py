@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import (
+from clearance.sketch.equations import (
     ACROSS,
     LENGTHS,
     LINE_CIRCLE,
@@ -18,13 +18,13 @@ from clearance.kernels.sketch.equations import (
     MIDDLE_ON,
     POINT_LINE,
 )
-from clearance.kernels.sketch.graph.graph import POINT, TURN
-from clearance.kernels.sketch.solve.execute import FAILED
 from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
+from clearance.sketch.graph.graph import POINT, TURN
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
+from clearance.sketch.solve.execute import FAILED, Run, execute
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import execute, limits_of, residual_of
+from clearance.sketch.steps import limits_of, residual_of
 
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""
@@ -33,15 +33,19 @@ STRAIGHT = (LINEAR, POINT_LINE, LINE_CIRCLE, MIDDLE_ON, ACROSS)
 """Equations that keep a point on a straight line: two of them meet in one point."""
 
 
-def choices(problem: Problem) -> np.ndarray:
+def choices(problem: Problem) -> list[int]:
     """The closed steps (indices) that choose one of two places."""
-    steps, s = problem.plan.steps, problem.system
-    two = (steps.block < 0) & (steps.edges[:, 1] >= 0) & (steps.edges[:, 2] < 0)
-    first, second = s.code[steps.edges[:, 0]], s.code[steps.edges[:, 1]]
-    points = two & (s.kind[steps.vertex] == POINT) & (steps.partner < 0)
-    points &= ~(np.isin(first, STRAIGHT) & np.isin(second, STRAIGHT))
-    lines = two & (s.kind[steps.vertex] == TURN) & (first != ACROSS) & (second != ACROSS)
-    return np.flatnonzero(points | lines)
+    s, out = problem.system.plain, []
+    for k, step in enumerate(problem.plan.steps):
+        if step.numeric or len(step.rows) != 2:
+            continue
+        codes = [s.code[row] for row in step.rows]
+        point = s.kind[step.vertex] == POINT and step.partner < 0
+        if point and not all(code in STRAIGHT for code in codes):
+            out.append(k)
+        elif s.kind[step.vertex] == TURN and ACROSS not in codes:
+            out.append(k)
+    return out
 
 
 def run_with_sides(
@@ -64,9 +68,7 @@ def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
         best = []
         for chosen in combinations(steps, count):
             problem.limit.require_left()
-            turned = np.ones(problem.plan.steps.vertex.size)
-            turned[list(chosen)] = -1.0
-            best.append(run(problem, before, sides, turned=turned))
+            best.append(run(problem, before, sides, turned=frozenset(chosen)))
         yield from best
         if any(o.broken == -1 for o in best):
             return
@@ -77,10 +79,9 @@ def _nearest_choices(problem: Problem, sides: Sides) -> list[int]:
     s = problem.system
     concerned = {int(s.vertex_of[problem.alias[i]]) for side in sides for i in side}
     parts = {int(problem.part[v]) for v in concerned if v > 0}
-    steps = [
-        int(k) for k in choices(problem) if int(problem.part[problem.plan.steps.vertex[k]]) in parts
-    ]
-    own = [k for k in steps if int(problem.plan.steps.vertex[k]) in concerned]
+    placed = {k: problem.plan.steps[k].vertex for k in choices(problem)}
+    steps = [k for k, v in placed.items() if int(problem.part[v]) in parts]
+    own = [k for k in steps if placed[k] in concerned]
     return (own + [k for k in reversed(steps) if k not in own])[:MOST]
 
 
@@ -98,29 +99,30 @@ def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
 
     False when that cannot be decided: freedom is left, a cluster is numeric, or there are too many branches.
     """
-    steps = choices(problem)
-    circles = (problem.system.kind[problem.plan.steps.vertex] == POINT) & (
-        problem.plan.steps.partner >= 0
+    steps, kind = choices(problem), problem.system.kind
+    undecided = any(
+        step.numeric or (kind[step.vertex] == POINT and step.partner >= 0)
+        for step in problem.plan.steps
     )
-    lengths = np.any(problem.system.code == LENGTHS)
-    if steps.size > MOST or (problem.plan.steps.block >= 0).any() or circles.any() or lengths:
+    if undecided or len(steps) > MOST or (problem.system.code == LENGTHS).any():
         return False
     return bool(problem.is_rigid.all()) and not _any_branch(problem, before, sides, steps)
 
 
-def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: np.ndarray) -> bool:
+def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: list[int]) -> bool:
     start, _ = started(problem, before, ())
-    every = np.ones(problem.system.kind.size, np.uint8)
-    for mask in range(2**steps.size):
+    every = bytes([1]) * problem.system.kind.size
+    for mask in range(2 ** len(steps)):
         problem.limit.require_left()
-        turned = np.ones(problem.plan.steps.vertex.size)
-        turned[steps[(mask >> np.arange(steps.size)) & 1 == 1]] = -1.0
+        turned = frozenset(k for bit, k in enumerate(steps) if mask >> bit & 1)
         x = start.copy()
-        fates = execute(problem, x, start, turned, every, limits_of(problem))
+        fates = execute(
+            problem.system, problem.plan, x, Run(start, every, turned), limits_of(problem)
+        )
         if (fates == FAILED).any():
             continue
         x = x[problem.alias]
-        if residual_of(problem, x)[0] <= RESIDUAL * problem.size:
-            if sides_hold(x, sides, problem.size):
-                return True
+        holds = residual_of(problem, x)[0] <= RESIDUAL * problem.size
+        if holds and sides_hold(x, sides, problem.size):
+            return True
     return False

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import (
+from clearance.sketch.equations import (
     ACROSS,
     CIRCLE_CIRCLE,
     IN_LINE,
@@ -21,7 +21,7 @@ from clearance.kernels.sketch.equations import (
     POINT_CIRCLE,
     POINT_LINE,
 )
-from clearance.kernels.sketch.solve.place import System
+from clearance.sketch.solve.system import System
 
 
 class Contacts(NamedTuple):
@@ -35,7 +35,7 @@ class Contacts(NamedTuple):
         """The system with its equations of touching replaced."""
         code, var, value = system.code.copy(), system.var.copy(), system.value.copy()
         code[self.rows], var[self.rows], value[self.rows] = self.code, self.var, 0.0
-        return system._replace(code=code, var=var, value=value)
+        return system.replaced(code=code, var=var, value=value)
 
 
 def contacts_of(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import RADIUS
 from clearance.sketch.faults import DegenerateSketch
+from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import RESIDUAL, Problem
 
 

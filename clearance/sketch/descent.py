@@ -1,7 +1,7 @@
 """A whole part solved from the drawing: least squares with exact second derivatives, sparse, any size.
 
 The sum of squared errors goes down by Newton's method in a trust region. Two things set it apart from the damped
-descent of numeric clusters (`kernels.sketch.solve.damped`): the second derivatives of the equations, which
+descent of numeric clusters (`solve.damped`): the second derivatives of the equations, which
 lead away from where slivers lie flat, and corrections of second order, which follow the curved valleys that
 slivers make, with the factors that are at hand. Not for: the other minima that it may end in (`folds`).
 Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (corrections of second order).
@@ -9,17 +9,15 @@ Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (correc
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array, csc_array, eye_array
+from scipy.sparse.linalg import splu
 
-from clearance.kernels.sketch.solve.columns import bend, spread, step_by
-from clearance.sketch.mobility import numbered
 from clearance.sketch.problem import Problem
+from clearance.sketch.solve.columns import Columns
 from clearance.sketch.steps import FLOOR
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_array
 
 LONGEST = 200
 """Steps of a descent; patches of 1000 slivered triangles take 30 to 140."""
@@ -52,28 +50,22 @@ class ProblemPart:
         chosen = (problem.row_part == part) & (problem.fate == 0)
         chosen[problem.plan.dependent] = False
         self.rows = np.flatnonzero(chosen)
-        self.first, self.n = numbered(problem, self.vertices)
+        self.columns = Columns(problem.system, self.vertices, self.rows)
+        self.first, self.n = self.columns.first, self.columns.n
         self.enough = self.rows.size * (FLOOR * problem.size) ** 2
 
     def at(self, x: np.ndarray) -> Iterate:
         """The equations at some numbers."""
-        from scipy.sparse import coo_array
-
-        f, i, j, value = spread(self.system, self.rows, x, self.first)
-        matrix = coo_array((value, (i, j)), (f.size, self.n)).tocsc()
-        return Iterate(x, f, matrix, float(f @ f))
+        f = self.columns.errors(x)
+        return Iterate(x, f, self.columns.sparse(x), float(f @ f))
 
     def moved(self, x: np.ndarray, step: np.ndarray) -> Iterate:
         """The equations after a step (n,) of the columns."""
-        out = x.copy()
-        step_by(self.system, self.vertices, step, 1.0, out, self.first)
-        return self.at(out)
+        return self.at(self.columns.moved(x, step))
 
-    def curvature(self, place: Iterate):
+    def curvature(self, place: Iterate) -> csc_array:
         """(n, n) half the second derivative of the sum of squares."""
-        from scipy.sparse import coo_array
-
-        i, j, value = bend(self.system, self.rows, place.x.copy(), self.first, place.error)
+        i, j, value = self.columns.bend(place.x, place.error)
         bent = coo_array((value, (i, j)), (self.n, self.n)).tocsc()
         return (place.matrix.T @ place.matrix + 0.5 * (bent + bent.T)).tocsc()
 
@@ -102,8 +94,6 @@ def _step(
     part: ProblemPart, place: Iterate, damping: float, corrections: int
 ) -> tuple[Iterate, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
-    from scipy.sparse import eye_array
-
     curved, unit = part.curvature(place), eye_array(part.n, format="csc")
     slope = place.matrix.T @ place.error
     for _ in range(40):
@@ -132,8 +122,6 @@ def _eased(damping: float, gained: float, promised: float, total: float) -> floa
 
 def _factored(matrix):
     """The factors of a symmetric matrix, None when it is not positive definite: then a pivot is not."""
-    from scipy.sparse.linalg import splu
-
     try:
         factor = splu(
             matrix.tocsc(),

@@ -14,14 +14,15 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import POINT_POINT, residuals
-from clearance.kernels.sketch.graph.graph import CONTRADICTED, MERGED
-from clearance.kernels.sketch.graph.plan_steps import block_of
-from clearance.kernels.sketch.solve.search import BANDED
 from clearance.sketch.branches import exhausted
 from clearance.sketch.effort import OutOfTime
+from clearance.sketch.equations import POINT_POINT
+from clearance.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
+from clearance.sketch.solve.execute import FAILED, TOO_LARGE
+from clearance.sketch.solve.search import BANDED
+from clearance.sketch.steps import errors_of
 from clearance.sketch.trials import Trials
 
 CHAIN = "one distance is longer than the others together"
@@ -70,9 +71,7 @@ def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis
 
 def _not_holding(problem: Problem, x: np.ndarray) -> list[int]:
     """The constraints of which an equation does not hold."""
-    s = problem.system
-    error = np.abs(residuals(s.code, s.var, s.coef, s.value, x[problem.alias]))
-    rows = error * problem.length_scale > RESIDUAL * problem.size
+    rows = errors_of(problem, x[problem.alias]) > RESIDUAL * problem.size
     return sorted({int(o) for o in problem.tables.owner[rows]})
 
 
@@ -93,8 +92,7 @@ def _diagnosed(trial: Trials, problem: Problem, outcome) -> Diagnosis:
 
 def _rest_holds(problem: Problem, x: np.ndarray) -> bool:
     """Whether all equations hold that no others imply by the count."""
-    s = problem.system
-    error = np.abs(residuals(s.code, s.var, s.coef, s.value, x)) * problem.length_scale
+    error = errors_of(problem, x)
     error[problem.plan.dependent] = 0.0
     return bool((error <= DEPENDENT * problem.size).all())
 
@@ -131,19 +129,18 @@ def _proof(trial: Trials, conflict: list[int]) -> str:
 
 def _first_broken(problem: Problem, outcome) -> list[int]:
     """The worst equation, and those of the first closed step that found no place."""
-    steps = problem.plan.steps
-    failed = np.flatnonzero((outcome.fates == 1) & (steps.block < 0))
-    rows = [int(r) for r in steps.edges[failed[0]] if r >= 0] if failed.size else []
+    fates = zip(problem.plan.steps, outcome.fates.tolist(), strict=True)
+    failed = (step.rows for step, fate in fates if fate == FAILED and not step.numeric)
+    rows = next(failed, ())
     return [r for r in (*rows, outcome.broken) if r >= 0]
 
 
 def _large_failures(problem: Problem, fates: np.ndarray) -> list[int]:
     """The constraints of the large clusters whose search failed: too large to be thinned by trials."""
-    steps, out = problem.plan.steps, set()
-    for k in np.flatnonzero(((fates == 1) | (fates == 2)) & (steps.block >= 0)):
-        _, rows = block_of(steps, steps.block[k])
-        if rows.size >= BANDED:
-            out |= {int(o) for o in problem.tables.owner[rows]}
+    out: set[int] = set()
+    for step, fate in zip(problem.plan.steps, fates.tolist(), strict=True):
+        if fate in (FAILED, TOO_LARGE) and step.numeric and len(step.rows) >= BANDED:
+            out |= {int(o) for o in problem.tables.owner[list(step.rows)]}
     return sorted(out)
 
 
@@ -151,7 +148,7 @@ def _suspects(problem: Problem, broken: int) -> list[int] | None:
     """The constraints (by index) of the circuit around a broken equation, if there is one."""
     owner, plan, var = problem.tables.owner, problem.plan, problem.system.var
     for k in np.flatnonzero(plan.dependent == broken):
-        rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
+        rows = plan.circuits[k]
         touched = np.unique(var[rows][var[rows] >= 0])
         merged = np.flatnonzero(problem.fate == MERGED)
         near = merged[np.isin(var[merged], touched).any(axis=1)]

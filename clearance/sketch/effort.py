@@ -1,4 +1,4 @@
-"""The time limit of a solve, checked between the steps of its searches.
+"""The effort of a solve: its time limit, checked between the steps of its searches; a terminal shows the time.
 
 The answer of a solve that ends in time does not depend on the limit; a solve that is stopped changes
 nothing. Not for: how hard a search tries (`execution.run`).
@@ -7,17 +7,31 @@ nothing. Not for: how hard a search tries (`execution.run`).
 from __future__ import annotations
 
 import math
+import sys
 import time
 from collections.abc import Callable
 
+import numpy as np
+
 from clearance.errors import BadDimension
 
-SECONDS = 10.0
-"""[s] Default limit of processor time; sketches of a hundred points take milliseconds."""
+SECONDS = 5.0
+"""[s] Default limit of processor time; sketches of a thousand points take a fraction of it."""
+
+SHOWN_AFTER, SHOWN_EVERY = 1.0, 0.2
+"""[s] When a terminal begins to show the time that a solve has taken, and how often."""
 
 
 class OutOfTime(Exception):
-    """A search has passed its limit; raised within this package only."""
+    """A search has passed its limit; raised within this package only.
+
+    Attributes:
+        x: (n,) the best numbers that it had found by then; None for none.
+    """
+
+    def __init__(self, x: np.ndarray | None = None) -> None:
+        super().__init__()
+        self.x = x
 
 
 class TimeLimit:
@@ -36,20 +50,37 @@ class TimeLimit:
         if not (isinstance(seconds, int | float) and seconds >= 0.0):
             raise BadDimension(f"seconds is {seconds!r:.60}", valid="0 s or more")
         self.seconds = float(seconds)
-        self._clock, self._end = clock, clock() + self.seconds
+        self._clock, self._begin = clock, clock()
+        self._shown = SHOWN_AFTER
 
     def again(self) -> TimeLimit:
         """The same limit, from now on."""
         return TimeLimit(self.seconds, self._clock)
 
     def require_left(self) -> None:
-        """Nothing, if time is left.
+        """Nothing, if time is left; a terminal shows how much was taken.
 
         Raises:
             OutOfTime: none is.
         """
-        if self._clock() >= self._end:
+        taken = self._clock() - self._begin
+        if taken >= self.seconds:
             raise OutOfTime
+        if taken >= self._shown:
+            self._shown = taken + SHOWN_EVERY
+            _show(f"solving the sketch: {taken:.1f} of at most {self.seconds:g} s")
+
+    def clear(self) -> None:
+        """Removes what a terminal shows."""
+        if self._shown > SHOWN_AFTER:
+            _show("")
+
+
+def _show(text: str) -> None:
+    """Writes a line that the next one replaces, where errors go to a terminal."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\x1b[K{text}")
+        sys.stderr.flush()
 
 
 UNLIMITED = TimeLimit(math.inf, clock=lambda: 0.0)

@@ -8,23 +8,25 @@ them; parts with freedom move least as a whole.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import LENGTHS, RATIO
-from clearance.kernels.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
-from clearance.kernels.sketch.solve.execute import FAILED, KEPT
-from clearance.kernels.sketch.solve.fit import set_down
-from clearance.kernels.sketch.solve.motion import ClusterPlace, NumericCluster
-from clearance.kernels.sketch.solve.search import BANDED, RESTARTS, solve_block
-from clearance.kernels.sketch.solve.start import unsettled
 from clearance.sketch.contacts import Contacts
+from clearance.sketch.effort import OutOfTime
+from clearance.sketch.equations import LENGTHS, RATIO
 from clearance.sketch.folds import solve_from
+from clearance.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.execute import FAILED, KEPT, Run, execute
+from clearance.sketch.solve.fit import set_down
+from clearance.sketch.solve.search import BANDED, RESTARTS, solve_cluster
+from clearance.sketch.solve.system import System
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of, stopping_rule
+from clearance.sketch.steps import LARGEST_BLOCK, limits_of, residual_of, stopping_rule
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -37,23 +39,30 @@ WRONG_SIDE = -2
 
 class ExecutionResult:
     """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do); whether its limit
-    has stopped it."""
+    has stopped it. `best` are the numbers of least error, where it was stopped; else its numbers."""
 
     def __init__(
         self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float, stopped: bool = False
     ) -> None:
         self.x = x
+        self.best = x
         self.fates = fates
         self.broken = broken
         self.residual = residual
         self.stopped = stopped
 
 
-def stopped(problem: Problem, before: np.ndarray) -> ExecutionResult:
-    """What stands for a run that was stopped by its limit: the numbers `before` (n,), nothing solved."""
+def stopped(problem: Problem, before: np.ndarray, found: np.ndarray | None) -> ExecutionResult:
+    """What stands for a run that was stopped by its limit: the numbers `before` (n,), nothing solved.
+
+    Its best numbers are those found by then, where their error is less.
+    """
     residual, row = residual_of(problem, before[problem.alias])
-    fates = np.full(problem.plan.steps.vertex.shape[0], KEPT)
-    return ExecutionResult(before.copy(), fates, max(int(row), 0), residual, stopped=True)
+    fates = np.full(len(problem.plan.steps), KEPT)
+    out = ExecutionResult(before.copy(), fates, max(int(row), 0), residual, stopped=True)
+    if found is not None and residual_of(problem, found[problem.alias])[0] < residual:
+        out.best = found[problem.alias]
+    return out
 
 
 def run(
@@ -61,7 +70,7 @@ def run(
     before: np.ndarray,
     sides: Sides = (),
     effort: int = 2,
-    turned: np.ndarray | None = None,
+    turned: frozenset[int] = frozenset(),
 ) -> ExecutionResult:
     """Solves a problem from the numbers `before` (n,).
 
@@ -70,13 +79,17 @@ def run(
 
     Args:
         effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
-        turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
+        turned: the closed steps that take the branch opposite to the sketch.
 
     Raises:
         OutOfTime: the problem's limit has passed.
     """
     unit, lengths = _units(problem)
-    outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
+    try:
+        outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
+    except OutOfTime as stop:
+        stop.x = None if stop.x is None else stop.x * lengths
+        raise
     outcome.x *= lengths
     outcome.residual *= unit
     return outcome
@@ -99,31 +112,30 @@ def _in_units(problem: Problem, unit: float) -> Problem:
     s, tables = problem.system, problem.tables
     angular = (problem.length_scale != 1.0) | (s.code == LENGTHS) | (s.code == RATIO)
     turning = np.append(tables.role == DIRECTION, False)
-    system = s._replace(
+    system = s.replaced(
         value=np.where(angular, s.value, s.value / unit),
         shift=np.where(turning, s.shift, s.shift / unit),
     )
-    out = Problem(**{**vars(problem), "system": system})
-    out.size = problem.size / unit
-    out.length_scale = np.where(problem.length_scale != 1.0, problem.length_scale / unit, 1.0)
-    return out
+    scale = np.where(problem.length_scale != 1.0, problem.length_scale / unit, 1.0)
+    return replace(problem, system=system, size=problem.size / unit, length_scale=scale)
 
 
 def _run_at_unit(
-    problem: Problem, before: np.ndarray, sides: Sides, effort: int, turned: np.ndarray | None
+    problem: Problem, before: np.ndarray, sides: Sides, effort: int, turned: frozenset[int]
 ) -> ExecutionResult:
     """`run` for a problem of a size near 1."""
     size, dependent = problem.size, problem.plan.dependent
     x, sketch = started(problem, before, sides)
-    loose = _loosened(problem, dependent)
-    active = unsettled(
-        problem.regular, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
-    )
-    if turned is not None:
-        active[problem.part[problem.plan.steps.vertex[turned < 0.0]]] = 1
-    fates = np.full(problem.plan.steps.vertex.shape[0], KEPT)
+    active = _unsettled(problem, problem.regular, x, SETTLED * size)
+    for k in turned:
+        active[problem.part[problem.plan.steps[k].vertex]] = True
+    fates = np.full(len(problem.plan.steps), KEPT)
     if active.any():
-        fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
+        try:
+            fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
+        except OutOfTime as stop:
+            stop.x = x if stop.x is None else stop.x
+            raise
     if problem.tables.together:
         x = x[problem.alias]
     residual, broken = _verdict(problem, x)
@@ -141,12 +153,12 @@ def _run_at_unit(
     return outcome
 
 
-def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
-    """The part of every row, without the rows that others imply."""
-    if not dependent.size:
-        return problem.row_part
-    out = problem.row_part.copy()
-    out[dependent] = -1
+def _unsettled(problem: Problem, system: System, x: np.ndarray, tolerance: float) -> np.ndarray:
+    """(parts,) marks those with an equation that does not hold, of the equations that no others imply."""
+    off = ~(np.abs(system.all_rows.errors(x)) * problem.length_scale <= tolerance)
+    off[problem.plan.dependent] = False
+    out = np.zeros(problem.n_parts, bool)
+    out[problem.row_part[off & (problem.row_part >= 0)]] = True
     return out
 
 
@@ -156,18 +168,17 @@ def _solve_parts(
     sketch: np.ndarray,
     active_part: np.ndarray,
     effort: int,
-    turned: np.ndarray | None,
+    turned: frozenset[int],
 ):
+    """(fates of the steps, numbers) after the parts that need work are solved from x."""
     size, s = problem.size, problem.system
     start = x.copy()
-    active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
+    active = np.where(problem.part >= 0, active_part[problem.part], False).tolist()
     limits = limits_of(problem, RESTARTS if effort else 4)
-    turned = np.ones(problem.plan.steps.vertex.size) if turned is None else turned
-    fates = execute(problem, x, start, turned, active, limits)
+    fates = execute(s, problem.plan, x, Run(start, active, turned), limits)
     if effort == 0 and (fates == FAILED).any():
         return fates, x
-    loose = _loosened(problem, problem.plan.dependent)
-    broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
+    broken = _unsettled(problem, s, x, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part).tolist():
         problem.limit.require_left()
         if effort < 2 or not _from_drawing(problem, p, x, start):
@@ -198,7 +209,7 @@ def _nearest(
     if settle.any():
         weight = np.ones(s.kind.shape[0])
         weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
-        set_down(s, problem.part, settle, x, sketch, weight)
+        x = set_down(s, problem.part, settle, x, sketch, weight)
     for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)).tolist():
         problem.limit.require_left()
         moved = least_movement(problem, p, x, sketch, problem.weight, start)
@@ -229,15 +240,14 @@ def _numeric_part(
     rows = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
     if rows.size > 4 * LARGEST_BLOCK:
         return False
-    alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
-    cluster = NumericCluster(vertices, rows, alone)
+    columns = Columns(s, vertices, rows)
     rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
     mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
         problem.limit.require_left()
-        tried = np.where(mine, origin, x)  # other parts stay where they are
-        if solve_block(s, cluster, ClusterPlace(tried, pivot), rule):
-            x[:] = tried
+        found = solve_cluster(columns, np.where(mine, origin, x), rule)  # other parts stay
+        if found is not None:
+            x[:] = found
             return True
     return False
 

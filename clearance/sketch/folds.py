@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import POINT_POINT
-from clearance.kernels.sketch.graph.graph import RADIUS
 from clearance.sketch.descent import CORRECTIONS, Iterate, ProblemPart, descend
+from clearance.sketch.equations import POINT_POINT
+from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import Problem
 
 GAIN = 0.02

@@ -7,17 +7,14 @@ solution (`mobility`), so that dependencies which no count can see (theorems of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch.graph.plan_steps import block_of
-from clearance.kernels.sketch.graph.rank import singular_steps
-from clearance.kernels.sketch.solve.columns import spread
 from clearance.sketch.execution import at_unit
-from clearance.sketch.mobility import SINGULAR, Equations, implied, motions_of, numbered, rank_of
+from clearance.sketch.graph.graph import POINT, SLIDE, TURN
+from clearance.sketch.mobility import SINGULAR, Equations, implied, motions_of, rank_of
 from clearance.sketch.problem import Problem
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.rank import singular_steps
 
 FACTORED = 1500
 """Freedoms of a part up to which its matrix is factored; beyond that the plan's own steps are the
@@ -43,21 +40,17 @@ def equations_of(problem: Problem, part: int, x: np.ndarray, *, regular: bool = 
     return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x, system)
 
 
-def rigid_motions(
-    problem: Problem, x: np.ndarray, vertices: np.ndarray, first: np.ndarray
-) -> np.ndarray:
+def rigid_motions(problem: Problem, x: np.ndarray, columns: Columns) -> np.ndarray:
     """(n, 3) two shifts and a turn about the origin as motions of the columns."""
-    s = problem.system
-    out = np.zeros((int(np.max(first)) + 2, 3))
-    for v in vertices:
-        c, i = first[v], s.root[v]
-        if s.kind[v] == POINT:
-            out[c, 0] = out[c + 1, 1] = 1.0
-            out[c, 2], out[c + 1, 2] = -x[i + 1] / problem.size, x[i] / problem.size
-        elif s.kind[v] == TURN:
-            out[c, 2] = 1.0
-        elif s.kind[v] == SLIDE:
-            out[c, 0], out[c, 1] = -np.sin(x[i - 1]), np.cos(x[i - 1])
+    s, first, out = problem.system, columns.first, np.zeros((columns.n, 3))
+    kind = s.kind[columns.single]
+    points, turns, slides = (columns.single[kind == k] for k in (POINT, TURN, SLIDE))
+    c, i = first[points], s.root[points]
+    out[c, 0] = out[c + 1, 1] = 1.0
+    out[c, 2], out[c + 1, 2] = -x[i + 1] / problem.size, x[i] / problem.size
+    out[first[turns], 2] = 1.0
+    theta = x[s.root[slides] - 1]
+    out[first[slides], 0], out[first[slides], 1] = -np.sin(theta), np.cos(theta)
     return out
 
 
@@ -72,10 +65,10 @@ def freedom_of(problem: Problem, x: np.ndarray) -> int:
 def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
     """(parts,) whether the count alone may err: numeric clusters, implied equations, singular steps."""
     plan, out = problem.plan, np.zeros(problem.n_parts, bool)
-    out[problem.part[plan.steps.block_vertex]] = True
+    numeric = [step.vertex for step in plan.steps if step.numeric]
+    singular = singular_steps(problem.system, plan.steps, x, problem.size)
+    out[problem.part[numeric + [step.vertex for step in singular]]] = True
     out[problem.row_part[plan.dependent]] = True
-    singular = singular_steps(problem.system, plan.steps, x, problem.size) > 0
-    out[problem.part[plan.steps.vertex[singular]]] = True
     return out
 
 
@@ -92,18 +85,15 @@ def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) 
 def whole_placement(problem: Problem, x: np.ndarray) -> int:
     """How many of the three rigid motions of the whole move anything and respect the ground."""
     s = problem.system
-    motions, grounded = np.zeros((0, 3)), np.zeros((0, 3))
+    grounded = np.zeros((0, 3))
     vertices = np.arange(1, s.kind.size)
     if not vertices.size:
         return 0
-    first, _ = numbered(problem, vertices)
-    motions = rigid_motions(problem, x, vertices, first)
-    rows = np.flatnonzero(problem.fate == 0)
-    touching = rows[(problem.absolute[rows] > 0)]
+    touching = np.flatnonzero((problem.fate == 0) & (problem.absolute > 0))
+    columns = Columns(s, vertices, touching)
+    motions = rigid_motions(problem, x, columns)
     if touching.size:
-        _, i, j, value = spread(s, touching, x, first)
-        grounded = np.zeros((touching.size, 3))
-        np.add.at(grounded, i, value[:, None] * motions[j])
+        grounded = columns.sparse(x) @ motions
     turned = np.any((s.vertex_of == 0) & (problem.tables.role == 2))
     slid = np.flatnonzero((s.vertex_of == 0) & (problem.tables.role == 3))
     extra = [[0.0, 0.0, 1.0]] if turned else []
@@ -192,11 +182,10 @@ def _loose_motions(problem: Problem, x: np.ndarray, part: int):
 def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> list[int]:
     """The columns of vertices placed first that hold a part: as many as rigid motions are left to it."""
     vertices, first = equations.vertices, equations.first
-    motions = rigid_motions(problem, x, vertices, first)[:, : (3, 2, 0)[problem.hold[part]]]
+    motions = rigid_motions(problem, x, equations.columns)[:, : (3, 2, 0)[problem.hold[part]]]
     inside = set(map(int, vertices))
     columns: list[int] = []
-    steps = range(problem.plan.steps.vertex.size)
-    placed = [v for k in steps for v in _placed(problem, k) if v in inside]
+    placed = [v for step in problem.plan.steps for v in step.vertices if v in inside]
     for v in dict.fromkeys([*placed, *map(int, vertices)]):
         for c in range(first[v], first[v] + (2 if problem.system.kind[v] == POINT else 1)):
             if len(columns) == motions.shape[1]:
@@ -204,11 +193,3 @@ def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> 
             if rank_of(motions[[*columns, c]]) == len(columns) + 1:
                 columns.append(c)
     return columns
-
-
-def _placed(problem: Problem, step: int) -> Iterable[int]:
-    steps = problem.plan.steps
-    b = steps.block[step]
-    if b >= 0:
-        return map(int, block_of(steps, b)[0])
-    return [int(v) for v in (steps.vertex[step], steps.partner[step]) if v >= 0]

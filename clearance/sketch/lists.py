@@ -24,7 +24,7 @@ class FlatLists:
 
     Attributes:
         numbers: the value of every variable, counted from the origin.
-        roles: the role of every variable (`clearance.kernels.sketch.graph.graph`).
+        roles: the role of every variable (`clearance.sketch.graph.graph`).
         line_ends: three numbers a line: its variable and those of its two points (-1: none).
         codes, variables, coefficients, scales, offsets, grounds: the equations, row by row; a row has eight
             variables and four coefficients.

@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import POINT, TURN
-from clearance.kernels.sketch.solve.columns import bend, spread, step_by
-from clearance.kernels.sketch.solve.place import System
+from clearance.sketch.graph.graph import TURN
 from clearance.sketch.problem import Problem
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.system import System
 
 SINGULAR = 1e-9
 """[-] Ratio to the largest below which a singular value is taken for 0: dimensions are scaled to
@@ -46,15 +46,6 @@ class Motions(NamedTuple):
     place: np.ndarray
 
 
-def numbered(problem: Problem, vertices: np.ndarray) -> tuple[np.ndarray, int]:
-    """(first column of each of some vertices (-1 for all others), number of columns)."""
-    s = problem.system
-    widths = np.where(s.kind[vertices] == POINT, 2, 1)
-    first = np.full(s.kind.size, -1)
-    first[vertices] = np.cumsum(widths) - widths
-    return first, int(widths.sum())
-
-
 class Equations:
     """Some equations of one part at a solution: derivatives scaled to lengths, walks on the solutions.
 
@@ -70,7 +61,8 @@ class Equations:
         self.rows = rows
         self.solution = x
         self.vertices = np.flatnonzero(problem.part == part)
-        self.first, self.n = numbered(problem, self.vertices)
+        self.columns = Columns(system, self.vertices, rows)
+        self.first, self.n = self.columns.first, self.columns.n
         self.system = s = system
         self.unit = np.ones(self.n)
         self.unit[self.first[self.vertices[s.kind[self.vertices] == TURN]]] = 1.0 / problem.size
@@ -84,14 +76,11 @@ class Equations:
 
     def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and derivative (m, n)."""
-        f, i, j, value = spread(self.system, self.rows, x, self.first)
-        matrix = np.zeros((self.rows.size, self.n))
-        np.add.at(matrix, (i, j), value)
-        return f - self.error, matrix * self.unit
+        return self.columns.errors(x) - self.error, self.columns.matrix(x) * self.unit
 
     def curvature(self, x: np.ndarray, weights: np.ndarray, motions: np.ndarray) -> np.ndarray:
         """(k, k) the second derivative of the weighted equations along motions (n, k)."""
-        i, j, value = bend(self.system, self.rows, x.copy(), self.first, weights)
+        i, j, value = self.columns.bend(x, weights)
         matrix = np.zeros((self.n, self.n))
         np.add.at(matrix, (i, j), value)
         scaled = self.unit[:, None] * motions
@@ -99,9 +88,7 @@ class Equations:
 
     def moved(self, x: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The numbers after a step (n,) of the columns."""
-        out = x.copy()
-        step_by(self.system, self.vertices, self.unit * step, 1.0, out, self.first)
-        return out
+        return self.columns.moved(x, self.unit * step)
 
     def walked(self, x: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """(numbers, way in columns) after a step and the least-norm way back to the equations, if it is

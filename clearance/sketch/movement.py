@@ -13,10 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
-from clearance.kernels.sketch.solve.columns import bend, spread, step_by
-from clearance.kernels.sketch.solve.place import System
+from clearance.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
 from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.system import System
 
 DENSE = 160
 """Unknowns up to which the dense factorisation of the optimality system is the faster one
@@ -77,10 +77,8 @@ class _Work:
         dependent = np.zeros(problem.row_part.size, bool)
         dependent[problem.plan.dependent] = True
         self.rows = np.flatnonzero((problem.row_part == part) & (problem.fate == 0) & ~dependent)
-        widths = np.where(s.kind[self.vertices] == POINT, 2, 1)
-        self.first = np.full(s.kind.size, -1)
-        self.first[self.vertices] = np.concatenate([[0], np.cumsum(widths)[:-1]])
-        self.n = int(widths.sum())
+        self.columns = Columns(s, self.vertices, self.rows)
+        self.first, self.n = self.columns.first, self.columns.n
         self.target = target
         self.hessian = self._hessian(weight)
 
@@ -108,7 +106,7 @@ class _Work:
         """Whether the equations hold as they are counted: a contact may be regular on a line's other side."""
         if self.problem.contacts is None:
             return True
-        error = spread(self.problem.system, self.rows, x, self.first)[0]
+        error = self.problem.system.rows(self.rows).errors(x)
         return bool(np.abs(error).max(initial=0.0) <= RESIDUAL * self.problem.size)
 
     def offsets(self, x: np.ndarray) -> np.ndarray:
@@ -136,9 +134,10 @@ class _Work:
         size = self.problem.size
         multipliers = np.zeros(self.rows.size)
         for k in range(30):
-            f, rows, cols, entries = spread(self.system, self.rows, x, self.first)
+            f, entries = self.columns.errors(x), self.columns.entries(x)
+            rows, cols = self.columns.pattern
             gap = self.offsets(x)
-            bent = bend(self.system, self.rows, x, self.first, multipliers) if k > 1 else None
+            bent = self.columns.bend(x, multipliers) if k > 1 else None
             step, fresh = self._step(f, rows, cols, entries, gap, bent)
             if step is None:
                 return None
@@ -205,13 +204,12 @@ class _Work:
 
         def merit(numbers):
             g = self.offsets(numbers)
-            r = spread(self.system, self.rows, numbers, self.first)[0]
+            r = self.columns.errors(numbers)
             return 0.5 * np.sum(h * g[i] ** 2) + price * np.sum(np.abs(r))
 
         before, size = merit(x), 1.0
         while size > 1e-3:
-            moved = x.copy()
-            step_by(self.system, self.vertices, step, size, moved, self.first)
+            moved = self.columns.moved(x, size * step)
             if merit(moved) <= before * (1.0 + 1e-14):
                 return moved, size
             size *= 0.5
@@ -222,7 +220,8 @@ class _Work:
         size = self.problem.size
         best, least = None, RESIDUAL * size
         for _ in range(12):
-            f, rows, cols, entries = spread(self.system, self.rows, x, self.first)
+            f, entries = self.columns.errors(x), self.columns.entries(x)
+            rows, cols = self.columns.pattern
             violated = np.abs(f).max(initial=0.0)
             if violated <= least:
                 if best is not None and violated > 0.3 * least:
@@ -236,8 +235,7 @@ class _Work:
             solution = self._solved(diagonal, None, rows, cols, entries, f.size, right)
             if solution is None or not np.isfinite(solution).all():
                 break
-            x = x.copy()
-            step_by(self.system, self.vertices, solution[: self.n], 1.0, x, self.first)
+            x = self.columns.moved(x, solution[: self.n])
         return best
 
 

@@ -4,7 +4,7 @@ Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by 
 bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing,
 whose assumptions are counted: Fig. 13 (a) and (b) lack one edge, (c) is two bodies that lack two,
 (d) two bodies that lack one. Not for: making the plan
-(`clearance.kernels.sketch.graph.plan`).
+(`clearance.sketch.graph.plan`).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
-from clearance.kernels.sketch.graph.plan_steps import IN_BODY, block_of
+from clearance.sketch.graph.graph import POINT, SLIDE
+from clearance.sketch.graph.steps import IN_BODY, PlanStep
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Step:
 
 
 OUTCOMES = ("done", "failed", "failed", "kept")
-"""By the fates of `clearance.kernels.sketch.solve.execute`."""
+"""By the fates of `clearance.sketch.solve.execute`."""
 
 
 class _Names:
@@ -94,12 +94,11 @@ def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
     names = _Names(sketch, problem)
     reading = _ClosedStepReading(names, problem)
     out = _preprocessing(names, problem)
-    for k, b in enumerate(problem.plan.steps.block):
-        outcome = OUTCOMES[fates[k]]
-        if b >= 0:
-            out.append(_block_step(names, problem, int(b), outcome))
+    for step, fate in zip(problem.plan.steps, fates.tolist(), strict=True):
+        if step.numeric:
+            out.append(_block_step(names, problem, step, OUTCOMES[fate]))
         else:
-            out.append(reading.step(k, outcome))
+            out.append(reading.step(step, OUTCOMES[fate]))
     return out
 
 
@@ -111,20 +110,16 @@ class _ClosedStepReading:
         self.problem = problem
         self.plan = problem.plan
         self.base = {int(b) for b in np.flatnonzero(self.plan.held)}
-        steps = problem.plan.steps
-        placed = (*steps.vertex, *steps.partner, *steps.block_vertex)
-        self.placed = {int(v) for v in placed if v >= 0}
+        self.placed = {v for step in problem.plan.steps for v in step.vertices}
         self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
         for v in np.flatnonzero(np.isin(self.plan.body_of, list(self.base))):
             self.spare[int(problem.part[v])] = 0  # its base places the part
         self.spare_of_body: dict[int, int] = {}
         self.size: dict[int, int] = {}
 
-    def step(self, k: int, outcome: str) -> Step:
-        steps = self.plan.steps
-        vertices = [int(v) for v in (steps.vertex[k], steps.partner[k]) if v >= 0]
-        rows = [int(r) for r in steps.edges[k] if r >= 0]
-        inside, body = steps.origin[k] == IN_BODY, int(self.plan.body_of[vertices[0]])
+    def step(self, step: PlanStep, outcome: str) -> Step:
+        vertices, rows = list(step.vertices), step.rows
+        inside, body = step.origin == IN_BODY, int(self.plan.body_of[step.vertex])
         kind, assumed = self._kind(vertices, rows, inside, body)
         if inside and len(rows) == 1:  # an edge whose other end is held without a step of its own
             ends = [int(v) for v in self.problem.system.ends[rows[0]] if v > 0]
@@ -167,9 +162,8 @@ def _preprocessing(names: _Names, problem) -> list[Step]:
     return out
 
 
-def _block_step(names: _Names, problem, b: int, outcome: str) -> Step:
-    plan, s = problem.plan, problem.system
-    vertices, rows = block_of(plan.steps, b)
+def _block_step(names: _Names, problem, step: PlanStep, outcome: str) -> Step:
+    plan, s, vertices, rows = problem.plan, problem.system, step.vertices, step.rows
     nodes = {
         ("body", int(plan.body_of[v])) if plan.body_of[v] >= 0 else ("vertex", int(v))
         for v in vertices
@@ -182,8 +176,5 @@ def _block_step(names: _Names, problem, b: int, outcome: str) -> Step:
     elif bodies == len(nodes) == 2:
         kind = "d"
     return Step(
-        kind, names.vertices(vertices), names.rows(rows), 0, "numeric", freedom - rows.size, outcome
+        kind, names.vertices(vertices), names.rows(rows), 0, "numeric", freedom - len(rows), outcome
     )
-
-
-__all__ = ["GROUND", "SIZE", "TURN", "Step", "readable"]

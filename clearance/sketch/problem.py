@@ -7,30 +7,31 @@ which is how conflicts are searched.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch.equations import CIRCLE_CIRCLE
-from clearance.kernels.sketch.graph.core import components
-from clearance.kernels.sketch.graph.graph import (
+from clearance.sketch.contacts import Contacts, contacts_of
+from clearance.sketch.effort import UNLIMITED, TimeLimit
+from clearance.sketch.equations import CIRCLE_CIRCLE, LINEAR
+from clearance.sketch.graph.graph import (
     DIRECTION,
-    IN_GRAPH,
+    FREEDOMS,
     MERGED,
     OFFSET,
     SLIDE,
-    X,
+    Merged,
+    components,
     edges,
+    graph_of,
     members,
     merge,
     vertices,
 )
-from clearance.kernels.sketch.graph.plan import ConstructionPlan, make_plan, peeled_plan
-from clearance.kernels.sketch.solve.place import System
-from clearance.kernels.sketch.solve.start import counts, row_parts
-from clearance.sketch.contacts import Contacts, contacts_of
-from clearance.sketch.effort import UNLIMITED, TimeLimit
+from clearance.sketch.graph.plan import make_plan
+from clearance.sketch.graph.steps import ConstructionPlan
+from clearance.sketch.solve.system import System
 
 RESIDUAL = 1e-12
 """[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
@@ -43,9 +44,6 @@ itself."""
 DEPENDENT = 1e-9
 """[-] How far a dimension that others imply may be off, relative to the size, and still agree with
 them: a long circuit loses digits by its condition."""
-
-FREEDOMS = np.array([3, 2, 1, 1, 1])
-"""Degrees of freedom by kind of vertex."""
 
 
 @dataclass(eq=False)
@@ -119,7 +117,6 @@ class Problem:
     system: System
     fate: np.ndarray
     absolute: np.ndarray
-    theta_of: np.ndarray
     plan: ConstructionPlan
     part: np.ndarray
     n_parts: int
@@ -177,34 +174,29 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
         alias, weight, repeated = joined(tables)
         var = np.where(tables.var >= 0, alias[tables.var], -1)
         turning = tables.role[np.maximum(var[:, 0], 0)] == DIRECTION
-        angular = (tables.code == 6) & turning
+        angular = (tables.code == LINEAR) & turning
     else:
         alias, weight, repeated, var = like.alias, like.weight, like.repeated, like.system.var
         angular = like.length_scale != 1.0
     length_scale = np.where(angular, size * 1.0000001, 1.0)
-    parent, scale, shift, fate = merge(
+    merged = merge(
         tables.code, var, tables.coef, value, tables.role, length_scale, DEPENDENT * size
     )
-    coef = inner_and_outer(tables, var, parent, shift)
+    coef = inner_and_outer(tables, var, merged.parent, merged.shift)
     if (
         like is not None
-        and np.array_equal(parent, like.system.parent)
-        and np.array_equal(fate, like.fate)
+        and np.array_equal(merged.parent, like.system.parent)
+        and np.array_equal(merged.fate, like.fate)
     ):
-        system = like.system._replace(coef=coef, value=value, scale=scale, shift=shift)
-        out = Problem(**{**vars(like), "tables": tables, "system": system})
-        out.size, out.length_scale = size, length_scale
-        return out
+        system = like.system.replaced(
+            coef=coef, value=value, scale=merged.scale, shift=merged.shift
+        )
+        return replace(like, tables=tables, system=system, size=size, length_scale=length_scale)
     if tables.together:
-        rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == 6))
-        fate[rows] = MERGED
-    same, merged = (
-        _NumberAliases(alias, weight, repeated),
-        _MergedNumbers(parent, scale, shift, fate),
-    )
-    out = _fresh(tables, same, merged, var, value, size, length_scale)
-    out.system = out.system._replace(coef=coef)
-    return out
+        rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == LINEAR))
+        merged.fate[rows] = MERGED
+    same = _NumberAliases(alias, weight, repeated)
+    return _fresh(tables, same, merged, var, coef, value, size, length_scale)
 
 
 def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) -> np.ndarray:
@@ -232,58 +224,61 @@ class _NumberAliases(NamedTuple):
     repeated: list[int]
 
 
-class _MergedNumbers(NamedTuple):
-    """(n + 1,) each number is `scale` times that of `parent`, plus `shift`; (m,) what became of each row."""
-
-    parent: np.ndarray
-    scale: np.ndarray
-    shift: np.ndarray
-    fate: np.ndarray
-
-
-def _fresh(tables, same: _NumberAliases, merged: _MergedNumbers, var, value, size, length_scale):
+def _fresh(tables, same: _NumberAliases, merged: Merged, var, coef, value, size, length_scale):
     """The problem with a plan of its own."""
-    alias, weight, repeated = same
-    parent, scale, shift, fate = merged
-    vertex_of, kind, root = vertices(tables.role, parent, weight > 0)
-    ends = edges(var, tables.ground, fate, vertex_of)
-    start, member = members(vertex_of, tables.role, parent, kind.shape[0])
-    theta_of = np.zeros(kind.shape[0], np.int64)
+    vertex_of, kind, root = vertices(tables.role, merged.parent, same.weight > 0)
+    ends = edges(var, tables.ground, merged.fate, vertex_of)
+    start, member = members(vertex_of, tables.role, kind.size)
+    theta_of = np.zeros(kind.size, np.int64)
     slides = np.flatnonzero(kind == SLIDE)
     theta_of[slides] = vertex_of[root[slides] - 1]
+    ground = _grounded(tables, var, merged.fate, vertex_of, ends)
     system = System(
-        tables.code,
-        var,
-        tables.coef,
-        value,
-        kind,
-        root,
-        parent,
-        scale,
-        shift,
-        start,
-        member,
-        vertex_of,
-        ends,
-    )
+        tables.code, var, coef, value, kind, root, merged.parent, merged.scale, merged.shift,
+        start, member, vertex_of, ends,
+    )  # fmt: skip
+    plan = make_plan(graph_of(kind, ends, ground, theta_of))
+    part, n_parts, hold = components(kind, ends, theta_of, ground)
+    row_part = _row_parts(var, part, vertex_of)
+    free = _freedoms_left(kind, ends, part, n_parts, plan.dependent)
+    plain = (tables.scale == 0.0) & (tables.offset == 0.0)
+    return Problem(
+        tables, *same, system, merged.fate, ground, plan, part, n_parts, hold,
+        free, row_part, length_scale, size,
+        contacts_of(tables.code, var, plain, ~np.isin(row_part, row_part[plan.dependent])),
+    )  # fmt: skip
+
+
+def _grounded(tables: Tables, var, fate, vertex_of, ends) -> np.ndarray:
+    """(m,) how every row refers to the ground: those of known offsets by position; `ends` then begin with it."""
     placed = (tables.role == OFFSET) & (vertex_of == 0)
+    if not placed.any():
+        return tables.ground
     ground = np.where((placed[var] & (var >= 0)).any(axis=1) & (fate == 0), 1, tables.ground)
     first_is_ground = (ground == 1) & (tables.ground == 0)
     ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(
         -1, 5
     )
-    plan, whole = peeled_plan(kind, ends, ground, theta_of)
-    if not whole:
-        plan = make_plan(kind, ends, ground, theta_of)
-    part, n_parts, hold = components(kind, ends, theta_of, ground)
-    free = counts(kind, ends, part, n_parts, plan.dependent, FREEDOMS)
-    row_part = row_parts(ends, var, part, vertex_of)
-    plain = (tables.scale == 0.0) & (tables.offset == 0.0)
-    return Problem(
-        tables, alias, weight, repeated, system, fate, ground, theta_of, plan, part, n_parts, hold,
-        free, row_part, length_scale, size,
-        contacts_of(tables.code, var, plain, ~np.isin(row_part, row_part[plan.dependent])),
-    )  # fmt: skip
+    return ground
+
+
+def _row_parts(var, part, vertex_of) -> np.ndarray:
+    """The connected part of every equation; -1 for those of known numbers only."""
+    if not var.shape[0]:
+        return np.zeros(0, np.int64)
+    named = np.where(var >= 0, vertex_of[var], 0)
+    first = np.argmax(named > 0, axis=1)
+    named = named[np.arange(var.shape[0]), first]
+    return np.where(named > 0, part[np.maximum(named, 0)], -1)
+
+
+def _freedoms_left(kind, ends, part, n_parts: int, dependent) -> np.ndarray:
+    """Degrees of freedom left in every part: those of its vertices less its independent equations."""
+    out = np.bincount(part[1:], np.array(FREEDOMS)[kind[1:]], n_parts)
+    chosen = (ends > 0).any(axis=1)
+    chosen[dependent] = False
+    first = ends[chosen, np.argmax(ends[chosen] > 0, axis=1)]
+    return (out - np.bincount(part[first], minlength=n_parts)).astype(np.int64)
 
 
 def _ground_first(ends: np.ndarray) -> list[int]:
@@ -296,24 +291,7 @@ def size_of(tables: Tables, x: np.ndarray, value: np.ndarray) -> float:
     """[m] the largest coordinate, radius or dimension in lengths; 1 for an empty sketch."""
     lengths = x[(tables.role != DIRECTION)]
     size = float(np.abs(lengths).max()) if lengths.size else 0.0
-    plain = value[(tables.code <= 5)]
+    plain = value[(tables.code <= CIRCLE_CIRCLE)]
     if plain.size:
         size = max(size, float(np.abs(plain).max()))
     return size or 1.0
-
-
-def is_point(role: np.ndarray) -> np.ndarray:
-    """(n,) marks the first variable of every point."""
-    return role == X
-
-
-__all__ = [
-    "IN_GRAPH",
-    "Problem",
-    "Tables",
-    "is_point",
-    "joined",
-    "problem_of",
-    "size_of",
-    "tables_of",
-]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.sketch.constraints import measured
+from clearance.sketch.equations import Rows
 from clearance.sketch.problem import Tables, joined
 from clearance.sketch.trials import Trials
 
@@ -63,8 +64,6 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     """The least change of all dimensions at once, the other constraints kept; None if not found."""
     from scipy.optimize import least_squares
 
-    from clearance.kernels.sketch.equations import residuals
-
     tables = _smallest(trial, conflict)
     if tables is None:
         return None
@@ -73,11 +72,13 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     weight = np.where(soft, 1.0, FIRM)
     alias, _, _ = joined(tables)
     var = np.where(tables.var >= 0, alias[tables.var], -1)
+    rows = Rows(tables.code, var, tables.coef, tables.value)
 
     def violation(numbers: np.ndarray) -> np.ndarray:
         x = trial.before.copy()
         x[free] = numbers
-        return weight * residuals(tables.code, var, tables.coef, tables.value, x[alias])
+        trial.limit.require_left()
+        return weight * rows.errors(x[alias])
 
     fitted = least_squares(
         violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300

@@ -78,10 +78,9 @@ class SketchResult:
         """Every over-constrained part: the constraints of a circuit of the graph (Definition 2)."""
         plan, owner = self._problem.plan, self._problem.tables.owner
         out = []
-        for k in range(plan.dependent.size):
-            rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
+        for rows in plan.circuits:
             names = dict.fromkeys(
-                self.sketch._lists.constraints[o].name for o in owner[np.sort(rows)]
+                self.sketch._lists.constraints[o].name for o in owner[sorted(rows)]
             )
             out.append(list(names))
         return out
@@ -89,7 +88,7 @@ class SketchResult:
     @cached_property
     def movement(self) -> float:
         """[m] how far the points moved: root of the summed squares."""
-        from clearance.kernels.sketch.graph.graph import X, Y
+        from clearance.sketch.graph.graph import X, Y
 
         role = self._problem.tables.role
         shift = (self._outcome.x - self._before)[(role == X) | (role == Y)]

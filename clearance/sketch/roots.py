@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import POINT
-from clearance.kernels.sketch.graph.plan_steps import block_of
-from clearance.kernels.sketch.solve.execute import DONE
-from clearance.kernels.sketch.solve.motion import NumericCluster
-from clearance.kernels.sketch.solve.roots import RootSearch, cluster_roots
+from clearance.sketch.graph.graph import POINT, SIZE, TURN
+from clearance.sketch.graph.steps import PlanStep
 from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.execute import DONE
+from clearance.sketch.solve.newton import descended
 from clearance.sketch.start import Sides, sides_hold
 from clearance.sketch.steps import residual_of, run_after, stopping_rule
 
@@ -35,26 +35,54 @@ MOST = 64
 """Roots that are kept: ten entities of two freedoms rarely have more real ones."""
 
 
-def is_small(problem: Problem, b: int) -> bool:
-    """Whether a cluster has at most `SMALL` nodes (a body counts as one) and as many equations as
+AT_ONCE = 100
+"""Starts that go down side by side."""
+
+
+def is_small(problem: Problem, step: PlanStep) -> bool:
+    """Whether a step is a cluster of at most `SMALL` nodes (a body counts as one) and of as many equations as
     freedoms."""
-    vertices, rows = block_of(problem.plan.steps, b)
+    if not step.numeric:
+        return False
+    vertices = np.array(step.vertices)
     body, kind = problem.plan.body_of[vertices], problem.system.kind[vertices]
     bodies = np.unique(body[body >= 0]).size
     nodes = bodies + int(np.sum(body < 0))
     freedom = 3 * bodies + int(np.sum(np.where(kind == POINT, 2, 1)[body < 0]))
-    return nodes <= SMALL and freedom == rows.size
+    return nodes <= SMALL and freedom == len(step.rows)
 
 
-def roots_of(problem: Problem, b: int, x: np.ndarray, starts: int = STARTS) -> np.ndarray:
+def roots_of(problem: Problem, step: PlanStep, x: np.ndarray, starts: int = STARTS) -> np.ndarray:
     """All numbers (k, n) found with the cluster's equations true, all else as in x; x's own first."""
-    plan = problem.plan
-    vertices, rows = block_of(problem.plan.steps, b)
+    s, vertices = problem.system, np.array(step.vertices)
+    columns = Columns(s, vertices, np.array(step.rows), problem.plan.body_of)
     reach = max(_extent(problem, vertices, x), 0.1 * problem.size)
-    cluster = NumericCluster(vertices, rows, plan.body_of)
-    search = RootSearch(problem.size, reach, starts, MOST)
-    rule = stopping_rule(problem, 1)
-    return cluster_roots(problem.system, cluster, x, plan.held.size, rule, search)
+    random, rule = np.random.default_rng(12345), stopping_rule(problem, 1)
+    scale = np.full(columns.n, reach)
+    scale[columns.first[columns.single[s.kind[columns.single] == TURN]]] = np.pi
+    scale[columns.turns] = np.pi
+    sizes = s.member[
+        (s.kind[s.vertex_of[s.member]] == SIZE) & np.isin(s.vertex_of[s.member], vertices)
+    ]
+    found = [x]
+    for k in range(0, starts, AT_ONCE):
+        steps = scale * random.uniform(-1.0, 1.0, (min(AT_ONCE, starts - k), columns.n))
+        scattered = columns.moved(np.repeat(x[None], len(steps), axis=0), steps)
+        ends, good = descended(columns, scattered, rule, 40)
+        for y in ends[good & (ends[:, sizes] > 0.0).all(axis=1)]:
+            if len(found) < MOST and all(_apart(problem, vertices, y, z) > 1e-6 for z in found):
+                found.append(y)
+    return np.array(found)
+
+
+def _apart(problem: Problem, vertices: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
+    """The largest difference of two places of a cluster relative to the size; directions as arcs at it."""
+    s = problem.system
+    i, turning = s.root[vertices], s.kind[vertices] == TURN
+    gap = np.where(turning, np.sin(0.5 * (x[i] - y[i])), (x[i] - y[i]) / problem.size)
+    ys = i[s.kind[vertices] == POINT] + 1
+    across = (x[ys] - y[ys]) / problem.size
+    return max(float(np.abs(gap).max(initial=0.0)), float(np.abs(across).max(initial=0.0)))
 
 
 def _places(problem: Problem, vertices: np.ndarray) -> np.ndarray:
@@ -71,18 +99,19 @@ def _extent(problem: Problem, vertices: np.ndarray, x: np.ndarray) -> float:
 
 def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np.ndarray):
     """x with every small cluster that was moved far at its root nearest to the sketch."""
-    for k in np.flatnonzero((fates == DONE) & (problem.plan.steps.block >= 0)):
-        b = int(problem.plan.steps.block[k])
-        vertices, _ = block_of(problem.plan.steps, b)
-        mine = _places(problem, vertices)
+    for k in np.flatnonzero(fates == DONE).tolist():
+        step = problem.plan.steps[k]
+        if not is_small(problem, step):
+            continue
+        mine = _places(problem, np.array(step.vertices))
         moved = float(np.abs(x[mine] - sketch[mine]).max(initial=0.0))
-        if moved <= FAR * _extent(problem, vertices, sketch) or not is_small(problem, b):
+        if moved <= FAR * _extent(problem, np.array(step.vertices), sketch):
             continue
         problem.limit.require_left()
-        found = roots_of(problem, b, x, QUICK_STARTS)
+        found = roots_of(problem, step, x, QUICK_STARTS)
         away = np.linalg.norm(found[:, mine] - sketch[mine], axis=1)
         if away.min() < 0.999 * away[0]:
-            nearer, good = run_after(problem, b, found[int(np.argmin(away))], sketch)
+            nearer, good = run_after(problem, k, found[int(np.argmin(away))], sketch)
             x = nearer if good else x
     return x
 
@@ -90,11 +119,11 @@ def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np
 def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, float]]:
     """The other solutions (n,), one small cluster changed at a time, and their residuals; nearest first."""
     found = []
-    for b in range(problem.plan.steps.block_row_start.size - 1):
-        if not is_small(problem, b):
+    for k, step in enumerate(problem.plan.steps):
+        if not is_small(problem, step):
             continue
-        for root in roots_of(problem, b, x)[1:]:
-            complete, _ = run_after(problem, b, root, x)
+        for root in roots_of(problem, step, x)[1:]:
+            complete, _ = run_after(problem, k, root, x)
             complete = complete[problem.alias]
             residual, _ = residual_of(problem, complete)
             if residual <= RESIDUAL * problem.size:

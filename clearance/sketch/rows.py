@@ -1,4 +1,4 @@
-"""The equations that each constraint stands for, as rows for `clearance.kernels.sketch.equations`.
+"""The equations that each constraint stands for, as rows for `clearance.sketch.equations`.
 
 A function per form takes the sketch's numbers and the entities; whatever an equation leaves open by sign (the
 side of a line, inside or outside, the turn of an angle) it reads from the sketch. Not for: which kinds
@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from clearance.kernels.sketch import equations as equation
+from clearance.sketch import equations as equation
 from clearance.sketch.entities import Arc, Line, Point
 
 NOWHERE, GROUNDED, ORIENTED = 0, 1, 2

@@ -60,8 +60,10 @@ class Solver:
         """The outcome from the numbers before; these again where the time was not enough."""
         try:
             return run_with_sides(problem, before, self.sides)
-        except OutOfTime:
-            return stopped(problem, before)
+        except OutOfTime as stop:
+            return stopped(problem, before, stop.x)
+        finally:
+            problem.limit.clear()
 
     def drag(
         self, point, position: tuple[float, float], limit: TimeLimit

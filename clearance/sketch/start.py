@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.kernels.sketch.solve.start import agree
+from clearance.sketch.graph.graph import DIRECTION, OFFSET, RADIUS
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
 Sides = Sequence[tuple[int, int, int]]
@@ -23,9 +23,31 @@ def started(problem: Problem, before: np.ndarray, sides: Sides) -> tuple[np.ndar
         _join(problem, x)
     _mirror(problem, x, sides)
     sketch = x.copy()
-    s, role = problem.system, problem.tables.role
-    agree(s, role, x, _middles(problem, sketch), SETTLED * problem.size)
+    for role in (DIRECTION, OFFSET, RADIUS):
+        _agree(problem, role, x)
     return x, sketch
+
+
+def _agree(problem: Problem, role: int, x: np.ndarray) -> None:
+    """Makes merged directions, offsets or radii agree, in place on x, unless they do already; lines turn about
+    their points' middle."""
+    s, n, drawn = problem.system, x.size, x.copy()
+    mine = np.flatnonzero(problem.tables.role == role)
+    counted = mine[(s.vertex_of[mine] > 0) & (s.scale[mine] != 0.0)]
+    root = s.parent[counted]
+    count = np.bincount(root, minlength=n + 1)
+    total = np.bincount(root, (x[counted] - s.shift[counted]) / s.scale[counted], n + 1)
+    mine = mine[(s.parent[mine] != mine) | (count[mine] > 1)]
+    root = s.parent[mine]
+    merged = s.scale[mine] * total[root] / np.maximum(count[root], 1) + s.shift[mine]
+    off = np.zeros(n + 1)
+    np.maximum.at(off, root, np.abs(merged - x[mine]))
+    apart = off[root] > SETTLED * problem.size
+    x[mine[apart]] = merged[apart]
+    turned = mine[apart][x[mine[apart]] != drawn[mine[apart]]] if role == DIRECTION else mine[:0]
+    if turned.size:
+        middle = _middles(problem, drawn)[turned]
+        x[turned + 1] = np.cos(x[turned]) * middle[:, 1] - np.sin(x[turned]) * middle[:, 0]
 
 
 def _join(problem: Problem, x: np.ndarray) -> None:

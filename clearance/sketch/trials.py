@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch.graph.graph import IN_GRAPH, RADIUS, REPEATED
-from clearance.kernels.sketch.solve.motion import ClusterPlace, NumericCluster
-from clearance.kernels.sketch.solve.search import solve_block
 from clearance.sketch.branches import run_with_sides
+from clearance.sketch.graph.graph import IN_GRAPH, RADIUS, REPEATED
 from clearance.sketch.problem import Problem, Tables, problem_of
+from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.search import solve_cluster
 from clearance.sketch.start import sides_hold
 from clearance.sketch.steps import stopping_rule
 
@@ -33,7 +33,6 @@ class Trials:
         self.before = before
         self.starts = [found]
         self.limit = problem.limit
-        self.alone = np.full(problem.system.kind.size, -1)
 
     def marks(self, chosen: list[int]) -> np.ndarray:
         """(constraints,) True for the chosen."""
@@ -75,19 +74,20 @@ class Trials:
         vertices = np.unique(s.ends[rows])
         vertices = vertices[vertices > 0]
         sides = self.sketch.sides(set(chosen))
+        columns = Columns(s, vertices, rows)
         for k, start in enumerate(self.starts):
-            x = start.copy()
-            if self._descends(x, rows, vertices) and sides_hold(x, sides, self.problem.size):
+            x = self._descended(columns, start)
+            if x is not None and sides_hold(x, sides, self.problem.size):
                 self.starts[1:] = [x] if k == 0 else [x, *self.starts[1:k]]
                 return True
         return False
 
-    def _descends(self, x: np.ndarray, rows: np.ndarray, vertices: np.ndarray) -> bool:
-        """Whether a descent in place on x makes these equations hold, with every radius above 0."""
-        cluster = NumericCluster(vertices, rows, self.alone)
-        place, rule = ClusterPlace(x, np.zeros((0, 2))), stopping_rule(self.problem, 1)
-        good = not rows.size or solve_block(self.problem.system, cluster, place, rule)
-        return good and bool((x[self.tables.role == RADIUS] > 0.0).all())
+    def _descended(self, columns: Columns, x: np.ndarray) -> np.ndarray | None:
+        """Where a descent from x makes some equations hold, with every radius above 0; None for nowhere."""
+        rule = stopping_rule(self.problem, 1)._replace(limit=self.limit)
+        found = solve_cluster(columns, x, rule) if columns.rows.size else x
+        good = found is not None and (found[self.tables.role == RADIUS] > 0.0).all()
+        return found if good else None
 
     def everything(self, broken: int) -> list[int]:
         """All constraints of the broken part of the sketch (of the whole when it cannot be found)."""

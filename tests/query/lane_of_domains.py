@@ -15,7 +15,6 @@ import numpy as np
 import clearance as cl
 from tests.made_cases import arm, at, dented, flying
 from tests.query.lane import body_pairs, out_of_bounds_is_seen, told
-from tests.sketch.patterns import truth
 
 
 def search() -> list:
@@ -70,18 +69,7 @@ def hausdorff() -> list:
     return found
 
 
-def sketch() -> list:
-    """Sketches that are well constrained, under- and over-constrained, and where their points come to lie."""
-    found = []
-    for n, extra, missing in ((5, 0, 0), (6, 0, 1), (5, 1, 0)):
-        one, points, _, _ = truth(n, 3, extra=extra, missing=missing)
-        solved = one.solve()
-        places = [_bits(x) for point in points for x in point.position]
-        found.append([solved.status, solved.freedom, _bits(solved.residual), places])
-    return found
-
-
-DOMAINS = {one.__name__: one for one in (search, sweep, certify, polytope, hausdorff, sketch)}
+DOMAINS = {one.__name__: one for one in (search, sweep, certify, polytope, hausdorff)}
 
 
 def _two_links() -> cl.Case:

@@ -1,6 +1,6 @@
 """Kernels that read without checks: each domain as plain Python, and one with every index checked.
 
-As plain Python numpy checks each index of all six domains, in seconds. What that cannot show is how compiled code
+As plain Python numpy checks each index of all five domains, in seconds. What that cannot show is how compiled code
 reads: there the smallest domain is compiled, at level 1, into the cache that the user has: checked code has
 names of its own there, so that only the first run after a change of its kernels pays for it. The others take
 minutes:

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.kernels.sketch.graph.graph import DIRECTION
 from clearance.sketch import Sketch
+from clearance.sketch.graph.graph import DIRECTION
 from scripts.bench.sketches.lattices import flipped, patch
 from tests.examples import some_slow
 from tests.sketch.patterns import distances, irreducible, prism, shaken, truth

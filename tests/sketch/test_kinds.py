@@ -6,13 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from clearance.kernels.sketch.equations import evaluate, residuals
-from clearance.kernels.sketch.solve.columns import bend, spread, step_by
 from clearance.sketch import Sketch
 from clearance.sketch.constraints import KINDS, measured
-from clearance.sketch.mobility import numbered
+from clearance.sketch.equations import Rows
 from clearance.sketch.problem import problem_of, tables_of
-from tests.reached import reached
+from clearance.sketch.solve.columns import Columns
 
 
 def entities(s, takes):
@@ -50,7 +48,6 @@ def test_it_holds_after_solving(kind, k):
         assert measured(c, s._lists.numbers) == pytest.approx(DIMENSION[form.unit], rel=1e-12)
 
 
-@pytest.mark.slow  # it compiles a kernel of its own
 @pytest.mark.parametrize(("kind", "k"), CASES)
 def test_derivatives_match_differences(kind, k):
     s, _c, _ = made(kind, k)
@@ -58,9 +55,8 @@ def test_derivatives_match_differences(kind, k):
     x = np.array(s._lists.numbers) + np.random.default_rng(1).uniform(
         -0.3, 0.3, len(s._lists.numbers)
     )
-    slots = np.empty((t.code.size, 8))
-    for row in range(t.code.size):
-        reached(evaluate)(t.code, t.var, t.coef, t.value, x, row, slots[row])
+    rows = Rows(t.code, t.var, t.coef, t.value)
+    slots = rows.slopes(x)
     analytic = np.zeros((t.code.size, x.size))
     for row, var in enumerate(t.var):
         for slot, i in enumerate(var):
@@ -71,27 +67,24 @@ def test_derivatives_match_differences(kind, k):
         up, down = x.copy(), x.copy()
         up[i] += h
         down[i] -= h
-        ahead, behind = (residuals(t.code, t.var, t.coef, t.value, y) for y in (up, down))
+        ahead, behind = (rows.errors(y) for y in (up, down))
         assert np.abs((ahead - behind) / (2 * h) - analytic[:, i]).max(initial=0.0) < 1e-8
 
 
 def bent(s, x):
     """The second derivative of the sum of all equations, assembled, and by differences of the first."""
     problem = problem_of(tables_of(s), x)
-    y = problem.system
     rows = np.flatnonzero(problem.fate == 0)
-    vertices = np.arange(1, y.kind.size)
-    first, n = numbered(problem, vertices)
-    i, j, value = bend(y, rows, x.copy(), first, np.ones(rows.size))
+    columns = Columns(problem.system, np.arange(1, problem.system.kind.size), rows)
+    n = columns.n
+    i, j, value = columns.bend(x, np.ones(rows.size))
     assembled = np.zeros((n, n))
     np.add.at(assembled, (i, j), value)
     differences, h = np.zeros((n, n)), 1e-5
     for k, e in enumerate(np.eye(n)):
         for sign in (1.0, -1.0):
-            moved = x.copy()
-            step_by(y, vertices, e, sign * h, moved, first)
-            _, _, at, slope = spread(y, rows, moved, first)
-            differences[k] += sign * np.bincount(at, slope, n) / (2.0 * h)
+            slope = columns.matrix(columns.moved(x, sign * h * e)).sum(axis=0)
+            differences[k] += sign * slope / (2.0 * h)
     return assembled, differences
 
 

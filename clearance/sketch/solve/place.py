@@ -6,44 +6,17 @@ distances; the sketch's side is kept. Where a condition is missing the sketch is
 assumptions): the nearest point of a locus, a line's old direction.
 """
 
+from __future__ import annotations
+
 import math
-from typing import NamedTuple
 
-import numpy as np
-
-from clearance.compile.jit import inline
-from clearance.kernels.sketch.equations import ACROSS, LINE_CIRCLE, MIDDLE_ON, evaluate
-from clearance.kernels.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
-from clearance.kernels.sketch.solve.loci import locus, meet, nearest_on, root_of
+from clearance.sketch.equations import ACROSS, LINE_CIRCLE, MIDDLE_ON
+from clearance.sketch.graph.graph import POINT, SIZE, TURN
+from clearance.sketch.graph.steps import PlanStep
+from clearance.sketch.solve.loci import locus, meet, nearest_on, root_of
+from clearance.sketch.solve.system import PlainSystem
 
 
-class System(NamedTuple):
-    """Equations and graph as flat arrays; `member` lists the merged variables of a vertex."""
-
-    code: np.ndarray
-    var: np.ndarray
-    coef: np.ndarray
-    value: np.ndarray
-    kind: np.ndarray
-    root: np.ndarray
-    parent: np.ndarray
-    scale: np.ndarray
-    shift: np.ndarray
-    member_start: np.ndarray
-    member: np.ndarray
-    vertex_of: np.ndarray
-    ends: np.ndarray
-
-
-@inline
-def assign(s, v, number, x):
-    """Sets a class of directions, offsets or radii: its root and every merged variable."""
-    for at in range(s.member_start[v], s.member_start[v + 1]):
-        i = s.member[at]
-        x[i] = s.scale[i] * number + s.shift[i]
-
-
-@inline
 def _place_point(s, v, rows, count, x, sketch, turned):
     i = s.root[v]
     px, py = sketch[i], sketch[i + 1]
@@ -67,48 +40,41 @@ def _place_point(s, v, rows, count, x, sketch, turned):
     return good
 
 
-@inline
-def _place_number(s, v, row, x, gradient):
+def _place_number(s, v, row, x):
     """Places an offset or a radius, in which every equation is linear; a radius must not be
     negative."""
-    assign(s, v, 0.0, x)
-    f0 = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
-    assign(s, v, 1.0, x)
-    slope = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient) - f0
+    s.assign(v, 0.0, x)
+    f0 = s.residual(row, x)
+    s.assign(v, 1.0, x)
+    slope = s.residual(row, x) - f0
     if abs(slope) < 1e-12:
         return False
     number = -f0 / slope
-    assign(s, v, number, x)
-    if s.kind[v] == SIZE:
-        for at in range(s.member_start[v], s.member_start[v + 1]):
-            if x[s.member[at]] < 0.0:
-                return False
-    return True
+    s.assign(v, number, x)
+    return s.kind[v] != SIZE or all(x[i] >= 0.0 for i in s.members[v])
 
 
-@inline
 def _line_condition(s, row, own, x):
     """(1, px, py, w) for n . p - d = w on the line at variables own, own + 1; (2, ux, uy, 0) for n
     || u."""
     code = s.code[row]
     if code == ACROSS:
-        ux = x[s.var[row, 2]] - x[s.var[row, 0]]
-        uy = x[s.var[row, 3]] - x[s.var[row, 1]]
-        turn = s.shift[s.var[row, 4]] - s.shift[own]
+        ux = x[s.var[row][2]] - x[s.var[row][0]]
+        uy = x[s.var[row][3]] - x[s.var[row][1]]
+        turn = s.shift[s.var[row][4]] - s.shift[own]
         c, si = math.cos(turn), math.sin(turn)
         return 2, c * ux + si * uy, c * uy - si * ux, 0.0
-    px, py, w = x[s.var[row, 0]], x[s.var[row, 1]], s.value[row]
-    theta, d = s.var[row, 2], s.var[row, 3]
+    px, py, w = x[s.var[row][0]], x[s.var[row][1]], s.value[row]
+    theta, d = s.var[row][2], s.var[row][3]
     if code == MIDDLE_ON:
-        px, py, w = 0.5 * (px + x[s.var[row, 2]]), 0.5 * (py + x[s.var[row, 3]]), 0.0
-        theta, d = s.var[row, 4], s.var[row, 5]
+        px, py, w = 0.5 * (px + x[s.var[row][2]]), 0.5 * (py + x[s.var[row][3]]), 0.0
+        theta, d = s.var[row][4], s.var[row][5]
     elif code == LINE_CIRCLE:
-        w += s.coef[row, 0] * x[s.var[row, 4]]
+        w += s.coef[row][0] * x[s.var[row][4]]
     sign = 1.0 if math.cos(s.shift[theta] - s.shift[own]) > 0.0 else -1.0
     return 1, px, py, sign * (w + s.shift[d])
 
 
-@inline
 def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
     """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the
     sketch's.
@@ -118,12 +84,11 @@ def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
     """
     theta = math.atan2(-nx, ny)
     theta += 2.0 * math.pi * round((sketch[own] - theta) / (2.0 * math.pi))
-    assign(s, turn, theta - s.shift[own], x)
+    s.assign(turn, theta - s.shift[own], x)
     if slide >= 0:
-        assign(s, slide, d, x)
+        s.assign(slide, d, x)
 
 
-@inline
 def _place_line(s, turn, slide, rows, count, x, sketch, turned):
     """Places a line from at most two conditions; `slide` -1 places a direction alone (from one)."""
     own = s.root[slide] - 1 if slide >= 0 else s.root[turn]
@@ -174,21 +139,20 @@ def _place_line(s, turn, slide, rows, count, x, sketch, turned):
     return True
 
 
-@inline
-def place(s, v, partner, rows, x, sketch, gradient, turned):
-    """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such
-    place. `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's."""
-    count = 0
-    while count < 3 and rows[count] >= 0:
-        count += 1
-    kind = s.kind[v]
+def place(
+    s: PlainSystem, step: PlanStep, x: list[float], sketch: list[float], turned: float
+) -> bool:
+    """Places what a closed step places, in place on x; False when there is no such place.
+
+    `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's.
+    """
+    v, partner, rows = step.vertex, step.partner, step.rows
+    count, kind = len(rows), s.kind[v]
     if kind == POINT and partner < 0:
         return count <= 2 and _place_point(s, v, rows, count, x, sketch, turned)
     if kind == TURN:
         return count <= 2 and _place_line(s, v, partner, rows, count, x, sketch, turned)
-    if kind == SLIDE or kind == SIZE:
-        if count == 0:
-            assign(s, v, sketch[s.root[v]], x)
-            return True
-        return count == 1 and _place_number(s, v, rows[0], x, gradient)
-    return False
+    if count == 0 and kind != POINT:
+        s.assign(v, sketch[s.root[v]], x)
+        return True
+    return count == 1 and kind != POINT and _place_number(s, v, rows[0], x)

@@ -4,11 +4,12 @@ Two loci meet in at most two points; the one is taken that lies on the same side
 branch ever flips. Not for: placing (`sketch.solve.place`).
 """
 
+from __future__ import annotations
+
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
-from clearance.kernels.sketch.equations import (
+from clearance.sketch.equations import (
     CIRCLE_CIRCLE,
     LENGTHS,
     LINE_CIRCLE,
@@ -18,10 +19,10 @@ from clearance.kernels.sketch.equations import (
     POINT_LINE,
     POINT_POINT,
 )
+from clearance.sketch.solve.system import PlainSystem
 
 GRAZING = 4e-13
-"""How far, relative to the squared lengths, two loci may miss each other and still count as
-touching."""
+"""How far, relative to the squared lengths, two loci may miss each other and still count as touching."""
 
 
 class Locus(NamedTuple):
@@ -37,42 +38,39 @@ class Locus(NamedTuple):
 NO_LOCUS = Locus(0, 0.0, 0.0, 0.0)
 
 
-@inline
-def _unit_line(nx, ny, c):
+def _unit_line(nx: float, ny: float, c: float) -> Locus:
     length = math.hypot(nx, ny)
     if length == 0.0:
         return NO_LOCUS
     return Locus(1, nx / length, ny / length, c / length)
 
 
-@inline
-def _other(s, row, i, x):
+def _other(s: PlainSystem, row: int, i: int, x: list[float]) -> tuple[float, float]:
     """The coordinates of the end of a point pair (slots 0..3) that is not point i."""
-    k = 2 if s.var[row, 0] == i else 0
-    return x[s.var[row, k]], x[s.var[row, k + 1]]
+    k = 2 if s.var[row][0] == i else 0
+    return x[s.var[row][k]], x[s.var[row][k + 1]]
 
 
-@inline
-def _lengths_locus(s, row, i, x):
+def _lengths_locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus:
     """Where p may be for |p - q| = k |u - w| or |p - q| = k |p - w| (p at i, in either pair)."""
     k = s.value[row]
-    first = s.var[row, 0] == i or s.var[row, 2] == i
-    second = s.var[row, 4] == i or s.var[row, 6] == i
+    first = s.var[row][0] == i or s.var[row][2] == i
+    second = s.var[row][4] == i or s.var[row][6] == i
     at = 0 if first else 4
-    if s.var[row, at] == i and s.var[row, at + 2] == i:
+    if s.var[row][at] == i and s.var[row][at + 2] == i:
         return NO_LOCUS
-    j = at + 2 if s.var[row, at] == i else at
-    qx, qy = x[s.var[row, j]], x[s.var[row, j + 1]]
+    j = at + 2 if s.var[row][at] == i else at
+    qx, qy = x[s.var[row][j]], x[s.var[row][j + 1]]
     if not (first and second):
         o = 4 - at
-        ax, ay = x[s.var[row, o]], x[s.var[row, o + 1]]
-        bx, by = x[s.var[row, o + 2]], x[s.var[row, o + 3]]
+        ax, ay = x[s.var[row][o]], x[s.var[row][o + 1]]
+        bx, by = x[s.var[row][o + 2]], x[s.var[row][o + 3]]
         length = math.hypot(ax - bx, ay - by)
         return Locus(2, qx, qy, (k * length if first else length / k))
-    if s.var[row, 4] == i and s.var[row, 6] == i:
+    if s.var[row][4] == i and s.var[row][6] == i:
         return NO_LOCUS
-    j = 6 if s.var[row, 4] == i else 4
-    wx, wy = x[s.var[row, j]], x[s.var[row, j + 1]]
+    j = 6 if s.var[row][4] == i else 4
+    wx, wy = x[s.var[row][j]], x[s.var[row][j + 1]]
     if k == 1.0:
         return _unit_line(wx - qx, wy - qy, 0.5 * (wx * wx + wy * wy - qx * qx - qy * qy))
     g = 1.0 - k * k
@@ -80,49 +78,47 @@ def _lengths_locus(s, row, i, x):
     return Locus(2, (qx - k * k * wx) / g, (qy - k * k * wy) / g, radius)
 
 
-@inline
-def locus(s, row, i, x):
+def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus:
     """Where the point at variable i may lie for equation `row`."""
     code = s.code[row]
     v = s.value[row]
     if code == LINEAR:
         a, b, rest = 0.0, 0.0, v
         for k in range(4):
-            j = s.var[row, k]
+            j = s.var[row][k]
             if j == i:
-                a += s.coef[row, k]
+                a += s.coef[row][k]
             elif j == i + 1:
-                b += s.coef[row, k]
+                b += s.coef[row][k]
             elif j >= 0:
-                rest -= s.coef[row, k] * x[j]
+                rest -= s.coef[row][k] * x[j]
         return _unit_line(a, b, rest)
     if code == POINT_LINE or code == LINE_CIRCLE:
-        theta = x[s.var[row, 2]]
-        c = x[s.var[row, 3]] + v
+        theta = x[s.var[row][2]]
+        c = x[s.var[row][3]] + v
         if code == LINE_CIRCLE:
-            c += s.coef[row, 0] * x[s.var[row, 4]]
+            c += s.coef[row][0] * x[s.var[row][4]]
         return Locus(1, -math.sin(theta), math.cos(theta), c)
     if code == LENGTHS:
         return _lengths_locus(s, row, i, x)
-    if s.var[row, 0] == s.var[row, 2]:
+    if s.var[row][0] == s.var[row][2]:
         return NO_LOCUS
     qx, qy = _other(s, row, i, x)
     if code == POINT_POINT:
         return Locus(2, qx, qy, v)
     if code == POINT_CIRCLE:
-        return Locus(2, qx, qy, x[s.var[row, 4]] + v)
+        return Locus(2, qx, qy, x[s.var[row][4]] + v)
     if code == CIRCLE_CIRCLE:
-        r = s.coef[row, 0] * x[s.var[row, 4]] + s.coef[row, 1] * x[s.var[row, 5]] + v
+        r = s.coef[row][0] * x[s.var[row][4]] + s.coef[row][1] * x[s.var[row][5]] + v
         return Locus(2, qx, qy, r)
-    theta = x[s.var[row, 4]]
+    theta = x[s.var[row][4]]
     sin, cos = math.sin(theta), math.cos(theta)
     if code == MIDDLE_ON:
-        return Locus(1, -sin, cos, 2.0 * x[s.var[row, 5]] + sin * qx - cos * qy)
+        return Locus(1, -sin, cos, 2.0 * x[s.var[row][5]] + sin * qx - cos * qy)
     return Locus(1, cos, sin, cos * qx + sin * qy)
 
 
-@inline
-def nearest_on(locus, px, py):
+def nearest_on(locus: Locus, px: float, py: float) -> tuple[bool, float, float]:
     """Whether there is a nearest point of a line or circle to p, and that point."""
     a, b, c = locus.a, locus.b, locus.c
     if locus.kind == 1:
@@ -135,16 +131,14 @@ def nearest_on(locus, px, py):
     return c >= 0.0, a + c * dx / length, b + c * dy / length
 
 
-@inline
-def root_of(square, scale):
+def root_of(square: float, scale: float) -> float:
     """The square root, 0 for a negative number within rounding of `scale`, -1 otherwise."""
     if square >= 0.0:
         return math.sqrt(square)
     return 0.0 if square >= -GRAZING * scale else -1.0
 
 
-@inline
-def _side(value, plus, minus):
+def _side(value: float, plus: float, minus: float) -> float:
     """Which of two solutions: the sketch's side, or the nearer one when the sketch lies on the
     border."""
     if value == 0.0:
@@ -152,8 +146,7 @@ def _side(value, plus, minus):
     return 1.0 if value > 0.0 else -1.0
 
 
-@inline
-def _two_lines(first, second):
+def _two_lines(first: Locus, second: Locus) -> tuple[bool, float, float]:
     """Whether two lines meet, and where."""
     det = first.a * second.b - second.a * first.b
     if abs(det) < 1e-12:
@@ -181,7 +174,6 @@ class CommonChord(NamedTuple):
 NO_CHORD = CommonChord(0.0, 0.0, 0.0, 0.0, -1.0, 0.0)
 
 
-@inline
 def _two_circles(first, second, drawn_first, drawn_second, px, py):
     """The common chord of two circles."""
     dx, dy = second.a - first.a, second.b - first.b
@@ -197,7 +189,6 @@ def _two_circles(first, second, drawn_first, drawn_second, px, py):
     return CommonChord(first.a + along * ux, first.b + along * uy, -uy, ux, h, side)
 
 
-@inline
 def _line_and_circle(line, circle, drawn_line, drawn_circle, px, py):
     """The chord that a line cuts off a circle."""
     if circle.c < 0.0:
@@ -208,7 +199,6 @@ def _line_and_circle(line, circle, drawn_line, drawn_circle, px, py):
     return CommonChord(circle.a - gap * line.a, circle.b - gap * line.b, -line.b, line.a, h, side)
 
 
-@inline
 def meet(first, second, drawn_first, drawn_second, px, py, turned):
     """Whether two loci meet, and their common point on the sketch's side (`turned` 1) or the other (-1).
 

@@ -1,1 +1,0 @@
-"""Geometric constraints: equations, the graph they make, and how it is solved."""

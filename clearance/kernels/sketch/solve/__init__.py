@@ -1,1 +1,0 @@
-"""Running a construction plan: closed steps, numeric clusters, all roots."""
