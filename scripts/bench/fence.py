@@ -1,11 +1,14 @@
 """Holds the answers and times of this tree against those of an earlier revision, side by side in one run.
 
-    python scripts/bench/fence.py REVISION [--cases NAME ...] [--cells N] [--passes N]
+    python scripts/bench/fence.py REVISION [--cases NAME ...] [--cells N] [--verdicts NAME ...] [--passes N]
+                                           [--first-run]
 
 Each tree answers in processes of its own, the two in turn: the scenes, the shared cases where they are there, and
 random cells. Compared are the bits of every clearance, witness point and pair at the steps; the certified bounds,
 with and without tolerances, which may differ but must not be looser by more than 1 %; exit code and summary; and
-CPU seconds. The exit code is 1 where bits, exit codes or summaries differ, or a bound is looser.
+CPU seconds. Of small cases that end in every kind of verdict, exit code and summary alone are compared. Last come
+the seconds of a start, the least of all commands, and of the first check and first distance with nothing
+compiled. The exit code is 1 where bits, exit codes or summaries differ, or a bound is looser.
 """
 
 from __future__ import annotations
@@ -16,9 +19,12 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from verdict_cases import CASES, write_verdict_case
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared" / "cases"
@@ -76,28 +82,63 @@ print(json.dumps(told))
 """
 
 
+FIRST = {
+    "first check": ("-m", "clearance", "check", "scenes/box_box/case.yaml", "--quiet"),
+    "first distance": (
+        "-c",
+        "import clearance as cl; cl.distance(cl.box((1, 1, 1)), cl.sphere(radius=0.2))",
+    ),
+}
+"""Commands whose first run is timed."""
+
+
 def main() -> int:
     """Runs what the command line asks for."""
     asked = _arguments()
+    names = [*_cases(asked.cases), *(f"cell {seed}" for seed in range(asked.cells))]
     with _tree_of(asked.revision) as before:
         trees = {"before": before, "now": ROOT}
-        differing = 0
-        for name in [*_cases(asked.cases), *(f"cell {seed}" for seed in range(asked.cells))]:
-            answers = {
-                tree: _answer(path, _in_tree(path, name), asked.passes)
-                for tree, path in trees.items()
-            }
-            faults = list(_faults(answers["before"], answers["now"]))
-            differing += bool(faults)
-            print(f"{_shown(name):34} {_times(answers)}  {'; '.join(faults) or 'same'}", flush=True)
+        differing = sum(_case_differs(trees, name, asked.passes) for name in names)
+        differing += _differing_verdicts(trees, CASES if asked.verdicts is None else asked.verdicts)
+        for what, command in FIRST.items() if asked.first_run else ():
+            seconds = {tree: _first(path, command) for tree, path in trees.items()}
+            print(f"{what:34} {_shown_seconds(seconds)}", flush=True)
     print(f"{differing} differ")
     return int(differing > 0)
+
+
+def _case_differs(trees: dict[str, Path], name: str, passes: int) -> bool:
+    """Holds the answers to a scene, a shared case or a cell against each other, and prints a line."""
+    answers = {tree: _answer(path, _in_tree(path, name), passes) for tree, path in trees.items()}
+    faults = list(_faults(answers["before"], answers["now"]))
+    print(f"{_shown(name):34} {_times(answers)}  {'; '.join(faults) or 'same'}", flush=True)
+    return bool(faults)
+
+
+def _differing_verdicts(trees: dict[str, Path], names: Iterable[str]) -> int:
+    """Holds the verdicts on small cases against each other, and prints a line for each and one on the start."""
+    starts, differing = [], 0
+    for name in names:
+        verdicts, seconds = _verdicts(trees, name)
+        starts.append(seconds)
+        faults = list(_faults(verdicts["before"], verdicts["now"]))
+        differing += bool(faults)
+        told = f"exit code {verdicts['now']['exit code']}"
+        print(f"{name:34} {told}  {'; '.join(faults) or 'same'}", flush=True)
+    if starts:
+        least = {tree: min(seconds[tree] for seconds in starts) for tree in trees}
+        print(f"{'start':34} {_shown_seconds(least)}", flush=True)
+    return differing
 
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("revision", help="what git calls the earlier state, as HEAD~3 or a tag")
     parser.add_argument("--cases", nargs="*", help="names of scenes or shared cases; default: all")
+    parser.add_argument(
+        "--verdicts", nargs="*", choices=[*CASES], help="small cases; default: all", metavar="NAME"
+    )
+    parser.add_argument("--first-run", action="store_true", help="time that as well; minutes")
     parser.add_argument("--cells", type=int, default=200, help="number of random cells")
     parser.add_argument("--passes", type=int, default=3, help="runs of which the least time counts")
     return parser.parse_args()
@@ -140,18 +181,52 @@ def _shown(name: str) -> str:
 
 def _answer(tree: Path, name: str, passes: int) -> dict:
     """What a tree says of a case: bits, bounds, seconds; exit code and summary of the command."""
-    environment = os.environ | {"PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1"}
-    run = [sys.executable, "-c", RUN, name, str(passes)]
-    done = subprocess.run(run, cwd=tree, env=environment, capture_output=True, text=True)
+    done = _run(tree, "-c", RUN, name, str(passes))
     if done.returncode:
         return {"crashed": done.stderr.strip().rpartition("\n")[2]}
     told = json.loads(done.stdout)
-    if not name.startswith("cell "):
-        command = [sys.executable, "-m", "clearance", "check", name, "--json"]
-        done = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True)
-        told["exit code"] = done.returncode
-        told["summary"] = json.loads(done.stdout) if done.stdout else {}
-    return told
+    return told if name.startswith("cell ") else told | _command(tree, [name])
+
+
+def _run(tree: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A Python process that has its modules from a tree."""
+    own = {"PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1", **environment}
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=tree, env=os.environ | own, capture_output=True, text=True)
+
+
+def _command(tree: Path, arguments: list[str]) -> dict:
+    """Exit code and summary of `clearance check`; of one that gives none, what it says."""
+    done = _run(tree, "-m", "clearance", "check", *arguments, "--json")
+    said = json.loads(done.stdout) if done.stdout else {"said": done.stderr.strip()}
+    return {"exit code": done.returncode, "summary": said}
+
+
+def _verdicts(trees: dict[str, Path], name: str) -> tuple[dict[str, dict], dict[str, float]]:
+    """What both trees say of a small case, and in how many seconds."""
+    verdicts, seconds = {}, {}
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = write_verdict_case(Path(folder) / "case", name)
+        for tree, path in trees.items():
+            start = time.perf_counter()
+            verdicts[tree] = _command(path, arguments)
+            seconds[tree] = time.perf_counter() - start
+    return verdicts, seconds
+
+
+def _first(tree: Path, command: tuple[str, ...]) -> float:
+    """Seconds of a command with nothing compiled, by a process of its own."""
+    with tempfile.TemporaryDirectory() as cache:
+        start = time.perf_counter()
+        done = _run(tree, *command, NUMBA_CACHE_DIR=cache, XDG_CACHE_HOME=cache)
+        seconds = time.perf_counter() - start
+    if done.returncode:
+        raise SystemExit(done.stderr)
+    return seconds
+
+
+def _shown_seconds(seconds: dict[str, float]) -> str:
+    return ", ".join(f"{of:.2f} s {tree}" for tree, of in seconds.items())
 
 
 def _faults(before: dict, now: dict) -> Iterator[str]:

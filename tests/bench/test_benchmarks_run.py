@@ -89,6 +89,16 @@ def test_contact_tells_what_the_deepest_moments_cost(tmp_path):
 
 @pytest.mark.skipif(not (ROOT / ".git").exists(), reason="not a checkout of git")
 def test_the_fence_finds_the_last_commit_the_same():
-    said = ran("fence.py", "HEAD", "--cases", "box_box", "--cells", 1, "--passes", 1)
-    assert [line.split()[0] for line in said.splitlines()] == ["box_box", "cell", "0"]
+    verdicts = ("--verdicts", "waiver stale", "unknown key")
+    said = ran("fence.py", "HEAD", "--cases", "box_box", "--cells", 1, "--passes", 1, *verdicts)
+    lines = said.splitlines()
+    assert [line.split()[0] for line in lines] == [
+        "box_box",
+        "cell",
+        "waiver",
+        "unknown",
+        "start",
+        "0",
+    ]
+    assert lines[2].endswith("exit code 1  same") and lines[3].endswith("exit code 2  same")
     assert said.endswith("0 differ\n")
