@@ -4,7 +4,7 @@ What is read back may be unpickled and run, so whoever can write there can run c
 only if it and the file are of this user (or of root) and nobody else can write them. And a file counts only if it
 is whole: its first bytes are the digest of its name and of the rest. What is damaged, by a power cut or a full
 disk, is dropped and made again. Where nothing can be kept, everything is made in each run, with one warning that
-says why. Not for: what is kept (`compile.kernel_files`, `import_statements`, `geometry.kept_shapes`).
+says why. Not for: what is kept (`compile.kernel_files`, `import_statements`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The bodies of one case's files of meshes and points: each is made once for each scale and up axis.
-
-Solids are kept for later runs.
-"""
+"""The bodies of one case's files of meshes and points: each is made once for each scale and up axis."""
 
 from __future__ import annotations
 
@@ -9,10 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.geometry.kept_shapes import kept, name_of
 from clearance.load.files.input_files import InputFiles
-from clearance.load.mesh import mesh_file as mesh
-from clearance.load.mesh.formats import CAD
 from clearance.load.mesh.mesh_file import LoadedMesh, mesh_from_bytes
 from clearance.load.mesh.placing import UpAxis
 from clearance.tolerance import TESSELLATION
@@ -21,9 +15,6 @@ if TYPE_CHECKING:
     from clearance.load.cloud.formats import LoadedCloud
 
 Scale = tuple[float, float, float]
-
-SMALL = 4096
-"""Bytes below which a file is read in less time than what was made of it."""
 
 
 class MeshStore:
@@ -57,7 +48,7 @@ class MeshStore:
         if key not in self._loaded:
             data = self.files.read(path)
             shown = self.files.shown(path)
-            self._loaded[key] = _solid_of(data, shown, scale, up_axis, tolerance)
+            self._loaded[key] = mesh_from_bytes(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
 
     def load_points(
@@ -77,18 +68,3 @@ class MeshStore:
                 data, self.files.shown(path), radius, scale, in_millimetres=in_millimetres
             )
         return self._clouds[key]
-
-
-def _solid_of(
-    data: bytes, shown: str, scale: Scale, up_axis: UpAxis, tolerance: float
-) -> LoadedMesh:
-    """As `mesh_from_bytes`, which depends on the name by its suffix alone where it refuses nothing."""
-
-    def make() -> LoadedMesh:
-        return mesh_from_bytes(data, shown, scale, up_axis, tolerance)
-
-    suffix = Path(shown).suffix.lower()
-    if len(data) < SMALL or suffix in CAD:  # a CAD file's facets are not made by sources of ours
-        return make()
-    name = name_of(data, suffix, scale, up_axis)
-    return kept(name, "solid", str(mesh.__file__), make)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -163,6 +165,13 @@ def test_from_trimesh_takes_anything_with_vertices_and_faces():
 def test_arrays_cannot_be_written():
     with pytest.raises(ValueError, match="read-only"):
         box((1, 1, 1)).vertices[0, 0] = 3.0
+
+
+def test_a_solid_from_another_process_cannot_be_written_either():
+    copy = pickle.loads(pickle.dumps(box((1.0, 2.0, 3.0))))
+    assert copy.volume == 6.0
+    with pytest.raises(ValueError, match="read-only"):
+        copy.vertices[0, 0] = 7.0
 
 
 def test_a_large_mesh_is_analysed_as_a_whole():

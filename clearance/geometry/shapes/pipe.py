@@ -9,16 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadDimension
-from clearance.geometry import polyhedron
-from clearance.geometry.kept_shapes import kept, name_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes.centre_line import CentreLine, mitred
 from clearance.geometry.shapes.dimension import at_least_zero, positive, sections_for
 from clearance.geometry.shapes.rings import corner_factor, ring_around, ring_within, stacked
 from clearance.tolerance import TESSELLATION, UNIT_ROUNDOFF
-
-LARGE = 2000
-"""Triangles of a bent pipe whose merged surface is kept for later runs; of fewer it is merged in 4 ms."""
 
 
 def pipe(
@@ -132,18 +127,8 @@ def _bent(
         rings.append(ends.swept(ring_within(bore_radius, n)))
         excess = max(excess, inner - bore_radius / corner_factor(n) + shift + 2.0 * margin)
     triangles = _tube_triangles(n, len(line.points), inner > 0.0)
-    return _merged(np.concatenate(rings).reshape(-1, 3), triangles, float(excess))
-
-
-def _merged(vertices: np.ndarray, triangles: np.ndarray, excess: float) -> Polyhedron:
-    """The surface of triangles, taken from an earlier run where that has merged as many."""
-
-    def make() -> Polyhedron:
-        return Polyhedron.from_triangles(vertices, triangles, excess)
-
-    if len(triangles) < LARGE:
-        return make()
-    return kept(name_of(vertices, triangles, excess), "bent", str(polyhedron.__file__), make)
+    vertices = np.concatenate(rings).reshape(-1, 3)
+    return Polyhedron.from_triangles(vertices, triangles, float(excess))
 
 
 def _tube_triangles(n: int, n_rings: int, has_bore: bool) -> np.ndarray:
