@@ -122,15 +122,16 @@ def _doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, PossibleContainme
 class DoubtfulPairs:
     """The pairs of a case that can be in doubt, asked about at any positions of all that moves.
 
-    A pair whose boxes do not overlap is in no doubt; only others are looked into.
+    A pair whose boxes do not overlap is in no doubt; only others are looked into. For one thread at a time.
     """
 
     def __init__(self, case: Case, pairs: Sequence[Pair]) -> None:
         self._case, self._pairs, self._open = case, pairs, _open_pairs(case, pairs)
         self._held = forest_of(case).links, self._open.boxes, self._open.pairs
+        self._room_for_one = self._room(1)
         if self._open.places:
             any_positions = np.empty((1, 0))  # only its type is asked for
-            arguments = *self._held, any_positions, *self._room(1)
+            arguments = *self._held, any_positions, *self._room_for_one
             self._overlaps = prepared(overlaps_at_positions, *arguments)
 
     def at(self, positions: np.ndarray) -> Sequence[tuple[int, int]]:
@@ -141,7 +142,8 @@ class DoubtfulPairs:
         """
         if not self._open.places:
             return ()
-        poses, spans = self._room(len(positions))
+        n = len(positions)
+        poses, spans = self._room_for_one if n == 1 else self._room(n)
         if call(self._overlaps, *self._held, positions, poses, spans) == 0:
             return ()
         return list(self._in_doubt(BodyPoses(self._case, poses), spans.tolist()))
