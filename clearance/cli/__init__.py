@@ -7,17 +7,12 @@ so the greatest that holds goes); 70 a fault of this program, with its traceback
 
 from __future__ import annotations
 
-import gc
-import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from enum import IntEnum
 
 from clearance.cli.streams import leave, make_streams_safe
-
-GARBAGE = 50_000
-"""New objects after which Python looks for garbage; its 700 cost 3 % of a short check, all of it in vain."""
 
 
 class ExitCode(IntEnum):
@@ -36,14 +31,7 @@ class ExitCode(IntEnum):
 def main(arguments: Sequence[str] | None = None) -> None:
     """Runs the command line and leaves with its exit code."""
     make_streams_safe()
-    _start_light()
     leave(int(run(sys.argv[1:] if arguments is None else arguments)))
-
-
-def _start_light() -> None:
-    """Leaves out two searches that find nothing: for garbage among modules, and for plugins of pydantic."""
-    gc.set_threshold(GARBAGE)
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 
 def run(arguments: Sequence[str]) -> int:

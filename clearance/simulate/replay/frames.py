@@ -22,9 +22,6 @@ from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.simulate.status import STATUSES
 from clearance.simulate.steps import between_of
 
-FEW_RUNS = 64
-"""Runs of rows that are taken by slices."""
-
 
 @dataclass(frozen=True, eq=False)
 class ReplayFrames:
@@ -42,7 +39,7 @@ class ReplayFrames:
         record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
     ) -> ReplayFrames:
         table = _rows_at(record, kept, rows)
-        known = _known(table["clearance"])
+        known = table["clearance"].is_valid().to_numpy()
         after = np.searchsorted(kept, [moment.step for moment in moments], side="right")
         shown = {moment.step for moment in moments}
         own = RowStatus(record).of_samples(kept).astype(np.uint8)
@@ -111,27 +108,9 @@ def _rows_at(record: Record, kept: np.ndarray, on_disk: MeasuredRows) -> pa.Tabl
     for block in blocks(record.steps.num_rows):
         here = kept[np.searchsorted(kept, block.start) : np.searchsorted(kept, block.stop)]
         rows = record.steps.slice(block.start, block.stop - block.start)
-        taken += _taken(rows, here - block.start)
+        taken.append(rows.take(here - block.start))
         on_disk.let_go()
     return pa.concat_tables(taken).combine_chunks()
-
-
-def _known(column: pa.ChunkedArray) -> np.ndarray:
-    """(n,) False where there is no value; `pyarrow.compute` is imported only where there is such a row."""
-    if column.null_count == 0:
-        return np.ones(len(column), dtype=bool)
-    return column.is_valid().to_numpy()
-
-
-def _taken(rows: pa.Table, places: np.ndarray) -> list[pa.Table]:
-    """The rows at some places, in order; where few runs make them up, by slices.
-
-    To take rows imports `pyarrow.compute`, which takes longer than a short case.
-    """
-    runs = np.split(places, np.flatnonzero(np.diff(places) != 1) + 1)
-    if len(runs) > FEW_RUNS:
-        return [rows.take(places)]
-    return [rows.slice(int(run[0]), len(run)) for run in runs if len(run)] or [rows.slice(0, 0)]
 
 
 def least_of(steps: pa.Table) -> np.ndarray:
