@@ -9,10 +9,10 @@ Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (correc
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, eye_array
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from clearance.sketch.problem import Problem
@@ -32,42 +32,80 @@ FLAT = 1e-5
 """[-] Share of the sum that an undamped step must promise; less is a minimum."""
 
 
-class Iterate(NamedTuple):
-    """Numbers (n,), the equations' errors (m,) there, their derivative, and the sum of squared errors."""
+class Iterate:
+    """Numbers (n,) of a part, the equations' errors (m,) there, and the sum of squared errors."""
 
-    x: np.ndarray
-    error: np.ndarray
-    matrix: csc_array
-    total: float
+    def __init__(self, columns: Columns, x: np.ndarray) -> None:
+        self.columns, self.x, self.error = columns, x, columns.errors(x)
+        self.total = float(self.error @ self.error)
+
+    @cached_property
+    def entries(self) -> np.ndarray:
+        """The entries of the derivative; see `Columns.pattern`."""
+        return self.columns.entries(self.x)
+
+    def ahead(self, step: np.ndarray) -> np.ndarray:
+        """(m,) how the errors change along a step (columns,) to the first order."""
+        row, column = self.columns.pattern
+        return np.bincount(row, self.entries * step[column], self.error.size)
+
+    def slope(self, error: np.ndarray) -> np.ndarray:
+        """(columns,) the derivative's transpose times some errors (m,)."""
+        row, column = self.columns.pattern
+        return np.bincount(column, self.entries * error[row], self.columns.n)
 
 
 class ProblemPart:
-    """The columns and equations of one part of a problem of a size near 1."""
+    """The columns and equations of one part of a problem of a size near 1, in an order that factors well."""
 
     def __init__(self, problem: Problem, part: int) -> None:
         self.system, self.limit = problem.system, problem.limit
-        self.vertices = np.flatnonzero(problem.part == part)
         chosen = (problem.row_part == part) & (problem.fate == 0)
         chosen[problem.plan.dependent] = False
         self.rows = np.flatnonzero(chosen)
-        self.columns = Columns(problem.system, self.vertices, self.rows)
+        vertices = np.flatnonzero(problem.part == part)
+        self.columns = Columns(problem.system, vertices, self.rows)
+        if self.rows.size and self.columns.n:
+            unit = self._matrix(np.zeros(self.columns.pairs[0].size), 1.0)
+            place = splu(unit, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).perm_c
+            order = np.argsort(place[self.columns.first[vertices]])
+            del self._pattern
+            self.columns = Columns(problem.system, vertices[order], self.rows)
         self.first, self.n = self.columns.first, self.columns.n
         self.enough = self.rows.size * (FLOOR * problem.size) ** 2
 
+    @cached_property
+    def _pattern(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """(place of every pair, indices and starts of columns, places of the diagonal) of the sparse matrix."""
+        (p, q), (_, column), n = self.columns.pairs, self.columns.pattern, self.columns.n
+        known, place = np.unique(
+            np.append(column[q] * n + column[p], np.arange(n) * (n + 1)), return_inverse=True
+        )
+        starts = np.searchsorted(known, np.arange(n + 1) * n)
+        return place[:-n], known % n, starts, place[-n:]
+
     def at(self, x: np.ndarray) -> Iterate:
         """The equations at some numbers."""
-        f = self.columns.errors(x)
-        return Iterate(x, f, self.columns.sparse(x), float(f @ f))
+        return Iterate(self.columns, x)
 
     def moved(self, x: np.ndarray, step: np.ndarray) -> Iterate:
         """The equations after a step (n,) of the columns."""
         return self.at(self.columns.moved(x, step))
 
-    def curvature(self, place: Iterate) -> csc_array:
-        """(n, n) half the second derivative of the sum of squares."""
-        i, j, value = self.columns.bend(place.x, place.error)
-        bent = coo_array((value, (i, j)), (self.n, self.n)).tocsc()
-        return (place.matrix.T @ place.matrix + 0.5 * (bent + bent.T)).tocsc()
+    def curvature(self, place: Iterate) -> np.ndarray:
+        """Half the second derivative of the sum of squares, by pairs of entries."""
+        p, q = self.columns.pairs
+        return place.entries[p] * place.entries[q] + self.columns.bent(place.x, place.error)
+
+    def factored(self, curvature: np.ndarray, damping: float):
+        """The factors of a curvature with damping on its diagonal; None when it is not positive definite."""
+        return _factored(self._matrix(curvature, damping))
+
+    def _matrix(self, curvature: np.ndarray, damping: float) -> csc_array:
+        place, indices, starts, diagonal = self._pattern
+        data = np.bincount(place, curvature, indices.size)
+        data[diagonal] += damping
+        return csc_array((data, indices, starts), (self.columns.n, self.columns.n))
 
 
 def descend(
@@ -94,15 +132,14 @@ def _step(
     part: ProblemPart, place: Iterate, damping: float, corrections: int
 ) -> tuple[Iterate, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
-    curved, unit = part.curvature(place), eye_array(part.n, format="csc")
-    slope = place.matrix.T @ place.error
+    curved, slope = part.curvature(place), place.slope(place.error)
     for _ in range(40):
-        factor = _factored(curved + damping * unit)
+        factor = part.factored(curved, damping)
         if factor is None:
             damping = max(4.0 * damping, 1e-12)
             continue
         step = -factor.solve(slope)
-        promised = -float(2.0 * slope @ step + step @ (curved @ step))
+        promised = -float(slope @ step) + damping * float(step @ step)
         least = promised < FLAT * place.total and damping < 1e-13
         lower = _corrected(part, place, step, factor, corrections)
         if lower.total < place.total or least:
@@ -120,13 +157,14 @@ def _eased(damping: float, gained: float, promised: float, total: float) -> floa
     return max(damping * (0.2 if promised > 0.01 * total else 0.05), LEAST)
 
 
-def _factored(matrix):
+def _factored(matrix: csc_array):
     """The factors of a symmetric matrix, None when it is not positive definite: then a pivot is not."""
     try:
         factor = splu(
-            matrix.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
+            matrix,
+            permc_spec="NATURAL",
             diag_pivot_thresh=0.0,
+            relax=4,
             options={"SymmetricMode": True},
         )
     except RuntimeError:
@@ -139,10 +177,10 @@ def _corrected(
     part: ProblemPart, place: Iterate, step: np.ndarray, factor, corrections: int
 ) -> Iterate:
     """The place after a step, corrected for what the equations' curvature adds to it while that helps."""
-    goal, length = place.error + place.matrix @ step, float(np.linalg.norm(step))
+    goal, length = place.error + place.ahead(step), float(np.linalg.norm(step))
     best = part.moved(place.x, step)
     for _ in range(corrections):
-        more = -factor.solve(place.matrix.T @ (best.error - goal))
+        more = -factor.solve(place.slope(best.error - goal))
         if not np.linalg.norm(more) <= length:
             break
         nearer = part.moved(best.x, more)

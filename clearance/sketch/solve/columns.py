@@ -90,6 +90,15 @@ class Columns:
         slot, number, which = self._entries
         return slot // 8, self._column[number, which]
 
+    @cached_property
+    def pairs(self) -> tuple[np.ndarray, np.ndarray]:
+        """Every two entries of one equation, in both orders."""
+        count = np.bincount(self.pattern[0], minlength=self.rows.size)
+        begin, many = np.cumsum(count) - count, count**2
+        within = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
+        width, start = np.repeat(count, many), np.repeat(begin, many)
+        return start + within // width, start + within % width
+
     def errors(self, x: np.ndarray) -> np.ndarray:
         """(..., m) the residuals."""
         return self.equations.errors(x)
@@ -116,22 +125,26 @@ class Columns:
         """(m, n) the derivative as a sparse matrix."""
         return coo_array((self.entries(x), self.pattern), (self.rows.size, self.n)).tocsc()
 
-    def bend(
-        self, x: np.ndarray, multipliers: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The second derivative of the equations, weighted by their multipliers, as (rows, columns, values).
+    def bent(self, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """The second derivative of the weighted equations at numbers (n,), by pairs of entries; see `pairs`.
 
         For columns of single vertices only.
         """
-        weight = self.equations.curvatures(x) * multipliers[:, None, None]
-        var = self.system.var[self.rows]
-        column = np.where(var >= 0, self._column[var, 0], -1)
-        factor = self._factor[var, 0]
-        keep = (column[:, :, None] >= 0) & (column[:, None, :] >= 0) & (weight != 0.0)
-        value = (weight * factor[:, :, None] * factor[:, None, :])[keep]
-        i = np.broadcast_to(column[:, :, None], keep.shape)[keep]
-        j = np.broadcast_to(column[:, None, :], keep.shape)[keep]
-        return i, j, value
+        curved, (place, factor) = self.equations.curvatures(x), self._bends
+        curved = (curved + curved.transpose(0, 2, 1)) * (0.5 * weights[:, None, None])
+        return curved.ravel()[place] * factor
+
+    @cached_property
+    def _bends(self) -> tuple[np.ndarray, np.ndarray]:
+        """(place among the second derivatives by slots, factor) of every pair."""
+        (p, q), (slot, number, _) = self.pairs, self._entries
+        factor = self._factor[number, 0]
+        return slot[p] * 8 + slot[q] % 8, factor[p] * factor[q]
+
+    def bend(self, x: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same as (rows, columns, values) of a matrix; repeated entries add up."""
+        (p, q), (_, column) = self.pairs, self.pattern
+        return column[p], column[q], self.bent(x, weights)
 
     def moved(self, x: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The numbers (..., n) after a step (..., columns)."""

@@ -48,7 +48,7 @@ class BandedNormal:
         order = reverse_cuthill_mckee((links.T @ links).tocsr(), symmetric_mode=True)
         self.place = np.empty(n, np.int64)
         self.place[order] = np.arange(n)
-        p, q = _pairs(row)
+        p, q = columns.pairs
         low, high = self.place[column[p]], self.place[column[q]]
         keep = low <= high
         self._p, self._q = p[keep], q[keep]
@@ -73,16 +73,6 @@ class BandedNormal:
         except LinAlgError:
             return None
         return step[self.place]
-
-
-def _pairs(row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Every two entries, in both orders, that are in one row."""
-    order = np.argsort(row, kind="stable")
-    count = np.bincount(row)
-    begin = np.cumsum(count) - count
-    p = np.repeat(order, count[row[order]])
-    within = np.arange(p.size) - np.repeat(np.cumsum(count**2) - count**2, count**2)
-    return p, order[np.repeat(begin, count**2) + within % np.repeat(count, count**2)]
 
 
 def descend_damped(
