@@ -15,6 +15,7 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
+from clearance.sketch.effort import OutOfTime
 from clearance.sketch.problem import Problem
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.steps import FLOOR
@@ -115,12 +116,17 @@ def descend(
     longest: int = LONGEST,
     corrections: int = CORRECTIONS,
 ) -> Iterate:
-    """Where the sum of squares ends that goes down from x: a root, or another minimum."""
+    """Where the sum of squares ends that goes down from x: a root, or another minimum.
+
+    Raises:
+        OutOfTime: with the numbers that it had come to.
+    """
     place = part.at(x)
     for _ in range(longest):
         if place.total <= part.enough:
             break
-        part.limit.require_left()
+        if part.limit.is_over():
+            raise OutOfTime(place.x)
         lower, damping, last = _step(part, place, damping, corrections)
         place = lower if lower.total < place.total else place
         if last:

@@ -62,16 +62,16 @@ def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis
     trial = Trials(sketch, problem, before, outcome.x)
     trial.limit = problem.limit.again()
     if outcome.stopped:
-        return Diagnosis(trial, [], "", _not_holding(problem, outcome.x))
+        return Diagnosis(trial, [], "", not_holding(problem, outcome.best))
     try:
         return _diagnosed(trial, problem, outcome)
     except OutOfTime:
         return Diagnosis(trial, [], "", trial.everything(outcome.broken))
 
 
-def _not_holding(problem: Problem, x: np.ndarray) -> list[int]:
+def not_holding(problem: Problem, x: np.ndarray) -> list[int]:
     """The constraints of which an equation does not hold."""
-    rows = errors_of(problem, x[problem.alias]) > RESIDUAL * problem.size
+    rows = errors_of(problem, x) > RESIDUAL * problem.size
     return sorted({int(o) for o in problem.tables.owner[rows]})
 
 

@@ -57,18 +57,22 @@ class TimeLimit:
         """The same limit, from now on."""
         return TimeLimit(self.seconds, self._clock)
 
+    def is_over(self) -> bool:
+        """Whether no time is left; a terminal shows how much was taken."""
+        taken = self._clock() - self._begin
+        if self._shown <= taken < self.seconds:
+            self._shown = taken + SHOWN_EVERY
+            _show(f"solving the sketch: {taken:.1f} of at most {self.seconds:g} s")
+        return taken >= self.seconds
+
     def require_left(self) -> None:
-        """Nothing, if time is left; a terminal shows how much was taken.
+        """Nothing, if time is left.
 
         Raises:
             OutOfTime: none is.
         """
-        taken = self._clock() - self._begin
-        if taken >= self.seconds:
+        if self.is_over():
             raise OutOfTime
-        if taken >= self._shown:
-            self._shown = taken + SHOWN_EVERY
-            _show(f"solving the sketch: {taken:.1f} of at most {self.seconds:g} s")
 
     def clear(self) -> None:
         """Removes what a terminal shows."""

@@ -57,11 +57,11 @@ def stopped(problem: Problem, before: np.ndarray, found: np.ndarray | None) -> E
 
     Its best numbers are those found by then, where their error is less.
     """
-    residual, row = residual_of(problem, before[problem.alias])
+    places = [x[problem.alias] for x in (before, found) if x is not None]
+    residual, row, best = min((*residual_of(problem, x), k) for k, x in enumerate(places))
     fates = np.full(len(problem.plan.steps), KEPT)
-    out = ExecutionResult(before.copy(), fates, max(int(row), 0), residual, stopped=True)
-    if found is not None and residual_of(problem, found[problem.alias])[0] < residual:
-        out.best = found[problem.alias]
+    out = ExecutionResult(before.copy(), fates, max(row, 0), residual, stopped=True)
+    out.best = places[best]
     return out
 
 

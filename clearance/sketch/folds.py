@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.sketch.descent import CORRECTIONS, Iterate, ProblemPart, descend
+from clearance.sketch.effort import OutOfTime
 from clearance.sketch.equations import POINT_POINT
 from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import Problem
@@ -70,7 +71,10 @@ def _unfolded(work: ProblemPart, place: Iterate, most: int) -> tuple[Iterate | N
     for k, fold in enumerate(folds(work, place)[:most]):
         start = place.x.copy()
         start[fold.variable : fold.variable + 2] = fold.goal
-        other = descend(work, start, BESIDE)
+        try:
+            other = descend(work, start, BESIDE)
+        except OutOfTime:
+            raise OutOfTime(place.x) from None
         if other.total < LOWER * place.total:
             return other, k + 1
     return None, most

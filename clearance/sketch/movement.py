@@ -134,6 +134,7 @@ class _Work:
         size = self.problem.size
         multipliers = np.zeros(self.rows.size)
         for k in range(30):
+            self.problem.limit.require_left()
             f, entries = self.columns.errors(x), self.columns.entries(x)
             rows, cols = self.columns.pattern
             gap = self.offsets(x)

@@ -20,7 +20,8 @@ class SketchResult:
     """The outcome of `Sketch.solve` or `Sketch.drag`.
 
     Attributes:
-        residual: [m] the largest equation error that is left (directions as arcs at the sketch's size).
+        residual: [m] the largest equation error that is left at the best placement that was found (directions as
+            arcs at the sketch's size).
         movement: [m] root of the summed squares of the points' shifts.
         stopped: the solve's limit of time has passed before it was done; the sketch is as it was.
     """
@@ -111,6 +112,43 @@ class SketchResult:
         return alternatives_of(self.sketch, self._problem, x, sides) if self.solved else []
 
     @cached_property
+    def best(self) -> dict[str, np.ndarray]:
+        """The placement of least error that was found: the numbers of every entity, by name.
+
+        A sketch that is not solved stays as it was drawn; this is how far its solve came.
+        """
+        from clearance.sketch.roots import by_name
+
+        return by_name(self.sketch, self._problem, self._outcome.best)
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """[m] how far every constraint is off at the best placement (directions as arcs at the sketch's size)."""
+        from clearance.sketch.steps import errors_of
+
+        error, owner = errors_of(self._problem, self._outcome.best), self._problem.tables.owner
+        out = np.zeros(len(self.sketch._lists.constraints))
+        np.maximum.at(out, owner, error)
+        constraints = self.sketch._lists.constraints
+        return {constraints[k].name: float(out[k]) for k in np.unique(owner).tolist()}
+
+    @cached_property
+    def unclosed(self) -> list[list[str]]:
+        """The clusters of the plan that do not close at the best placement, each by its constraints.
+
+        First those that place entities, in their order, then over-constrained parts.
+        """
+        from clearance.sketch.problem import RESIDUAL
+        from clearance.sketch.steps import errors_of
+
+        problem, constraints = self._problem, self.sketch._lists.constraints
+        off = errors_of(problem, self._outcome.best) > RESIDUAL * problem.size
+        clusters = [*(list(step.rows) for step in problem.plan.steps), *problem.plan.circuits]
+        owners = [problem.tables.owner[sorted(rows)] for rows in clusters if off[rows].any()]
+        named = [list(dict.fromkeys(constraints[k].name for k in mine)) for mine in owners]
+        return [] if self.solved else named
+
+    @cached_property
     def _diagnosis(self):
         from clearance.sketch.diagnosis import diagnose
 
@@ -140,8 +178,9 @@ class SketchResult:
         if self._diagnosis.proof:
             return f"{shown} cannot hold together: {self._diagnosis.proof}"
         if self.stopped:
+            what = f"{shown} do not hold" if names else "all holds, but not with the least movement"
             seconds = self._problem.limit.seconds
-            return f"not solved within {seconds:g} s: {shown} do not hold; a longer time limit may help"
+            return f"not solved within {seconds:g} s: {what}; a longer time limit may help"
         return f"no place found where {shown} hold; a failed search is no proof that there is none"
 
     @property

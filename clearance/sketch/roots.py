@@ -136,13 +136,14 @@ def alternatives_of(
 ) -> list[dict[str, np.ndarray]]:
     """The other solutions as numbers of every entity by name, those whose `same_side` holds."""
     return [
-        _by_name(sketch, problem, y)
+        by_name(sketch, problem, y)
         for y, _ in other_solutions(problem, x)
         if sides_hold(y, sides, problem.size)
     ]
 
 
-def _by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:
+def by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:
+    """The numbers of every entity by name: coordinates, direction and offset, or radius."""
     out = {}
     for name, e in sketch.entities.items():
         count = 1 if e.what in ("circle", "arc") else 2

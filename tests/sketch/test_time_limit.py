@@ -1,7 +1,9 @@
 """A solve that is stopped changes nothing and says what it leaves; one that ends in time never sees the clock."""
 
+import io
 import itertools
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -77,6 +79,73 @@ def test_what_is_left_unsolved_is_said():
     assert found.reason.startswith("not solved within 0 s: ")
     assert found.fault == found.reason and found.repairs == []
     assert sketch.solve().solved
+
+
+def off(sketch: Sketch, placement) -> np.ndarray:
+    """How far every distance is off where the points lie as a placement says."""
+    gaps = []
+    for c in sketch.constraints.values():
+        a, b = (placement[e.name] for e in c.entities)
+        gaps.append(abs(np.linalg.norm(a - b) - c.number))
+    return np.array(gaps)
+
+
+def drawn_places(sketch: Sketch) -> dict[str, np.ndarray]:
+    return {name: e.position for name, e in sketch.entities.items()}
+
+
+@pytest.mark.parametrize("n", [5, 6, 7])
+def test_the_best_placement_by_then_is_told_with_its_errors_and_what_does_not_close(n):
+    sketch = cluster(0.4)
+    found = solved_with(sketch, TimeLimit(10.0, Clock(n)))
+    assert found.stopped
+    gaps = off(sketch, found.best)
+    assert gaps.max() < off(sketch, drawn_places(sketch)).max()
+    assert list(found.errors.values()) == pytest.approx(gaps, abs=1e-12)
+    assert found.residual == pytest.approx(gaps.max())
+    wrong = {name for name, error in found.errors.items() if error > 1e-11}
+    assert wrong == set(found.searched) == wrong & set().union(*found.unclosed) != set()
+    assert all(wrong & set(names) for names in found.unclosed)
+
+
+def test_a_solved_sketch_has_no_errors_and_nothing_is_unclosed():
+    sketch = cluster()
+    found = sketch.solve()
+    assert found.solved and found.unclosed == []
+    assert max(found.errors.values()) == found.residual <= 1e-12 * 10.0
+    assert all((found.best[k] == p).all() for k, p in drawn_places(sketch).items())
+
+
+def test_a_part_that_closes_is_not_told_as_unclosed():
+    """A triangle beside two points with two distances that contradict each other in one cluster of their own."""
+    s = contradictory()
+    p = [s.point(*q) for q in ((10, 0), (11, 0.2), (10.4, 0.8))]
+    good = [s.distance(p[i], p[j], 1.0).name for i, j in ((0, 1), (1, 2), (2, 0))]
+    found = s.solve()
+    (unclosed,) = found.unclosed
+    assert not found.solved and set(unclosed) == set(s.constraints) - set(good)
+    assert all(found.errors[name] <= 1e-12 * 12.0 for name in good)
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_terminal_shows_a_long_solve_and_is_left_clean(monkeypatch):
+    ticks = itertools.count()
+    monkeypatch.setattr(sys, "stderr", Terminal())
+    found = solved_with(cluster(0.4), TimeLimit(10.0, lambda: 0.6 * next(ticks)))
+    told = sys.stderr.getvalue()
+    assert "solving the sketch: 1.2 of at most 10 s" in told and told.endswith("\r\x1b[K")
+    assert found is not None
+
+
+def test_nothing_is_shown_where_errors_do_not_go_to_a_terminal(monkeypatch):
+    ticks = itertools.count()
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    solved_with(cluster(0.4), TimeLimit(10.0, lambda: 0.6 * next(ticks)))
+    assert sys.stderr.getvalue() == ""
 
 
 def test_what_needs_no_search_needs_no_time():

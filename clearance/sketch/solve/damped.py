@@ -15,6 +15,7 @@ from scipy.linalg import LinAlgError, solveh_banded
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from clearance.sketch.effort import OutOfTime
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.newton import StoppingRule
 
@@ -87,7 +88,8 @@ def descend_damped(
     for k in range(limits.longest):
         if not (total > rule.floor**2 and damping <= 1e6):
             return x, total, k
-        rule.limit.require_left()
+        if rule.limit.is_over():
+            raise OutOfTime(x)
         if equations is None:
             equations = normal.at(x, error)
         if unit is None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.sketch.effort import TimeLimit
+from clearance.sketch.effort import OutOfTime, TimeLimit
 from clearance.sketch.graph.graph import TURN
 from clearance.sketch.solve.columns import Columns
 
@@ -77,7 +77,8 @@ def descended(
         at = np.flatnonzero(active)
         if not at.size:
             break
-        rule.limit.require_left()
+        if rule.limit.is_over():
+            raise OutOfTime(x[np.argmin(total)])
         step = _steps(error[at], columns.matrix(x[at]), damping[at])
         fell = _search(columns, (x, error, total), at, step, damping[at] == 0.0)
         was = damping[at]

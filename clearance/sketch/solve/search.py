@@ -79,8 +79,9 @@ class _Search:
                 self._descend(kicked, DescentLimits(FROM_KICK, 60, 4))
             if DIGITS * enough < self.total <= NEAR * enough:
                 self._descend(self.x, DescentLimits(1e-12, 40, 40, last_digits=True))
-        except OutOfTime as stop:
-            stop.x = self.x
+        except OutOfTime:
+            if self.total < math.inf:
+                raise OutOfTime(self.x) from None
             raise
         return self.x if self.total <= enough else None
 
