@@ -10,14 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from clearance.sketch.equations import (
-    ACROSS,
-    LENGTHS,
-    LINE_CIRCLE,
-    LINEAR,
-    MIDDLE_ON,
-    POINT_LINE,
-)
+from clearance.sketch.equations import Across, Lengths, Linear, LineCircle, MiddleOn, PointLine, are
 from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
 from clearance.sketch.graph.graph import POINT, TURN
 from clearance.sketch.problem import RESIDUAL, Problem
@@ -29,7 +22,7 @@ from clearance.sketch.steps import limits_of, residual_of
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""
 
-STRAIGHT = (LINEAR, POINT_LINE, LINE_CIRCLE, MIDDLE_ON, ACROSS)
+STRAIGHT = (Linear, PointLine, LineCircle, MiddleOn, Across)
 """Equations that keep a point on a straight line: two of them meet in one point."""
 
 
@@ -39,11 +32,11 @@ def choices(problem: Problem) -> list[int]:
     for k, step in enumerate(problem.plan.steps):
         if step.numeric or len(step.rows) != 2:
             continue
-        codes = [s.code[row] for row in step.rows]
+        equations = [s.equations[row] for row in step.rows]
         point = s.kind[step.vertex] == POINT and step.partner < 0
-        if point and not all(code in STRAIGHT for code in codes):
+        if point and not all(isinstance(e, STRAIGHT) for e in equations):
             out.append(k)
-        elif s.kind[step.vertex] == TURN and ACROSS not in codes:
+        elif s.kind[step.vertex] == TURN and not any(isinstance(e, Across) for e in equations):
             out.append(k)
     return out
 
@@ -104,7 +97,7 @@ def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
         step.numeric or (kind[step.vertex] == POINT and step.partner >= 0)
         for step in problem.plan.steps
     )
-    if undecided or len(steps) > MOST or (problem.system.code == LENGTHS).any():
+    if undecided or len(steps) > MOST or (are(problem.system.code, Lengths)).any():
         return False
     return bool(problem.is_rigid.all()) and not _any_branch(problem, before, sides, steps)
 

@@ -9,17 +9,21 @@ regular.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from clearance.sketch.equations import (
-    ACROSS,
-    CIRCLE_CIRCLE,
-    IN_LINE,
-    LINE_CIRCLE,
-    POINT_CIRCLE,
-    POINT_LINE,
+    CODES,
+    KINDS,
+    Across,
+    CircleCircle,
+    InLine,
+    LineCircle,
+    PointCircle,
+    PointLine,
+    are,
 )
 from clearance.sketch.solve.system import System
 
@@ -48,40 +52,47 @@ def contacts_of(
         sound: (m,) marks the equations of parts in which none follows from others: there, another would follow
         if one of touching were replaced.
     """
-    touching = np.flatnonzero(((code == LINE_CIRCLE) | (code == CIRCLE_CIRCLE)) & sound)
+    touching = np.flatnonzero(are(code, LineCircle, CircleCircle) & sound)
     if not touching.size:
         return None
-    on_line = _points_on(var, (code == POINT_LINE) & plain, (2, 3))
-    on_circle = _points_on(var, (code == POINT_CIRCLE) & plain, (2, 4))
-    found = [
-        (int(row), *_regular(int(code[row]), var[row], on_line, on_circle)) for row in touching
-    ]
-    found = [entry for entry in found if entry[1]]
-    if not found:
+    on_line: dict[tuple[int, int], list[int]] = {}
+    on_circle: dict[tuple[int, int], list[int]] = {}
+    for row in _rows(code, var, np.flatnonzero(plain & are(code, PointLine))):
+        on_line.setdefault((row.theta, row.d), []).append(row.px)
+    for row in _rows(code, var, np.flatnonzero(plain & are(code, PointCircle))):
+        on_circle.setdefault((row.cx, row.r), []).append(row.px)
+    every = zip(touching.tolist(), _rows(code, var, touching), strict=True)
+    found = [(row, _regular(equation, on_line, on_circle)) for row, equation in every]
+    known = [(row, other) for row, other in found if other is not None]
+    if not known:
         return None
-    rows, codes, variables = zip(*found, strict=True)
-    return Contacts(np.array(rows), np.array(codes), np.array(variables).reshape(-1, 8))
+    variables = np.full((len(known), 8), -1)
+    for k, (_, other) in enumerate(known):
+        variables[k, : len(other)] = other
+    rows, codes = [row for row, _ in known], [CODES[type(other)] for _, other in known]
+    return Contacts(np.array(rows), np.array(codes), variables)
 
 
-def _points_on(var: np.ndarray, chosen: np.ndarray, slots: tuple[int, int]) -> dict:
-    """The points (first variables) on every line or circle, by two of its variables."""
-    out: dict[tuple[int, int], list[int]] = {}
-    for row in var[chosen]:
-        out.setdefault((int(row[slots[0]]), int(row[slots[1]])), []).append(int(row[0]))
-    return out
+def _rows(code: np.ndarray, var: np.ndarray, chosen: np.ndarray) -> Iterator[Any]:
+    """Some equations, of the places of their numbers."""
+    for kind, places in zip(code[chosen].tolist(), var[chosen].tolist(), strict=True):
+        yield KINDS[kind](*places[: len(KINDS[kind]._fields)])
 
 
-def _regular(code: int, var: np.ndarray, on_line: dict, on_circle: dict) -> tuple[int, list[int]]:
-    """(code, variables) of what says the same as an equation of touching; (0, []) without a point of contact."""
-    c = [int(v) for v in var]
-    if code == LINE_CIRCLE:
-        first, second = on_line.get((c[2], c[3]), []), on_circle.get((c[0], c[4]), [])
+def _regular(
+    e: LineCircle | CircleCircle, on_line: dict, on_circle: dict
+) -> Across | InLine | None:
+    """The equation that says the same as one of touching; None without a point of contact.
+
+    `on_line` and `on_circle` are the points (first variables) on every line and circle.
+    """
+    if isinstance(e, LineCircle):
+        first, second = on_line.get((e.theta, e.d), []), on_circle.get((e.cx, e.r), [])
     else:
-        first, second = on_circle.get((c[0], c[4]), []), on_circle.get((c[2], c[5]), [])
-    shared = [p for p in first if p in second]
-    if not shared:
-        return 0, []
-    p = shared[0]
-    if code == LINE_CIRCLE:
-        return ACROSS, [p, p + 1, c[0], c[1], c[2], -1, -1, -1]
-    return IN_LINE, [p, p + 1, c[0], c[1], c[2], c[3], -1, -1]
+        first, second = on_circle.get((e.ax, e.r), []), on_circle.get((e.bx, e.s), [])
+    p = next((p for p in first if p in second), None)
+    if p is None:
+        return None
+    if isinstance(e, LineCircle):
+        return Across(p, p + 1, e.cx, e.cy, e.theta)
+    return InLine(p, p + 1, e.ax, e.ay, e.bx, e.by)

@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.sketch.branches import exhausted
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import POINT_POINT
+from clearance.sketch.equations import PointPoint, are
 from clearance.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
@@ -163,11 +163,11 @@ def _too_short(problem: Problem, broken: int) -> list[int]:
     The shortest chain between the broken distance's ends, by Dijkstra's method.
     """
     tables, var = problem.tables, problem.system.var
-    if tables.code[broken] != POINT_POINT:
+    if not are(tables.code[broken], PointPoint):
         return []
     value = tables.value
     rows = np.flatnonzero(
-        (tables.code == POINT_POINT) & (problem.row_part == problem.row_part[broken])
+        are(tables.code, PointPoint) & (problem.row_part == problem.row_part[broken])
     )
     near: dict[int, list[tuple[int, float, int]]] = {}
     for row in rows:

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.sketch.contacts import Contacts
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import LENGTHS, RATIO
+from clearance.sketch.equations import Lengths, Ratio, are
 from clearance.sketch.folds import solve_from
 from clearance.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.sketch.movement import closed, least_movement
@@ -110,7 +110,7 @@ def _units(problem: Problem) -> tuple[float, np.ndarray]:
 def _in_units(problem: Problem, unit: float) -> Problem:
     """The same problem with lengths divided by `unit`."""
     s, tables = problem.system, problem.tables
-    angular = (problem.length_scale != 1.0) | (s.code == LENGTHS) | (s.code == RATIO)
+    angular = (problem.length_scale != 1.0) | are(s.code, Lengths, Ratio)
     turning = np.append(tables.role == DIRECTION, False)
     system = s.replaced(
         value=np.where(angular, s.value, s.value / unit),

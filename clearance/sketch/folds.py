@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.sketch.descent import CORRECTIONS, Iterate, ProblemPart, descend
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import POINT_POINT
+from clearance.sketch.equations import PointPoint, are
 from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import Problem
 
@@ -98,7 +98,7 @@ def _joined(work: ProblemPart, place: Iterate):
     """By point: its first variable, the points it has distances from (k, 2), their errors (k,), and the
     distances now (k,)."""
     s = work.system
-    mine = s.code[work.rows] == POINT_POINT
+    mine = are(s.code[work.rows], PointPoint)
     ends, error = s.var[work.rows[mine]][:, [0, 2]], place.error[mine]
     point = np.concatenate([ends[:, 0], ends[:, 1]])
     other = np.concatenate([ends[:, 1], ends[:, 0]])

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Set
 import numpy as np
 
 from clearance.sketch.constraints import Constraint
+from clearance.sketch.equations import CODES
 from clearance.sketch.rows import Row
 
 DRAWN, TOGETHER, ALONE, AGAIN = 0, 1, 2, 3
@@ -78,8 +79,8 @@ class FlatLists:
         """Appends a constraint's equations; coincident points are listed apart."""
         first, rows = len(self.codes), list(rows)
         for row in rows:
-            self.codes.append(row.code)
-            self.variables.extend(row.var + (-1,) * (8 - len(row.var)))
+            self.codes.append(CODES[type(row.equation)])
+            self.variables.extend(row.equation + (-1,) * (8 - len(row.equation)))
             self.coefficients.extend(row.coef + (0.0,) * (4 - len(row.coef)))
             self.scales.append(row.scale)
             self.offsets.append(row.offset)

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.sketch.equations import OF_LENGTH, are
 from clearance.sketch.graph.graph import TURN
 from clearance.sketch.problem import Problem
 from clearance.sketch.solve.columns import Columns
@@ -112,7 +113,7 @@ class Equations:
     def reach(self) -> float:
         """How far a walk goes."""
         s, size = self.problem.system, self.problem.size
-        plain = np.abs(s.value[self.rows[s.code[self.rows] <= 5]])
+        plain = np.abs(s.value[self.rows[are(s.code[self.rows], *OF_LENGTH)]])
         least = plain[plain > 0.0].min(initial=size)
         return max(STEP * least, LEAST_STEP * size)
 

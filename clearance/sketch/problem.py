@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
-from clearance.sketch.equations import CIRCLE_CIRCLE, LINEAR
+from clearance.sketch.equations import OF_LENGTH, CircleCircle, Linear, are
 from clearance.sketch.graph.graph import (
     DIRECTION,
     FREEDOMS,
@@ -174,7 +174,7 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
         alias, weight, repeated = joined(tables)
         var = np.where(tables.var >= 0, alias[tables.var], -1)
         turning = tables.role[np.maximum(var[:, 0], 0)] == DIRECTION
-        angular = (tables.code == LINEAR) & turning
+        angular = are(tables.code, Linear) & turning
     else:
         alias, weight, repeated, var = like.alias, like.weight, like.repeated, like.system.var
         angular = like.length_scale != 1.0
@@ -193,7 +193,9 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
         )
         return replace(like, tables=tables, system=system, size=size, length_scale=length_scale)
     if tables.together:
-        rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == LINEAR))
+        rows = np.flatnonzero(
+            (var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & are(tables.code, Linear)
+        )
         merged.fate[rows] = MERGED
     same = _NumberAliases(alias, weight, repeated)
     return _fresh(tables, same, merged, var, coef, value, size, length_scale)
@@ -205,7 +207,7 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     The drawing says it where a radius is not known: how large a circle is drawn is often rough.
     """
     coef, n = tables.coef, tables.role.size
-    inside = (tables.code == CIRCLE_CIRCLE) & (coef[:, 0] * coef[:, 1] < 0.0)
+    inside = are(tables.code, CircleCircle) & (coef[:, 0] * coef[:, 1] < 0.0)
     first, second = var[:, 4], var[:, 5]
     inside &= (parent[first] == n) & (parent[second] == n) & (shift[first] != shift[second])
     if not inside.any():
@@ -291,7 +293,7 @@ def size_of(tables: Tables, x: np.ndarray, value: np.ndarray) -> float:
     """[m] the largest coordinate, radius or dimension in lengths; 1 for an empty sketch."""
     lengths = x[(tables.role != DIRECTION)]
     size = float(np.abs(lengths).max()) if lengths.size else 0.0
-    plain = value[(tables.code <= CIRCLE_CIRCLE)]
+    plain = value[are(tables.code, *OF_LENGTH)]
     if plain.size:
         size = max(size, float(np.abs(plain).max()))
     return size or 1.0

@@ -8,10 +8,21 @@ take which entities (`constraints`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from clearance.sketch import equations as equation
-from clearance.sketch.entities import Arc, Line, Point
+from clearance.sketch.entities import Arc, Circle, Line, Point
+from clearance.sketch.equations import (
+    Across,
+    CircleCircle,
+    Lengths,
+    Linear,
+    LineCircle,
+    MiddleOn,
+    PointCircle,
+    PointLine,
+    PointPoint,
+    Ratio,
+)
 
 NOWHERE, GROUNDED, ORIENTED = 0, 1, 2
 """How a row refers to the ground: not, by position, by direction only."""
@@ -20,8 +31,8 @@ NOWHERE, GROUNDED, ORIENTED = 0, 1, 2
 class Row(NamedTuple):
     """One equation; its value is `scale` times the dimension plus `offset`."""
 
-    code: int
-    var: tuple[int, ...]
+    equation: Any
+    """A kind of `equations`, with the places of its numbers."""
     coef: tuple[float, ...] = ()
     scale: float = 0.0
     offset: float = 0.0
@@ -30,8 +41,12 @@ class Row(NamedTuple):
     """Often said by another constraint as well: that two lines at a distance are parallel."""
 
 
-def pair(p: Point) -> tuple[int, int]:
-    return p.variable, p.variable + 1
+def pair(e: Point | Line) -> tuple[int, int]:
+    return e.variable, e.variable + 1
+
+
+def rim(c: Circle) -> tuple[int, int, int]:
+    return *pair(c.center), c.variable
 
 
 def gap(x: list[float], p: Point, line: Line) -> float:
@@ -57,17 +72,16 @@ def half_turn(x: list[float], line: Line, other: Line) -> float:
 
 
 def point_point(x, p, q):
-    return [Row(equation.POINT_POINT, pair(p) + pair(q), scale=1.0)]
+    return [Row(PointPoint(*pair(p), *pair(q)), scale=1.0)]
 
 
 def point_line(x, p, line):
-    place = (*pair(p), line.variable, line.variable + 1)
-    return [Row(equation.POINT_LINE, place, scale=sign(gap(x, p, line)))]
+    return [Row(PointLine(*pair(p), *pair(line)), scale=sign(gap(x, p, line)))]
 
 
 def point_circle(x, p, c):
     side = sign(span(x, p, c.center) - x[c.variable])
-    return [Row(equation.POINT_CIRCLE, (*pair(p), *pair(c.center), c.variable), scale=side)]
+    return [Row(PointCircle(*pair(p), *rim(c)), scale=side)]
 
 
 def line_line(x, a, b):
@@ -75,21 +89,21 @@ def line_line(x, a, b):
     same = sign(math.cos(turn))
     shift = x[b.variable + 1] - same * x[a.variable + 1]
     return [
-        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn, again=True),
-        Row(equation.LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same), scale=sign(shift)),
+        Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn, again=True),
+        Row(Linear(b.variable + 1, a.variable + 1), (1.0, -same), scale=sign(shift)),
     ]
 
 
 def on_line(x, p, line):
-    return [Row(equation.POINT_LINE, (*pair(p), line.variable, line.variable + 1))]
+    return [Row(PointLine(*pair(p), *pair(line)))]
 
 
 def on_circle(x, p, c):
-    return [Row(equation.POINT_CIRCLE, (*pair(p), *pair(c.center), c.variable))]
+    return [Row(PointCircle(*pair(p), *rim(c)))]
 
 
 def together(x, p, q):
-    return [Row(equation.LINEAR, (p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
+    return [Row(Linear(p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
 
 
 def centered(x, c, d):
@@ -104,15 +118,14 @@ def same_line(x, a, b):
     turn = half_turn(x, a, b)
     same = sign(math.cos(turn))
     return [
-        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(equation.LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same)),
+        Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn),
+        Row(Linear(b.variable + 1, a.variable + 1), (1.0, -same)),
     ]
 
 
 def line_touches(x, line, c):
     side = sign(gap(x, c.center, line))
-    place = (*pair(c.center), line.variable, line.variable + 1, c.variable)
-    return [Row(equation.LINE_CIRCLE, place, (side,))]
+    return [Row(LineCircle(*pair(c.center), *pair(line), c.variable), (side,))]
 
 
 def shared_end(c, d) -> Point | None:
@@ -135,71 +148,71 @@ def circles_touch(x, c, d, inside=None):
     elif inside is None:
         inside = abs(apart - abs(r - q)) < abs(apart - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
-    place = (*pair(c.center), *pair(d.center), c.variable, d.variable)
-    return [Row(equation.CIRCLE_CIRCLE, place, signs)]
+    place = CircleCircle(*pair(c.center), *pair(d.center), c.variable, d.variable)
+    return [Row(place, signs)]
 
 
 def angle(x, a, b):
     turn = turns(x, a, b)
     whole = 2.0 * math.pi * round(turn / (2.0 * math.pi))
     side = sign(turn - whole)
-    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), side, whole)]
+    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), side, whole)]
 
 
 def parallel(x, a, b):
     turn = half_turn(x, a, b)
-    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn)]
 
 
 def perpendicular(x, a, b):
     turn = math.pi * (round(turns(x, a, b) / math.pi - 0.5) + 0.5)
-    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn)]
 
 
 def level(x, line):
     turn = math.pi * round(x[line.variable] / math.pi)
-    return [Row(equation.LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
+    return [Row(Linear(line.variable), (1.0,), offset=turn, ground=ORIENTED)]
 
 
 def upright(x, line):
     turn = math.pi * (round(x[line.variable] / math.pi - 0.5) + 0.5)
-    return [Row(equation.LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
+    return [Row(Linear(line.variable), (1.0,), offset=turn, ground=ORIENTED)]
 
 
 def points_level(x, p, q):
-    return [Row(equation.LINEAR, (p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
+    return [Row(Linear(p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
 
 
 def points_upright(x, p, q):
-    return [Row(equation.LINEAR, (p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
+    return [Row(Linear(p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
 
 
 def radius(x, c):
-    return [Row(equation.LINEAR, (c.variable,), (1.0,), 1.0)]
+    return [Row(Linear(c.variable), (1.0,), 1.0)]
 
 
 def diameter(x, c):
-    return [Row(equation.LINEAR, (c.variable,), (1.0,), 0.5)]
+    return [Row(Linear(c.variable), (1.0,), 0.5)]
 
 
 def lengths(a, b):
-    return pair(a.ends[0]) + pair(a.ends[1]) + pair(b.ends[0]) + pair(b.ends[1])
+    return Lengths(*(i for p in (*a.ends, *b.ends) for i in pair(p)))
 
 
 def equal_length(x, a, b):
-    return [Row(equation.LENGTHS, lengths(a, b), offset=1.0)]
+    return [Row(lengths(a, b), offset=1.0)]
 
 
 def length_ratio(x, a, b):
-    return [Row(equation.LENGTHS, lengths(a, b), scale=1.0)]
+    return [Row(lengths(a, b), scale=1.0)]
 
 
 def equal_radius(x, c, d):
-    return [Row(equation.LINEAR, (c.variable, d.variable), (1.0, -1.0))]
+    return [Row(Linear(c.variable, d.variable), (1.0, -1.0))]
 
 
 def radius_ratio(x, c, d):
-    return [Row(equation.RATIO, (c.variable, d.variable), scale=1.0)]
+    return [Row(Ratio(c.variable, d.variable), scale=1.0)]
 
 
 def midpoint(x, m, line):
@@ -208,14 +221,14 @@ def midpoint(x, m, line):
 
 def middle(x, m, p, q):
     return [
-        Row(equation.LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
+        Row(Linear(m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
         for k in (0, 1)
     ]
 
 
 def symmetric(x, p, q, line):
-    place = (*pair(p), *pair(q), line.variable, line.variable + 1)
-    return [Row(equation.MIDDLE_ON, place), Row(equation.ACROSS, place[:5])]
+    place = MiddleOn(*pair(p), *pair(q), *pair(line))
+    return [Row(place), Row(Across(*place[:5]))]
 
 
 def circles_symmetric(x, c, d, line):
@@ -223,18 +236,18 @@ def circles_symmetric(x, c, d, line):
 
 
 def fix_point(x, p):
-    return [Row(equation.LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in pair(p)]
+    return [Row(Linear(v), (1.0,), offset=x[v], ground=GROUNDED) for v in pair(p)]
 
 
 def fix_line(x, line):
     at = line.variable
-    return [Row(equation.LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
+    return [Row(Linear(v), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
 
 
 def fix_circle(x, c):
     return [
         *fix_point(x, c.center),
-        Row(equation.LINEAR, (c.variable,), (1.0,), offset=x[c.variable]),
+        Row(Linear(c.variable), (1.0,), offset=x[c.variable]),
     ]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
+from clearance.sketch.equations import CODES, Lengths, Linear
 from clearance.sketch.graph.graph import DIRECTION
 from scripts.bench.sketches.lattices import flipped, patch
 from tests.examples import some_slow
@@ -30,8 +31,8 @@ def scaled(s, factor):
         if c.given is not None and c.kind not in ("angle", "ratio"):
             c.given = c.number = c.number * factor
     for k, (code, var) in enumerate(zip(s._lists.codes, s._lists.variables[::8], strict=True)):
-        if not (code == 6 and s._lists.roles[var] == DIRECTION):
-            s._lists.offsets[k] *= 1.0 if code == 7 else factor
+        if not (code == CODES[Linear] and s._lists.roles[var] == DIRECTION):
+            s._lists.offsets[k] *= 1.0 if code == CODES[Lengths] else factor
     s._solver = None
     return s
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from clearance.sketch.equations import LINEAR, RATIO
+from clearance.sketch.equations import CODES, Linear, Ratio, are
 
 X, Y, DIRECTION, OFFSET, RADIUS = 0, 1, 2, 3, 4
 """Roles of variables."""
@@ -126,10 +126,11 @@ def merge(code, var, coef, value, role, length_scale, tolerance: float) -> Merge
     forest, fate = _Forest(role.size), np.zeros(code.size, np.int64)
     named = var[:, :4] >= 0
     plain = (named & (role[var[:, :4]] < DIRECTION)).any(axis=1) if role.size else named.any(axis=1)
-    linear = ((code == LINEAR) | (code == RATIO)) & ~plain & (named.sum(axis=1) <= 2)
+    linear = are(code, Linear, Ratio) & ~plain & (named.sum(axis=1) <= 2)
     for row in np.flatnonzero(linear).tolist():
-        c0, c1 = (coef[row, :2] if code[row] == LINEAR else (1.0, -value[row])) * named[row, :2]
-        wanted = value[row] if code[row] == LINEAR else 0.0
+        ratio = code[row] == CODES[Ratio]
+        c0, c1 = ((1.0, -value[row]) if ratio else coef[row, :2]) * named[row, :2]
+        wanted = 0.0 if ratio else value[row]
         error = forest.relate(int(var[row, 0]), int(var[row, 1]), float(c0), float(c1), wanted)
         known = (
             CONTRADICTED

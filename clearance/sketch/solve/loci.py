@@ -10,14 +10,14 @@ import math
 from typing import NamedTuple
 
 from clearance.sketch.equations import (
-    CIRCLE_CIRCLE,
-    LENGTHS,
-    LINE_CIRCLE,
-    LINEAR,
-    MIDDLE_ON,
-    POINT_CIRCLE,
-    POINT_LINE,
-    POINT_POINT,
+    CircleCircle,
+    Lengths,
+    Linear,
+    LineCircle,
+    MiddleOn,
+    PointCircle,
+    PointLine,
+    PointPoint,
 )
 from clearance.sketch.solve.system import PlainSystem
 
@@ -25,110 +25,102 @@ GRAZING = 4e-13
 """How far, relative to the squared lengths, two loci may miss each other and still count as touching."""
 
 
-class Locus(NamedTuple):
-    """Where a point may lie: on the line a x + b y = c with unit normal (kind 1), or on the circle
-    about (a, b) of radius c (2). Kind 0 is neither: the equation does not place the point."""
+class Straight(NamedTuple):
+    """The line nx x + ny y = c with a unit normal."""
 
-    kind: int
-    a: float
-    b: float
+    nx: float
+    ny: float
     c: float
 
 
-NO_LOCUS = Locus(0, 0.0, 0.0, 0.0)
+class Round(NamedTuple):
+    """The circle about (x, y) of radius r."""
+
+    x: float
+    y: float
+    r: float
 
 
-def _unit_line(nx: float, ny: float, c: float) -> Locus:
+Locus = Straight | Round
+Place = tuple[float, float]
+
+
+def _straight(nx: float, ny: float, c: float) -> Straight | None:
     length = math.hypot(nx, ny)
-    if length == 0.0:
-        return NO_LOCUS
-    return Locus(1, nx / length, ny / length, c / length)
+    return None if length == 0.0 else Straight(nx / length, ny / length, c / length)
 
 
-def _other(s: PlainSystem, row: int, i: int, x: list[float]) -> tuple[float, float]:
-    """The coordinates of the end of a point pair (slots 0..3) that is not point i."""
-    k = 2 if s.var[row][0] == i else 0
-    return x[s.var[row][k]], x[s.var[row][k + 1]]
+def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus | None:
+    """Where the point at variable i may lie for an equation; None for one that does not place it."""
+    e, coef, value = s.equations[row], s.coef[row], s.value[row]
+    match e:
+        case Linear():
+            pairs = list(zip(coef, e, strict=True))
+            rest = sum(c * x[k] for c, k in pairs if k >= 0 and k not in (i, i + 1))
+            a, b = (sum(c for c, k in pairs if k == at) for at in (i, i + 1))
+            return _straight(a, b, value - rest)
+        case PointLine():
+            return Straight(-math.sin(x[e.theta]), math.cos(x[e.theta]), x[e.d] + value)
+        case LineCircle():
+            c = x[e.d] + value + coef[0] * x[e.r]
+            return Straight(-math.sin(x[e.theta]), math.cos(x[e.theta]), c)
+        case Lengths():
+            return _of_lengths(e, value, i, x)
+    if e[0] == e[2]:
+        return None
+    qx, qy = (x[k] for k in (e[2:4] if e[0] == i else e[:2]))  # the other of two points
+    match e:
+        case PointPoint():
+            return Round(qx, qy, value)
+        case PointCircle():
+            return Round(qx, qy, x[e.r] + value)
+        case CircleCircle():
+            return Round(qx, qy, coef[0] * x[e.r] + coef[1] * x[e.s] + value)
+    sin, cos = math.sin(x[e.theta]), math.cos(x[e.theta])
+    if isinstance(e, MiddleOn):
+        return Straight(-sin, cos, 2.0 * x[e.d] + sin * qx - cos * qy)
+    return Straight(cos, sin, cos * qx + sin * qy)
 
 
-def _lengths_locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus:
+def _of_lengths(e: Lengths, k: float, i: int, x: list[float]) -> Locus | None:
     """Where p may be for |p - q| = k |u - w| or |p - q| = k |p - w| (p at i, in either pair)."""
-    k = s.value[row]
-    first = s.var[row][0] == i or s.var[row][2] == i
-    second = s.var[row][4] == i or s.var[row][6] == i
-    at = 0 if first else 4
-    if s.var[row][at] == i and s.var[row][at + 2] == i:
-        return NO_LOCUS
-    j = at + 2 if s.var[row][at] == i else at
-    qx, qy = x[s.var[row][j]], x[s.var[row][j + 1]]
-    if not (first and second):
-        o = 4 - at
-        ax, ay = x[s.var[row][o]], x[s.var[row][o + 1]]
-        bx, by = x[s.var[row][o + 2]], x[s.var[row][o + 3]]
-        length = math.hypot(ax - bx, ay - by)
-        return Locus(2, qx, qy, (k * length if first else length / k))
-    if s.var[row][4] == i and s.var[row][6] == i:
-        return NO_LOCUS
-    j = 6 if s.var[row][4] == i else 4
-    wx, wy = x[s.var[row][j]], x[s.var[row][j + 1]]
+    first, second = [e.px, e.qx], [e.ux, e.wx]
+    if first == [i, i] or second == [i, i]:
+        return None
+    if i in first and i in second:
+        q, w = (pair[1 - pair.index(i)] for pair in (first, second))
+        return _apart_in_ratio((x[q], x[q + 1]), (x[w], x[w + 1]), k)
+    mine, other = (first, second) if i in first else (second, first)
+    q, (u, w) = mine[1 - mine.index(i)], other
+    length = math.hypot(x[u] - x[w], x[u + 1] - x[w + 1])
+    if mine is second:
+        return Round(x[q], x[q + 1], length / k) if k else None
+    return Round(x[q], x[q + 1], k * length)
+
+
+def _apart_in_ratio(q: Place, w: Place, k: float) -> Locus | None:
+    """Where the distance from q is k times that from w."""
+    (qx, qy), (wx, wy) = q, w
     if k == 1.0:
-        return _unit_line(wx - qx, wy - qy, 0.5 * (wx * wx + wy * wy - qx * qx - qy * qy))
+        return _straight(wx - qx, wy - qy, 0.5 * (wx * wx + wy * wy - qx * qx - qy * qy))
     g = 1.0 - k * k
     radius = k * math.hypot(qx - wx, qy - wy) / abs(g)
-    return Locus(2, (qx - k * k * wx) / g, (qy - k * k * wy) / g, radius)
+    return Round((qx - k * k * wx) / g, (qy - k * k * wy) / g, radius)
 
 
-def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus:
-    """Where the point at variable i may lie for equation `row`."""
-    code = s.code[row]
-    v = s.value[row]
-    if code == LINEAR:
-        a, b, rest = 0.0, 0.0, v
-        for k in range(4):
-            j = s.var[row][k]
-            if j == i:
-                a += s.coef[row][k]
-            elif j == i + 1:
-                b += s.coef[row][k]
-            elif j >= 0:
-                rest -= s.coef[row][k] * x[j]
-        return _unit_line(a, b, rest)
-    if code == POINT_LINE or code == LINE_CIRCLE:
-        theta = x[s.var[row][2]]
-        c = x[s.var[row][3]] + v
-        if code == LINE_CIRCLE:
-            c += s.coef[row][0] * x[s.var[row][4]]
-        return Locus(1, -math.sin(theta), math.cos(theta), c)
-    if code == LENGTHS:
-        return _lengths_locus(s, row, i, x)
-    if s.var[row][0] == s.var[row][2]:
-        return NO_LOCUS
-    qx, qy = _other(s, row, i, x)
-    if code == POINT_POINT:
-        return Locus(2, qx, qy, v)
-    if code == POINT_CIRCLE:
-        return Locus(2, qx, qy, x[s.var[row][4]] + v)
-    if code == CIRCLE_CIRCLE:
-        r = s.coef[row][0] * x[s.var[row][4]] + s.coef[row][1] * x[s.var[row][5]] + v
-        return Locus(2, qx, qy, r)
-    theta = x[s.var[row][4]]
-    sin, cos = math.sin(theta), math.cos(theta)
-    if code == MIDDLE_ON:
-        return Locus(1, -sin, cos, 2.0 * x[s.var[row][5]] + sin * qx - cos * qy)
-    return Locus(1, cos, sin, cos * qx + sin * qy)
-
-
-def nearest_on(locus: Locus, px: float, py: float) -> tuple[bool, float, float]:
-    """Whether there is a nearest point of a line or circle to p, and that point."""
-    a, b, c = locus.a, locus.b, locus.c
-    if locus.kind == 1:
-        gap = a * px + b * py - c
-        return True, px - gap * a, py - gap * b
-    dx, dy = px - a, py - b
+def nearest_on(locus: Locus, p: Place) -> Place | None:
+    """The point of a line or circle that is nearest to p; None on a circle of negative radius."""
+    px, py = p
+    if isinstance(locus, Straight):
+        gap = locus.nx * px + locus.ny * py - locus.c
+        return px - gap * locus.nx, py - gap * locus.ny
+    dx, dy, r = px - locus.x, py - locus.y, locus.r
     length = math.hypot(dx, dy)
+    if r < 0.0:
+        return None
     if length == 0.0:
-        return c >= 0.0, a + c, b
-    return c >= 0.0, a + c * dx / length, b + c * dy / length
+        return locus.x + r, locus.y
+    return locus.x + r * dx / length, locus.y + r * dy / length
 
 
 def root_of(square: float, scale: float) -> float:
@@ -138,24 +130,7 @@ def root_of(square: float, scale: float) -> float:
     return 0.0 if square >= -GRAZING * scale else -1.0
 
 
-def _side(value: float, plus: float, minus: float) -> float:
-    """Which of two solutions: the sketch's side, or the nearer one when the sketch lies on the
-    border."""
-    if value == 0.0:
-        return 1.0 if plus <= minus else -1.0
-    return 1.0 if value > 0.0 else -1.0
-
-
-def _two_lines(first: Locus, second: Locus) -> tuple[bool, float, float]:
-    """Whether two lines meet, and where."""
-    det = first.a * second.b - second.a * first.b
-    if abs(det) < 1e-12:
-        return False, 0.0, 0.0
-    x = (first.c * second.b - second.c * first.b) / det
-    return True, x, (first.a * second.c - second.a * first.c) / det
-
-
-class CommonChord(NamedTuple):
+class _Chord(NamedTuple):
     """The two common points f + h t and f - h t of two loci, and the side of the drawn point.
 
     Attributes:
@@ -171,51 +146,69 @@ class CommonChord(NamedTuple):
     side: float
 
 
-NO_CHORD = CommonChord(0.0, 0.0, 0.0, 0.0, -1.0, 0.0)
+def _chord(first: Locus, second: Locus, drawn: tuple[Locus, Locus], p: Place) -> _Chord | None:
+    """The common chord of a circle and another locus; `drawn` are the same in the sketch, p the point there."""
+    match first, second, *drawn:
+        case Round() as one, Round() as other, Round() as a, Round() as b:
+            return _two_circles(one, other, (a, b), p)
+        case Round() as circle, Straight() as line, Round() as a, Straight() as b:
+            return _line_and_circle(line, circle, (b, a), p)
+    return None
 
 
-def _two_circles(first, second, drawn_first, drawn_second, px, py):
+def _two_circles(
+    first: Round, second: Round, drawn: tuple[Round, Round], p: Place
+) -> _Chord | None:
     """The common chord of two circles."""
-    dx, dy = second.a - first.a, second.b - first.b
+    dx, dy = second.x - first.x, second.y - first.y
     d = math.hypot(dx, dy)
-    if d == 0.0 or first.c < 0.0 or second.c < 0.0:
-        return NO_CHORD
-    along = 0.5 * (d + (first.c - second.c) * (first.c + second.c) / d)
-    h = root_of((first.c - along) * (first.c + along), first.c * first.c + d * d)
+    if d == 0.0 or first.r < 0.0 or second.r < 0.0:
+        return None
+    along = 0.5 * (d + (first.r - second.r) * (first.r + second.r) / d)
+    h = root_of((first.r - along) * (first.r + along), first.r * first.r + d * d)
     ux, uy = dx / d, dy / d
-    ox, oy = drawn_first.a, drawn_first.b
-    sx, sy = drawn_second.a - ox, drawn_second.b - oy
-    side = sx * (py - oy) - sy * (px - ox)
-    return CommonChord(first.a + along * ux, first.b + along * uy, -uy, ux, h, side)
+    ox, oy = drawn[0].x, drawn[0].y
+    side = (drawn[1].x - ox) * (p[1] - oy) - (drawn[1].y - oy) * (p[0] - ox)
+    return _Chord(first.x + along * ux, first.y + along * uy, -uy, ux, h, side)
 
 
-def _line_and_circle(line, circle, drawn_line, drawn_circle, px, py):
+def _line_and_circle(
+    line: Straight, circle: Round, drawn: tuple[Straight, Round], p: Place
+) -> _Chord | None:
     """The chord that a line cuts off a circle."""
-    if circle.c < 0.0:
-        return NO_CHORD
-    gap = line.a * circle.a + line.b * circle.b - line.c
-    h = root_of((circle.c - gap) * (circle.c + gap), circle.c * circle.c)
-    side = -drawn_line.b * (px - drawn_circle.a) + drawn_line.a * (py - drawn_circle.b)
-    return CommonChord(circle.a - gap * line.a, circle.b - gap * line.b, -line.b, line.a, h, side)
+    if circle.r < 0.0:
+        return None
+    gap = line.nx * circle.x + line.ny * circle.y - line.c
+    h = root_of((circle.r - gap) * (circle.r + gap), circle.r * circle.r)
+    side = -drawn[0].ny * (p[0] - drawn[1].x) + drawn[0].nx * (p[1] - drawn[1].y)
+    return _Chord(circle.x - gap * line.nx, circle.y - gap * line.ny, -line.ny, line.nx, h, side)
 
 
-def meet(first, second, drawn_first, drawn_second, px, py, turned):
-    """Whether two loci meet, and their common point on the sketch's side (`turned` 1) or the other (-1).
+def _two_lines(first: Straight, second: Straight) -> Place | None:
+    """Where two lines meet."""
+    det = first.nx * second.ny - second.nx * first.ny
+    if abs(det) < 1e-12:
+        return None
+    x = (first.c * second.ny - second.c * first.ny) / det
+    return x, (first.nx * second.c - second.nx * first.c) / det
 
-    `drawn_first` and `drawn_second` are the same loci in the sketch, p the point there.
+
+def meet(
+    first: Locus, second: Locus, drawn: tuple[Locus, Locus], p: Place, turned: float
+) -> Place | None:
+    """The common point of two loci on the sketch's side (`turned` 1) or the other (-1); None for none.
+
+    `drawn` are the same loci in the sketch, p the point there. Where p lies between both, the nearer one.
     """
-    if first.kind == 1 and second.kind == 1:
+    if isinstance(first, Straight) and isinstance(second, Straight):
         return _two_lines(first, second)
-    if first.kind == 2 and second.kind == 2:
-        chord = _two_circles(first, second, drawn_first, drawn_second, px, py)
-    elif first.kind == 2:
-        chord = _line_and_circle(second, first, drawn_second, drawn_first, px, py)
-    else:
-        chord = _line_and_circle(first, second, drawn_first, drawn_second, px, py)
-    fx, fy, tx, ty, h = chord.fx, chord.fy, chord.tx, chord.ty, chord.h
-    if h < 0.0:
-        return False, 0.0, 0.0
-    plus = (fx + h * tx - px) ** 2 + (fy + h * ty - py) ** 2
-    minus = (fx - h * tx - px) ** 2 + (fy - h * ty - py) ** 2
-    h *= turned * _side(chord.side, plus, minus)
-    return True, fx + h * tx, fy + h * ty
+    if isinstance(first, Straight):
+        first, second, drawn = second, first, drawn[::-1]
+    chord = _chord(first, second, drawn, p)
+    if chord is None or chord.h < 0.0:
+        return None
+    fx, fy, tx, ty, h, side = chord
+    plus = fx + h * tx, fy + h * ty
+    minus = fx - h * tx, fy - h * ty
+    ahead = side > 0.0 or (side == 0.0 and math.dist(plus, p) <= math.dist(minus, p))
+    return plus if ahead == (turned > 0.0) else minus

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.sketch.equations import EQUATIONS, LINEAR, Rows
+from clearance.sketch.equations import KINDS, Rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,28 +58,31 @@ class System:
 
 
 class PlainSystem:
-    """A system as lists: single numbers are read and written ten times faster than in arrays."""
+    """A system as lists: single numbers are read and written ten times faster than in arrays.
+
+    Attributes:
+        equations: every equation, of the places of its numbers. coef, value: theirs.
+        kind, root: kind and first number of every vertex. members: its merged numbers.
+        scale, shift: the merged numbers, see `graph.Merged`.
+    """
 
     def __init__(self, system: System) -> None:
-        self.code, self.coef = system.code.tolist(), system.coef.tolist()
-        self.value, self.kind, self.root = (
-            system.value.tolist(),
-            system.kind.tolist(),
-            system.root.tolist(),
-        )
+        kinds = [KINDS[code] for code in system.code.tolist()]
+        self.equations = [
+            kind(*var[: len(kind._fields)])
+            for kind, var in zip(kinds, system.var.tolist(), strict=True)
+        ]
+        self.coef, self.value = system.coef.tolist(), system.value.tolist()
+        self.kind, self.root = system.kind.tolist(), system.root.tolist()
         self.scale, self.shift = system.scale.tolist(), system.shift.tolist()
-        self.var = system.var.tolist()
         start, member = system.member_start.tolist(), system.member.tolist()
         self.members = [member[a:b] for a, b in zip(start[:-1], start[1:], strict=True)]
 
     def residual(self, row: int, x: list[float]) -> float:
         """The error of one equation."""
-        code, var = self.code[row], self.var[row]
-        if code == LINEAR:
-            pairs = zip(self.coef[row], var, strict=False)
-            return sum(c * x[i] for c, i in pairs if i >= 0) - self.value[row]
-        numbers = [x[i] for i in var if i >= 0]
-        return EQUATIONS[code].residual(math, numbers, self.coef[row], self.value[row])
+        places = self.equations[row]
+        numbers = type(places)(*(x[i] for i in places))
+        return numbers.residual(math, self.coef[row], self.value[row])
 
     def holds(self, rows, x: list[float], tolerance: float) -> bool:
         """Whether some equations hold."""
