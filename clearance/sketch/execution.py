@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from clearance.sketch.beam import nearest_branch
 from clearance.sketch.contacts import Contacts
 from clearance.sketch.effort import OutOfTime
 from clearance.sketch.equations import Lengths, Ratio, are
@@ -224,7 +225,9 @@ def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
     if problem.free[part] + np.sum(problem.row_part == part) < BANDED:
         return False
     mine = (problem.system.vertex_of > 0) & (problem.part[problem.system.vertex_of] == part)
-    found = solve_from(problem, part, np.where(mine, start, x), RESIDUAL * problem.size)
+    branch = nearest_branch(problem, part, start)
+    origin = np.where(mine, start if branch is None else branch, x)
+    found = solve_from(problem, part, origin, RESIDUAL * problem.size)
     if found is None:
         return False
     x[:] = found

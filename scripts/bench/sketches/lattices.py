@@ -115,6 +115,22 @@ def slivered(n: int, off: float, seed: int) -> tuple[Sketch, np.ndarray, Edges]:
     return sketched(points, points + random.normal(0.0, off, points.shape), edges), points, edges
 
 
+def constructed(
+    n: int, off: float, seed: int, near: int | None = None
+) -> tuple[Sketch, np.ndarray, Edges]:
+    """(sketch, true points, edges) of random points, 1 per unit area, each at distances from two before it.
+
+    These are any two, or two of the `near` nearest. Points are drawn `off` (standard deviation) aside.
+    """
+    random = np.random.default_rng(seed)
+    points = random.uniform(0.0, math.sqrt(n), (n, 2))
+    edges = [(0, 1)]
+    for k in range(2, n):
+        gaps = np.linalg.norm(points[:k] - points[k], axis=1)
+        edges += [(int(a), k) for a in random.choice(np.argsort(gaps)[:near], 2, replace=False)]
+    return sketched(points, points + random.normal(0.0, off, points.shape), edges), points, edges
+
+
 def shaken(points: np.ndarray, off: float, seed: int) -> np.ndarray:
     """The points moved by up to `off`, uniformly in a disc."""
     random = np.random.default_rng(seed)
