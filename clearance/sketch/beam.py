@@ -137,17 +137,17 @@ class _Beam:
         self.sums = self.sums[:, None]
         off = np.where(good, self.off(more, 1), np.inf)
         self.sums = (self.sums + more).reshape(-1, 8)
-        ranked = np.arange(off.size).reshape(off.shape)
+        every = np.arange(off.size).reshape(off.shape)
         if not placing.bears:
-            ranked = ranked[np.arange(len(off)), np.argmin(off, axis=1)]
-        ranked = ranked.ravel()
-        ranked = ranked[np.argsort(off.ravel()[ranked], kind="stable")][: self.width]
-        ranked = ranked[np.isfinite(off.ravel()[ranked])]
-        self.sums = self.sums[ranked]
-        self.places = self.places[ranked // off.shape[1]]
-        self.places[:, self.count] = found.reshape(-1, 2)[ranked]
+            every = every[np.arange(len(off)), np.argmin(off, axis=1)]
+        price = off.ravel()[every.ravel()]
+        kept = every.ravel()[np.argsort(price, kind="stable")][: self.width]
+        kept = kept[np.isfinite(off.ravel()[kept])]
+        self.sums = self.sums[kept]
+        self.places = self.places[kept // off.shape[1]]
+        self.places[:, self.count] = found.reshape(-1, 2)[kept]
         self.count += 1
-        return bool(ranked.size)
+        return bool(kept.size)
 
 
 def _candidates(places: np.ndarray, placing: _Placing) -> tuple[np.ndarray, np.ndarray]:

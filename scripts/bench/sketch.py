@@ -2,7 +2,7 @@
 
     PYTHONPATH=. python scripts/bench/sketch.py [--peers] [--seeds N] [--csv scripts/bench/results/sketch.csv]
 
-One run, one core, compiled beforehand; sketches are built outside the clock, a solve includes everything
+One run, one core; sketches are built outside the clock, a solve includes everything
 from the flat lists to the residual. CPU time of this process, which a busy machine does not stretch; fixed
 seeds; median, least and greatest of the repetitions.
 """
@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from scripts.bench.sketches.clusters import irreducible_clusters
 from scripts.bench.sketches.designs import bars, conflict, midship, separate_rectangles
 from scripts.bench.sketches.drawings import drawings
-from scripts.bench.sketches.patches import patches, slivers
+from scripts.bench.sketches.patches import constructions, patches, slivers
 from scripts.bench.sketches.table import Table
 
 
@@ -32,6 +32,7 @@ def main() -> None:
     table = Table()
     patches(table, chosen.peers)
     slivers(table)
+    constructions(table)
     drawings(table, chosen.peers)
     midship(table)
     bars(table)
