@@ -52,7 +52,8 @@ class Diagnosis:
         """See `Repair`; none where there is no time for all."""
         self._trial.limit = self._trial.problem.limit.again()
         try:
-            return repairs_of(self._trial, self._conflict)
+            with self._trial.limit:
+                return repairs_of(self._trial, self._conflict)
         except OutOfTime:
             return []
 
@@ -64,7 +65,8 @@ def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis
     if outcome.stopped:
         return Diagnosis(trial, [], "", not_holding(problem, outcome.best))
     try:
-        return _diagnosed(trial, problem, outcome)
+        with trial.limit:
+            return _diagnosed(trial, problem, outcome)
     except OutOfTime:
         return Diagnosis(trial, [], "", trial.everything(outcome.broken))
 

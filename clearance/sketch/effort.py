@@ -35,7 +35,7 @@ class OutOfTime(Exception):
 
 
 class TimeLimit:
-    """The moment at which searches stop.
+    """The moment at which searches stop; as a context, a terminal is left clean.
 
     Args:
         seconds: [s] from now on; infinite for none.
@@ -74,7 +74,10 @@ class TimeLimit:
         if self.is_over():
             raise OutOfTime
 
-    def clear(self) -> None:
+    def __enter__(self) -> TimeLimit:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         """Removes what a terminal shows."""
         if self._shown > SHOWN_AFTER:
             _show("")

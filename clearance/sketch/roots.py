@@ -7,8 +7,11 @@ may be missed.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from clearance.sketch.effort import OutOfTime
 from clearance.sketch.graph.graph import POINT, SIZE, TURN
 from clearance.sketch.graph.steps import PlanStep
 from clearance.sketch.problem import RESIDUAL, Problem
@@ -134,12 +137,16 @@ def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, f
 def alternatives_of(
     sketch, problem: Problem, x: np.ndarray, sides: Sides
 ) -> list[dict[str, np.ndarray]]:
-    """The other solutions as numbers of every entity by name, those whose `same_side` holds."""
-    return [
-        by_name(sketch, problem, y)
-        for y, _ in other_solutions(problem, x)
-        if sides_hold(y, sides, problem.size)
-    ]
+    """The other solutions as numbers of every entity by name, those whose `same_side` holds.
+
+    The search may take as long as the solve; none where there is no time for all.
+    """
+    try:
+        with problem.limit.again() as limit:
+            found = other_solutions(replace(problem, limit=limit), x)
+    except OutOfTime:
+        return []
+    return [by_name(sketch, problem, y) for y, _ in found if sides_hold(y, sides, problem.size)]
 
 
 def by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:

@@ -59,11 +59,10 @@ class Solver:
     def _run(self, problem: Problem, before: np.ndarray) -> ExecutionResult:
         """The outcome from the numbers before; these again where the time was not enough."""
         try:
-            return run_with_sides(problem, before, self.sides)
+            with problem.limit:
+                return run_with_sides(problem, before, self.sides)
         except OutOfTime as stop:
             return stopped(problem, before, stop.x)
-        finally:
-            problem.limit.clear()
 
     def drag(
         self, point, position: tuple[float, float], limit: TimeLimit
@@ -74,17 +73,23 @@ class Solver:
         before = np.array(self.sketch._lists.numbers)
         outcome = self._run(problem, before)
         if outcome.broken == -1:
-            target = outcome.x.copy()
-            i = problem.alias[point.variable]
-            target[i : i + 2] = np.array(position) - self.sketch.origin
-            weight = problem.weight.copy()
-            weight[i : i + 2] = DRAGGED
-            part = problem.part[problem.system.vertex_of[i]]
-            moved = least_movement(problem, part, outcome.x, target, weight)
-            if moved is not None and sides_hold(moved, self.sides, problem.size):
-                outcome.x = moved[problem.alias]
-                outcome.residual, _ = residual_of(problem, moved)
+            try:
+                with problem.limit:
+                    self._pull(problem, outcome, problem.alias[point.variable], position)
+            except OutOfTime:
+                outcome = stopped(problem, before, outcome.x)
         return self._finish(problem, before, outcome)
+
+    def _pull(self, problem: Problem, outcome: ExecutionResult, i: int, position) -> None:
+        """Moves a solution so that the point at variable i comes nearest to a position, in place."""
+        target, weight = outcome.x.copy(), problem.weight.copy()
+        target[i : i + 2] = np.array(position) - self.sketch.origin
+        weight[i : i + 2] = DRAGGED
+        part = problem.part[problem.system.vertex_of[i]]
+        moved = least_movement(problem, part, outcome.x, target, weight)
+        if moved is not None and sides_hold(moved, self.sides, problem.size):
+            outcome.x = moved[problem.alias]
+            outcome.residual, _ = residual_of(problem, moved)
 
     def _finish(
         self, problem: Problem, before: np.ndarray, outcome: ExecutionResult

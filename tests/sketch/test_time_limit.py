@@ -4,6 +4,7 @@ import io
 import itertools
 import math
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from clearance.errors import BadDimension
 from clearance.sketch import Sketch
 from clearance.sketch.effort import OutOfTime, TimeLimit
 from scripts.bench.sketches.lattices import irreducible, shaken, sketched, slivered
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 
 
 class Clock:
@@ -146,6 +149,52 @@ def test_nothing_is_shown_where_errors_do_not_go_to_a_terminal(monkeypatch):
     monkeypatch.setattr(sys, "stderr", io.StringIO())
     solved_with(cluster(0.4), TimeLimit(10.0, lambda: 0.6 * next(ticks)))
     assert sys.stderr.getvalue() == ""
+
+
+def test_an_interrupted_solve_leaves_the_sketch_as_it_was():
+    def interrupted() -> float:
+        clock()
+        if clock.left < 0:
+            raise KeyboardInterrupt
+        return 0.0
+
+    clock, sketch = Clock(6), cluster()
+    drawn = numbers_of(sketch)
+    with pytest.raises(KeyboardInterrupt):
+        solved_with(sketch, TimeLimit(10.0, interrupted))
+    assert (numbers_of(sketch) == drawn).all() and sketch.solve().solved
+
+
+def test_a_drag_is_stopped_at_any_moment_and_leaves_the_sketch_as_it_was():
+    n_stopped = 0
+    for n in itertools.count(1):
+        s = Sketch()
+        p = [s.point(*q) for q in ((0, 0), (1, 0), (1, 1), (0, 1))]
+        for i in range(4):
+            s.distance(p[i], p[(i + 1) % 4], 1.0)
+        s.fix(p[0]), s.fix(p[1])
+        drawn = numbers_of(s)
+        found = s._result(*s._engine().drag(p[2], (1.6, 0.8), TimeLimit(10.0, Clock(n))))
+        if not found.stopped:
+            assert found.solved
+            break
+        n_stopped += 1
+        assert not found.solved and (numbers_of(s) == drawn).all() and found.reason
+    assert n_stopped >= 1
+
+
+def test_other_solutions_are_searched_for_long_after_a_solve():
+    now = [0.0]
+    found = solved_with(Sketch.load(SKETCHES / "bar_length.yaml"), TimeLimit(10.0, lambda: now[0]))
+    now[0] = 3600.0
+    assert found.solved and len(found.alternatives) == 1
+
+
+def test_the_search_for_other_solutions_ends_with_its_time():
+    sketch = Sketch.load(SKETCHES / "bar_length.yaml")
+    found = solved_with(sketch, TimeLimit(10.0, Clock(math.inf)))
+    found._problem.limit = TimeLimit(10.0, Clock(3))
+    assert found.alternatives == []
 
 
 def test_what_needs_no_search_needs_no_time():
