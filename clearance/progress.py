@@ -6,6 +6,3 @@ from collections.abc import Callable
 
 Progress = Callable[[int, int], None]
 """Called with how many steps are done, and how many there are."""
-
-COMPILING = "compiling for this machine, once: about half a minute"
-"""What is said in a terminal before that."""

@@ -53,7 +53,7 @@ prepare() {
     fi
     [ "$(stamp_of "$extra")" = "$(cat "$stamp" 2>/dev/null || true)" ] && return
     [ -n "$extra" ] && target="$root[$extra]"
-    echo "installing into $venv (a few minutes the first time)" >&2
+    echo "installing into $venv; the first time this also compiles the kernels, in $(nproc 2>/dev/null || echo all) processes (some minutes)" >&2
     pip_install "${python:-$(find_python)}" --editable "$target" \
         || fail "the installation failed; the lines above say why"
     stamp_of "$extra" >"$stamp"

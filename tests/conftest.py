@@ -5,12 +5,13 @@ from __future__ import annotations
 import functools
 import gc
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
-import numba
 import pytest
 
-from tests import examples, kernel_shares
+from clearance.compile import library
+from clearance.compile.decorators import KERNELS
+from clearance.errors import Unavailable
+from tests import examples
 from tests.guards import guarded, refused
 from tests.marks import marks_of
 
@@ -21,16 +22,12 @@ examples.register()
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Beside others, compiles a share of the kernels before all of them are asked for."""
-    told = getattr(session.config, "workerinput", None)
-    temporary = session.config.option.basetemp
-    if told is None or temporary is None or numba.config.DISABLE_JIT:
-        return
-    from clearance.compile.numba_private import Kernel
-
-    turns = kernel_shares.turns_beside(Path(temporary))
-    Kernel.compile = kernel_shares.in_turns(Kernel.compile, turns)
-    kernel_shares.compile_share(int(told["workerid"].removeprefix("gw")), told["workercount"])
+    """Builds the kernels that have changed, before any test asks for one."""
+    if KERNELS == "built":
+        try:
+            library.opened()
+        except Unavailable as error:
+            raise pytest.UsageError(str(error)) from None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -73,19 +70,9 @@ def _marks_of(*functions: Callable) -> list[str]:
 
 
 def _put_long_files_first(items: list[pytest.Item]) -> None:
-    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end.
-
-    Those of one room lie far from each other. Two workers in one room need the same kernels, and with an empty
-    cache the one would stand still while the other compiles.
-    """
+    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end."""
     long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
-    files = list(dict.fromkeys(item.path for item in items))
-    order = [
-        *kernel_shares.spread([f for f in files if f in long]),
-        *kernel_shares.spread([f for f in files if f not in long]),
-    ]
-    places = {path: i for i, path in enumerate(order)}
-    items.sort(key=lambda item: places[item.path])
+    items.sort(key=lambda item: item.path not in long)
 
 
 def pytest_collection_finish() -> None:

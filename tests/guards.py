@@ -11,8 +11,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import pytest
-
 from tests.shared_cases import SHARED_CASES
 
 STARTS = {
@@ -27,10 +25,6 @@ STARTS = {
 MAY_START = frozenset({"cold", "browser"})
 FONT_LIST = "fc-list"
 """What matplotlib starts once on a machine, to find its fonts, in whichever test draws first."""
-
-ALONE = "CLEARANCE_COMPILES_AHEAD"
-"""Set where no second process is to fill the cache of kernels. With an empty cache whichever test first runs
-`clearance check` would start it."""
 
 _marks: frozenset[str] | None = None
 refused: list[str] = []
@@ -47,13 +41,10 @@ def guarded(marks: frozenset[str]) -> Iterator[None]:
     global _marks
     before, _marks = _marks, marks
     refused.clear()
-    with pytest.MonkeyPatch.context() as environment:
-        if not marks & MAY_START:
-            environment.setenv(ALONE, "1")
-        try:
-            yield
-        finally:
-            _marks = before
+    try:
+        yield
+    finally:
+        _marks = before
 
 
 def _see(event: str, arguments: tuple) -> None:

@@ -12,13 +12,12 @@ import logging
 import math
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
 from clearance.batch.engine import Queue
-from clearance.batch.kernels import compile_ahead
 from clearance.batch.measuring import Fault, Task, TaskResult, measure
 from clearance.errors import BadInput, Incomplete
 from clearance.extras import importing
@@ -46,13 +45,12 @@ LOGGED = 100
 
 
 @contextmanager
-def local_cluster(jobs: int, say: Callable[[str], None]) -> Iterator[DaskEngine]:
-    """So many worker processes on this machine; kernels are compiled before they start.
+def local_cluster(jobs: int) -> Iterator[DaskEngine]:
+    """So many worker processes on this machine.
 
     Raises:
         Unavailable: Dask is not installed. Incomplete: no workers can be started.
     """
-    compile_ahead(say)
     with importing("batch", "more than one job"):
         import distributed
     with (
@@ -196,7 +194,7 @@ class DaskEngine:
             task = queue.task(n_hands)
             if task is None:
                 return
-            future = self.client.submit(measure_there, task, pure=False)
+            future = self.client.submit(measure, task, pure=False)
             running[future] = task
             finished.add(future)
 
@@ -226,9 +224,3 @@ class DaskEngine:
                 f"the scheduler is gone ({type(error).__name__})",
                 valid="what was measured is kept; the same command goes on with the rest",
             ) from None
-
-
-def measure_there(task: Task) -> TaskResult:
-    """`measure` in a worker."""
-    compile_ahead()
-    return measure(task)

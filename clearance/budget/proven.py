@@ -14,7 +14,6 @@ from typing import TypeVar
 import numpy as np
 
 from clearance.budget.errors_of import NOW, errors_of
-from clearance.compile.kernel_table import call, prepared
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
     EXACT_LOOKS,
@@ -111,11 +110,6 @@ class PairsWithErrors:
     def _idle(self) -> list[BudgetScene]:
         """Scenes that no thread is at work with."""
         return []
-
-    @cached_property
-    def _prepared(self) -> dict[Callable, Callable]:
-        """The kernels that were called, for arguments of the types that they have here."""
-        return {}
 
     @contextmanager
     def _scene(self) -> Iterator[BudgetScene]:
@@ -219,10 +213,7 @@ class PairsWithErrors:
             own = BudgetRows(*(column[span] for column in rows))
             tally = np.zeros(5, dtype=np.int64)
             with self._scene() as scene:
-                arguments = scene, ask(span), own, tally
-                if kernel not in self._prepared:
-                    self._prepared[kernel] = prepared(kernel, *arguments)
-                call(self._prepared[kernel], *arguments)
+                kernel(scene, ask(span), own, tally)
 
         for _ in in_order(run, parts(n_rows), self.n_threads):
             pass

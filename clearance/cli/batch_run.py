@@ -22,7 +22,6 @@ from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
-from clearance.progress import COMPILING
 from clearance.simulate.parts import usable_cores
 from clearance.world.waiver import Waiver
 
@@ -104,17 +103,12 @@ def _opener(asked: BatchRequest, say: Callable[[str], None]) -> Opener:
                 yield engine
             return
         jobs = _jobs(asked.jobs, n_cases, say)
-        say_first = say if sys.stderr.isatty() else _silent
         if jobs == 1:
-            from clearance.cli import compile_ahead
-
-            if compile_ahead.start():
-                say_first(COMPILING)
             yield LocalEngine()
             return
         from clearance.batch.dask_engine import local_cluster
 
-        with local_cluster(jobs, say_first) as engine:
+        with local_cluster(jobs) as engine:
             yield engine
 
     return opened

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -145,7 +144,6 @@ def check(
     _require_file(case_file)
     from clearance.run import Question
 
-    _compile_ahead(quiet)
     case = _case(case_file, fail_mm, warn_mm, accept, waivers)
     case = with_leniency(with_recording(with_tolerances(case, tolerance), *recording), unproven_ok)
     outputs.refuse_inputs(case)
@@ -267,20 +265,6 @@ def _require_extras(cross_check: bool, motion: str) -> None:
         require("crosscheck", "--cross-check")
     if motion == "simulated":
         require("simulate", "--motion simulated")
-
-
-def _compile_ahead(quiet: bool) -> None:
-    """Begins to compile what this machine has not yet, and says so in a terminal."""
-    import warnings
-
-    from clearance.cli import compile_ahead
-    from clearance.kept_files import KernelCacheWarning
-    from clearance.progress import COMPILING
-
-    if quiet:
-        warnings.simplefilter("ignore", KernelCacheWarning)
-    if compile_ahead.start() and not quiet and sys.stderr.isatty():
-        click.echo(COMPILING, err=True)
 
 
 def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:

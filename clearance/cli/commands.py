@@ -11,7 +11,6 @@ from clearance import __version__
 from clearance.cli.batch import batch
 from clearance.cli.check import check
 from clearance.cli.comparison import compare
-from clearance.cli.compile_kernels import compile_kernels
 from clearance.cli.convert import convert
 from clearance.cli.gain import gain
 from clearance.cli.new import new
@@ -34,7 +33,6 @@ for command in (
     batch,
     check,
     compare,
-    compile_kernels,
     convert,
     gain,
     new,

@@ -184,14 +184,12 @@ def _only_one(states: list[str] | None, keys: list[str]) -> str:
 
 def _proposing(made: NewCase) -> NewCase:
     """The case with links that touch at every step as a comment, where links are measured against each other."""
-    from clearance.cli import compile_ahead
     from clearance.errors import ClearanceError
     from clearance.run import check
     from clearance.simulate.standing import touching_throughout
 
     if not any(placed.self_clearance for placed in made.case.robots):
         return made
-    compile_ahead.start()
     try:
         run = check(made.case, certify=False, contact="none")
     except ClearanceError:  # the check says so when the case is asked

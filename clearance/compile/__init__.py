@@ -1,1 +1,1 @@
-"""How kernels are compiled, kept and reached."""
+"""How kernels become machine code: declared, compiled when the package is built, loaded and called."""

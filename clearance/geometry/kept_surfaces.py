@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.compile.machine import numba_version, processor
+from clearance.compile.library import processor
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.mesh.surface import Surface
 from clearance.package_digest import package_digest
@@ -41,7 +41,7 @@ def kept_surface(shape: Polyhedron, build: Callable[[Polyhedron], Surface]) -> S
 
 
 def _path_of(shape: Polyhedron) -> Path:
-    program = (package_digest(), np.__version__, numba_version(), processor())
+    program = (package_digest(), np.__version__, processor())
     digest = hashlib.sha256(repr(program).encode())
     for array in (shape.vertices, shape.face_starts, shape.face_vertices):
         digest.update(repr(array.shape).encode())

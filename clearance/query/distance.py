@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.geometry.faces import check_convex
 from clearance.geometry.point_cloud import require_surface
@@ -104,7 +103,7 @@ def _measured(ps: np.ndarray, qs: np.ndarray) -> PolygonPairAnswers:
     k = len(ps)
     flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
     answers = PolygonPairAnswers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
-    call(nearest_polygons, ps, qs, answers)
+    nearest_polygons(ps, qs, answers)
     return answers
 
 

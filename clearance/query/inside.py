@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.geometry.closing import Closing
 from clearance.geometry.open_faces import open_faces_of
 from clearance.geometry.point_cloud import PointCloud
@@ -164,7 +163,7 @@ def _look(
         return
     least, most = np.empty(len(rows)), np.empty(len(rows))
     points = part.points if shell.few else part.outermost
-    call(generalized_windings, shell.surface, points, outer[rows], inner[rows], least, most)
+    generalized_windings(shell.surface, points, outer[rows], inner[rows], least, most)
     found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
 
 
@@ -187,7 +186,7 @@ def _look_at_points(
             continue
         points = cloud.within(shell.bounds, outer[k], inner[k])
         if len(points):
-            call(generalized_windings, shell.surface, points, *poses, least, most)
+            generalized_windings(shell.surface, points, *poses, least, most)
             found[k] = most[0] > (DOUBTFUL if shell.few else MOSTLY)
 
 

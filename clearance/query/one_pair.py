@@ -7,7 +7,6 @@ import weakref
 
 import numpy as np
 
-from clearance.compile.kernel_table import call, prepared
 from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
@@ -47,17 +46,17 @@ class OnePair:
         self.doubt = doubt_of(a, b)
         self._how = 0 if goes_on else AFRESH
         self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)
-        self._ask = prepared(nearest_at_poses, self.held, *self._poses, self._how, *self._rows)
+        self._ask = nearest_at_poses.prepared(self.held, *self._poses, self._how, *self._rows)
 
     def nearest(self, given_a: np.ndarray | None, given_b: np.ndarray | None) -> Nearest:
         """The answer at one pose of each, (4, 4) or None for the identity."""
         pose_a, pose_b = _pose(given_a), _pose(given_b)
         self._poses[0][0], self._poses[1][0] = pose_a, pose_b
         how = self._how
-        if call(self._ask, self.held, *self._poses, how, *self._rows) != -1:
+        if self._ask() != -1:
             validated_pose(pose_a), validated_pose(pose_b)
             how |= POSES_ARE_RIGID
-            call(self._ask, self.held, *self._poses, how, *self._rows)
+            nearest_at_poses(self.held, *self._poses, how, *self._rows)
         numbers, points, counts = self._rows
         ((distance, error),), (point_a, point_b) = numbers.tolist(), points[0].copy()
         ((face_a, face_b, n_nodes, n_faces, n_exact),) = counts.tolist()

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
@@ -118,11 +117,11 @@ class Query:
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._alone():
             held = self._pair.held
-            if call(nearest_at_poses, held, poses_a, poses_b, 0, numbers, points, counts) != -1:
+            if nearest_at_poses(held, poses_a, poses_b, 0, numbers, points, counts) != -1:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 how = POSES_ARE_RIGID
-                call(nearest_at_poses, held, poses_a, poses_b, how, numbers, points, counts)
+                nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts)
         distances = numbers[:, 0].copy()
         undecided = _undecided(self._pair, distances, poses_a, poses_b)
         return NearestAtPoses(

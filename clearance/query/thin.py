@@ -44,7 +44,7 @@ def refined(task: CuttingTask, places: np.ndarray) -> tuple[Region, np.ndarray] 
         if not 0 < len(names) <= MOST_PLANES:
             return None
         origin = task.origin + middle
-        planes = stretched_planes(corners, origin[None, :], frame)
+        planes = stretched_planes(corners, origin[None, :], np.ascontiguousarray(frame))
         order = np.argsort(planes[:, 3], kind="stable")
         cut = _cut_box(planes[order])
         if cut is None:

@@ -6,12 +6,11 @@ The fresh run measures as `check` does, from the case's files. Not for: proving 
 from __future__ import annotations
 
 import hashlib
-import platform
 import tempfile
 from itertools import zip_longest
 from pathlib import Path
 
-from clearance.compile.machine import processor
+from clearance.compile.library import processor
 from clearance.errors import BadInput, BadSyntax, MissingFile, shown
 from clearance.package_digest import package_digest
 from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
@@ -33,9 +32,7 @@ SHOWN = 48
 
 def maker() -> dict[str, str]:
     """The programs and the machine that make a report; if all are the same, so are the bytes."""
-    machine = repr((platform.machine(), processor()))
-    digest = hashlib.sha256(machine.encode()).hexdigest()[:8]
-    own = {"sources": package_digest()[:16], "processor": f"{processor()[1]} {digest}"}
+    own = {"sources": package_digest()[:16], "processor": " ".join(processor())}
     return versions() | own
 
 

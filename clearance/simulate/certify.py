@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.certify import (
     CertificateGoal,
@@ -196,7 +195,7 @@ class _Work:
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             motion = CertifiedMotion(with_turning_balls(world), path)  # no two threads share it
-            call(certify, surface, motion, steps, self.question.aim, own, counts)
+            certify(surface, motion, steps, self.question.aim, own, counts)
             return span.stop, counts
 
         return run_part
@@ -220,7 +219,7 @@ def prove_path(
     n, counts = len(path.times) - 1, _no_counts()
     bounds = IntervalBounds(np.empty(n), np.empty(n), np.empty(n), np.empty(n, dtype=np.int64))
     motion = CertifiedMotion(with_turning_balls(world), path)  # no two threads share it
-    call(certify, surface, motion, steps, aim, bounds, counts)
+    certify(surface, motion, steps, aim, bounds, counts)
     return bounds, counts
 
 

@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.compile.kernel_table import call, prepared
 from clearance.errors import BadInput, BadShape, NotFinite, at
-from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
+from clearance.kernels.motion.held_scene import Scene
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.asked_positions import AskedPositions
 from clearance.simulate.inside import DoubtfulPairs
@@ -122,13 +121,11 @@ class Checker:
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
         )
-        self._held = hold_scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
+        self._held = Scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
         self._lock = threading.Lock()
         self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         self._row, self._position = _rows(1), self._fixed[None].copy()
-        self._nearest = prepared(
-            nearest_at_positions, self._held, self._position, self._row, self._counts
-        )
+        self._nearest = self._held.always_at(self._position, self._row, self._counts)
 
     def distance(self, configuration: Configuration) -> Clearance:
         """The least clearance at one configuration and where it is attained.
@@ -149,7 +146,7 @@ class Checker:
         with self._lock:
             positions, row = self._position, self._row
             positions[0][self._columns] = given
-            call(self._nearest, self._held, positions, row, self._counts)
+            self._nearest()
             if not self._is_in_world:
                 self._layout.to_world(positions, row.pair, row.points)
             link, obstacle = self.pairs[row.pair[0]]
@@ -167,7 +164,7 @@ class Checker:
         positions, rows = np.tile(self._fixed, (len(given), 1)), _rows(len(given))
         positions[:, self._columns] = given
         with self._lock:
-            call(self._nearest, self._held, positions, rows, self._counts)
+            self._held.nearest_at(positions, rows, self._counts)
             in_doubt = self._doubtful.at(positions)
         self._layout.to_world(positions, rows.pair, rows.points)
         undecided = np.zeros(len(positions), dtype=bool)

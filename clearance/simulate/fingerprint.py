@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.compile.machine import numba_version, processor
+from clearance.compile.library import processor
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.package_digest import package_digest
 from clearance.world.case import Case
@@ -98,5 +98,5 @@ def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
 
 def _program() -> str:
     """Sources, versions and machine: on another processor the last bits may differ."""
-    versions = (np.__version__, numba_version(), platform.python_version(), platform.machine())
+    versions = (np.__version__, platform.python_version(), platform.machine())
     return f"{package_digest()} {versions} {processor()}"

@@ -6,14 +6,15 @@ pairs where a winding number decides (`kernels.search.containment`); those are i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.compile.kernel_table import call, prepared
+from clearance.compile.calls import Written
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.motion.boxes_at_positions import overlaps_at_positions
+from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
 from clearance.query.distance import distance
 from clearance.query.inside import PossibleContainment, doubt_of
@@ -128,11 +129,8 @@ class DoubtfulPairs:
     def __init__(self, case: Case, pairs: Sequence[Pair]) -> None:
         self._case, self._pairs, self._open = case, pairs, _open_pairs(case, pairs)
         self._held = forest_of(case).links, self._open.boxes, self._open.pairs
-        self._room_for_one = self._room(1)
-        if self._open.places:
-            any_positions = np.empty((1, 0))  # only its type is asked for
-            arguments = *self._held, any_positions, *self._room_for_one
-            self._overlaps = prepared(overlaps_at_positions, *arguments)
+        self._written = Written(self._held[0], Links), Written(self._held[1], CarriedBoxes)
+        self._for_one: tuple[np.ndarray, tuple[np.ndarray, np.ndarray], Callable] | None = None
 
     def at(self, positions: np.ndarray) -> Sequence[tuple[int, int]]:
         """The place of a pair and the row, wherever a pair is in doubt and not in contact.
@@ -142,11 +140,22 @@ class DoubtfulPairs:
         """
         if not self._open.places:
             return ()
-        n = len(positions)
-        poses, spans = self._room_for_one if n == 1 else self._room(n)
-        if call(self._overlaps, *self._held, positions, poses, spans) == 0:
+        (poses, spans), count = self._asked(positions)
+        if count() == 0:
             return ()
         return list(self._in_doubt(BodyPoses(self._case, poses), spans.tolist()))
+
+    def _asked(
+        self, positions: np.ndarray
+    ) -> tuple[tuple[np.ndarray, np.ndarray], Callable[[], int]]:
+        """The arrays that a question fills, and the question; that of one position is kept for its array."""
+        if self._for_one is not None and self._for_one[0] is positions:
+            return self._for_one[1:]
+        room = self._room(len(positions))
+        ask = overlaps_at_positions.prepared(*self._written, self._held[2], positions, *room)
+        if len(positions) == 1:
+            self._for_one = positions, room, ask
+        return room, ask
 
     def _room(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Arrays for the poses of all links at n positions, and for a span of each pair."""

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.kernels.motion.sweep import sweep
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
@@ -115,8 +114,7 @@ class _Sweep:
         counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
         first = FirstLook(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
-        call(
-            sweep,
+        sweep(
             layout.surface,
             layout.world,
             SweptSteps(positions, numbers, _NO_STEPS if known is None else known),
@@ -218,8 +216,7 @@ def nearest_at(what: PairsInMotion, positions: np.ndarray) -> StepRows:
     """The nearest pair at any positions (k, columns) [rad or m], columns as `world.forest` has them."""
     n_rows, n_pairs, layout = len(positions), len(what.pairs), what.layout
     rows, counts = _rows_of(None, slice(0, n_rows)), np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
-    call(
-        sweep,
+    sweep(
         layout.surface,
         layout.world,
         SweptSteps(np.ascontiguousarray(positions), np.arange(n_rows), _NO_STEPS),

@@ -117,7 +117,7 @@ def chunk_times(items: Cases) -> list[float]:
 
 def overhead(place: Path, items: Cases) -> float:
     """[s] a case of processor time in this process where two workers measure: all but measuring."""
-    with local_cluster(2, print) as engine:
+    with local_cluster(2) as engine:
         _run(place / "warm", items[:64], engine)
         begun = time.process_time()
         _run(place / "all", items, engine)
@@ -126,7 +126,7 @@ def overhead(place: Path, items: Cases) -> float:
 
 def cost(place: Path, items: Cases, jobs: int) -> tuple[float, float]:
     """[s] a case by the wall, and of processor time of the command and all workers, after the first cases."""
-    with local_cluster(jobs, print) as engine:
+    with local_cluster(jobs) as engine:
         _run(place / "warm", items[: 64 * jobs], engine)
         begun, used = time.perf_counter(), _processor_time(engine)
         _run(place / "all", items, engine)
@@ -142,7 +142,7 @@ def _processor_time(engine: DaskEngine) -> float:
 def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Memory over many cases, and the second run of the same manifest."""
     items = items_of([str(cart_batch(folder / "many", asked.many))], Changes())
-    with local_cluster(2, print) as engine:
+    with local_cluster(2) as engine:
         resident = _Resident(engine, len(items))
         _run(folder / "kept", items, engine, resident)
     for name, (early, late) in resident.found().items():

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.kernels.search.pair_query import POSES_ARE_RIGID, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import OnePair, answer_rows
@@ -292,7 +291,7 @@ class Apart:
         n = a.at.shape[1]
         rows = answer_rows(n)
         held = self._held(case, pair).held
-        call(nearest_at_poses, held, _rows_of(a), _rows_of(b), POSES_ARE_RIGID, *rows)
+        nearest_at_poses(held, _rows_of(a), _rows_of(b), POSES_ARE_RIGID, *rows)
         return rows[0][:, 0], rows[1]
 
     def _held(self, case: Case, pair: Pair) -> OnePair:

@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,6 +29,7 @@ from verdict_cases import CASES, write_verdict_case
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared" / "cases"
+BUILT = Path("clearance/compile/built")
 
 LOOSER = 0.01
 """[-] A proven bound may be lower than before by so much of itself."""
@@ -153,6 +155,8 @@ def _tree_of(revision: str) -> Iterator[Path]:
         subprocess.run([*git, "add", "--quiet", "--detach", str(tree), revision], check=True)
         if SHARED.is_dir():
             (Path(folder) / "shared").symlink_to(SHARED.parent)
+        if (tree / BUILT).parent.joinpath("build.py").exists() and (ROOT / BUILT).is_dir():
+            shutil.copytree(ROOT / BUILT, tree / BUILT)  # what fits of it is not compiled again
         try:
             yield tree
         finally:

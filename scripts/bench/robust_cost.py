@@ -15,7 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.compile.jit import kernel
+from clearance.compile.declared import Floats3
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.features.bounds import SLACK
 from clearance.kernels.features.face_pair import nearest_of_faces, nothing_yet
@@ -34,12 +36,14 @@ CORNERS = ((3, 3), (4, 3), (4, 4), (6, 6), (8, 8), (12, 12), (16, 16), (32, 32),
 
 
 @kernel
-def plain(ps, qs, answers):
+def plain(ps: Floats3, qs: Floats3, answers: PolygonPairAnswers) -> None:
     """`nearest_polygons` without what makes it exact."""
-    _plain_each(ps, qs, _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1]), answers)
+    a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
+    _plain_each(ps, qs, lend(a_p), lend(b_q), answers)
+    a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here
 
 
-@kernel(reference_counts=False)
+@inline
 def _plain_each(ps, qs, a_p, b_q, answers):
     frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):

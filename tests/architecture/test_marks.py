@@ -11,7 +11,6 @@ from importlib import import_module
 import pytest
 
 import clearance as cl
-from clearance.cli import compile_ahead
 from tests import guards, marks
 from tests.examples import PROFILES, examples, listed, share_of
 
@@ -73,13 +72,6 @@ def test_this_test_has_no_mark_and_so_starts_no_process(request):
             deed()
     assert len(guards.refused) == 2
     guards.refused.clear()
-
-
-def test_no_second_process_compiles_for_a_test_without_a_mark(monkeypatch):
-    """Also where no kernel is kept yet, as on a new machine."""
-    monkeypatch.setattr(compile_ahead.kernel_table, "is_kept", lambda place: False)
-    assert compile_ahead._start_once.__wrapped__()
-    assert not guards.refused and not compile_ahead.kernel_table._elsewhere
 
 
 def test_a_case_beside_the_repository_is_not_read_without_the_mark():

@@ -20,8 +20,8 @@ TIMES = 10
 
 LEAVING = """
 import json, os, sys
-import clearance.cli.check, clearance.cli.commands, clearance.cli.compile_ahead, clearance.cli.places
-import clearance.compile.machine_code, clearance.load.case.case_file
+import clearance.cli.check, clearance.cli.commands, clearance.cli.places
+import clearance.compile.calls, clearance.load.case.case_file
 import clearance.load.message.times, clearance.load.robot.urdf.robot
 import clearance.query.pair_query, clearance.report.folder, clearance.report.output, clearance.run
 import encodings.utf_8_sig, lxml.etree, markupsafe, pyarrow.csv, ruamel.yaml

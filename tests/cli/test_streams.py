@@ -111,38 +111,6 @@ def test_what_is_written_is_not_mixed_with_what_libraries_print(
         assert (tmp_path / "closed" / path.name).read_bytes() == path.read_bytes()
 
 
-BARELY_COMPILED = """
-import clearance.run
-from clearance import cli
-from clearance.errors import BadInput
-def answer(question, resources):  # which takes half a minute to compile where nothing is kept
-    raise BadInput("nothing is measured here")
-clearance.run.answer = answer
-cli.main()
-"""
-
-
-@pytest.mark.parametrize("quiet", [(), ("--quiet",)])
-def test_a_home_without_room_is_told_in_one_line_and_no_obstacle(
-    folder: Path, quiet: tuple
-) -> None:
-    given = ["check", "case.yaml", *quiet]
-    settings = {
-        "PYTHONPATH": str(ROOT),
-        "HOME": "/dev/null",
-        "XDG_CACHE_HOME": "",
-        "NUMBA_CACHE_DIR": "",
-    }
-    done = subprocess.run(
-        [sys.executable, "-c", BARELY_COMPILED, *given], cwd=folder, capture_output=True, text=True,
-        env={**os.environ, **settings},
-    )  # fmt: skip
-    *warned, told = done.stderr.splitlines()
-    assert (done.returncode, done.stdout, told) == (2, "", "error: nothing is measured here")
-    assert len(warned) == (not quiet)
-    assert all(line.startswith("warning: compiled kernels are not kept") for line in warned)
-
-
 def test_characters_that_a_terminal_lacks_stop_nothing(folder: Path) -> None:
     assert ended(folder, "clearance check case.yaml >/dev/null", PYTHONIOENCODING="ascii") == (
         0,

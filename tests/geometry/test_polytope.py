@@ -13,7 +13,6 @@ from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid, Unbounded
 from clearance.kernels.polytope.exits import cell_of, exit_in
 from tests.oracle.polytope_volumes import half_spaces, shared_volume
-from tests.reached import reached
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 WALLS = np.vstack(
@@ -107,6 +106,6 @@ def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n
     gauges = (x @ (body.normals / body.face_widths[:, None]).T).max(axis=1)
     rounding = 64.0 * 2.0**-53 * np.abs(body.vertices).max() / body.face_widths.min()
     for point, gauge in zip(x, gauges, strict=True):
-        cell, bound = reached(cell_of)(body.packed, *point)
-        assert reached(exit_in)(body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
+        cell, bound = cell_of(body.packed, *point)
+        assert exit_in(body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
         assert bound >= gauge * (1.0 - rounding)

@@ -11,16 +11,15 @@ import clearance as cl
 from clearance.kernels.curve.arc import RADIUS, WIDTH, Chord, set_arc, set_segment
 from clearance.kernels.curve.arcs import arcs_apart
 from tests.examples import examples
-from tests.reached import reached
 
 
 def arc(x0, y0, angle, x1, y1):
     """The arc from one point along a direction to another; the segment where that is the chord's."""
     row, chord = np.zeros(WIDTH), Chord(x0, y0, x1, y1)
     if angle is None:
-        reached(set_segment)(row, 0.0, 1.0, chord)
+        set_segment(row, 0.0, 1.0, chord)
     else:
-        reached(set_arc)(row, 0.0, 1.0, chord, math.cos(angle), math.sin(angle), 1e-15)
+        set_arc(row, 0.0, 1.0, chord, math.cos(angle), math.sin(angle), 1e-15)
     return row
 
 

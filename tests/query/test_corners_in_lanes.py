@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2, Floats4
+from clearance.compile.decorators import inline, kernel
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.lanes import WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import (
@@ -22,13 +23,14 @@ from clearance.kernels.arithmetic.vec3 import (
 )
 from clearance.kernels.features.bounds import direction_beside, direction_between
 from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
+from clearance.kernels.mesh.surface import Surface
 from tests.made_cases import at
 
 pytestmark = pytest.mark.slow
 
 
 @kernel
-def corners_of_faces(surface, in_lanes, extremes):
+def corners_of_faces(surface: Surface, in_lanes: Floats2, extremes: Floats2) -> int:
     """Fills the corners of all faces as lanes give them, with the greatest and least of x in each register."""
     n = 0
     for face in range(len(surface.face_starts) - 1):
@@ -89,7 +91,7 @@ def beside_edge_by_edge(surface, face, other, face_other, m):
 
 
 @kernel
-def directions_beside(a, b, pose, found):
+def directions_beside(a: Surface, b: Surface, pose: Floats2, found: Floats4) -> None:
     """Fills `direction_beside` of all face pairs, and beside it that of edges one after another."""
     m = rigid(pose)
     for i in range(len(a.face_starts) - 1):

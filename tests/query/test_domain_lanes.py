@@ -1,11 +1,9 @@
 """Kernels that read without checks: each domain as plain Python, and one with every index checked.
 
 As plain Python numpy checks each index of all five domains, in seconds. What that cannot show is how compiled code
-reads: there the smallest domain is compiled, at level 1, into the cache that the user has: checked code has
-names of its own there, so that only the first run after a change of its kernels pays for it. The others take
-minutes:
+reads: there the smallest domain is compiled. The others take minutes:
 
-    NUMBA_BOUNDSCHECK=1 NUMBA_OPT=1 PYTHONPATH=. python tests/query/lane_of_domains.py search sweep certify
+    CLEARANCE_KERNELS=jit NUMBA_BOUNDSCHECK=1 PYTHONPATH=. python tests/query/lane_of_domains.py search sweep
 """
 
 from __future__ import annotations
@@ -38,16 +36,16 @@ def run_lane(*domains: str, **settings: str) -> dict:
 
 @pytest.fixture(scope="module")
 def plain() -> dict:
-    return run_lane(*DOMAINS, NUMBA_DISABLE_JIT="1")
+    return run_lane(*DOMAINS, CLEARANCE_KERNELS="python")
 
 
 def test_with_every_index_checked() -> None:
-    checked = run_lane(COMPILED, NUMBA_BOUNDSCHECK="1", NUMBA_OPT="1")
+    checked = run_lane(COMPILED, CLEARANCE_KERNELS="jit", NUMBA_BOUNDSCHECK="1")
     assert checked["bounds"], "indices were not checked"
     assert checked[COMPILED] == json.loads(json.dumps(lane_of_domains.DOMAINS[COMPILED]()))
 
 
 @pytest.mark.parametrize("domain", DOMAINS)
-def test_with_the_jit_off(plain, domain):
+def test_as_plain_python(plain, domain):
     assert plain["bounds"]  # numpy itself checks
     assert plain[domain] == json.loads(json.dumps(lane_of_domains.DOMAINS[domain]()))

@@ -27,32 +27,27 @@ def plain(answers):
     return json.loads(json.dumps(answers))
 
 
-def test_with_every_index_checked(tmp_path):
-    """Its own cache folder, so that nothing compiled without checks is used; level 0 to compile quickly.
-
-    A quarter of a minute: the compiler types the kernel, and all predicates below it, once more.
-    """
-    found = run_lane(
-        "meetings", NUMBA_BOUNDSCHECK="1", NUMBA_OPT="0", NUMBA_CACHE_DIR=str(tmp_path)
-    )
+def test_with_every_index_checked():
+    """A quarter of a minute: the compiler types the kernel, and all predicates below it."""
+    found = run_lane("meetings", CLEARANCE_KERNELS="jit", NUMBA_BOUNDSCHECK="1")
     assert found["bounds"], "indices were not checked"
-    assert found["compiled"] == 1, "the kernel was not compiled there"
+    assert found["compiles"], "the kernel was not compiled there"
     assert found["meetings"] == plain(lane.meetings(12))
     assert any(at[0] for at in found["meetings"])
 
 
-def test_with_the_jit_off():
-    found = run_lane("answers", "2", NUMBA_DISABLE_JIT="1")
+def test_as_plain_python():
+    found = run_lane("answers", "2", CLEARANCE_KERNELS="python")
     assert found["bounds"]  # numpy itself checks
     assert found["polygons"] == plain(lane.polygon_answers(2))
 
 
 @pytest.fixture(scope="module")
 def rules():
-    return run_lane("rules", NUMBA_DISABLE_JIT="1")
+    return run_lane("rules", CLEARANCE_KERNELS="python")
 
 
-def test_bodies_with_the_jit_off(rules):
+def test_bodies_as_plain_python(rules):
     assert rules["all"] == plain(lane.body_answers(12))
 
 

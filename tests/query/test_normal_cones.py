@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
-from clearance.compile.jit import kernel
-from clearance.compile.kernel_table import call
+from clearance.compile.declared import Flags2, Floats2
+from clearance.compile.decorators import kernel
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
@@ -21,6 +21,7 @@ from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
 from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     bounds_of_group,
@@ -47,7 +48,9 @@ from tests.strategies import rotations
 
 
 @kernel
-def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
+def all_turned_away(
+    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, of_a: Flags2, of_b: Flags2
+) -> None:
     """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
@@ -192,7 +195,9 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
 
 
 @kernel
-def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
+def all_turned_away_while(
+    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, turn: float, way: float, of_a: Flags2, of_b: Flags2
+) -> None:  # fmt: skip
     """As `all_turned_away`, in all of a motion about these poses, also where nodes are not apart."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
@@ -256,7 +261,7 @@ def asked(a, b, poses):
     """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
     numbers, points, counts = answer_rows(len(poses))
     held = hold_pair(a, b, ROOM, new_scratch())
-    call(nearest_at_poses, held, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
+    nearest_at_poses(held, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
     apart = numbers[:, 0] > 0.0
     told = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
     return told, counts[:, 2:4].sum(axis=0)

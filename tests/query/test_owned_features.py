@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron
-from clearance.compile.kernel_table import call
 from clearance.geometry.shapes import box, cylinder, pipe, sphere
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
@@ -62,8 +61,7 @@ def answers(a, b, poses, *, afresh):
         np.empty((n, 5), dtype=np.int64),
     )
     assert (
-        call(
-            nearest_at_poses,
+        nearest_at_poses(
             held,
             np.eye(4)[None],
             poses,

@@ -3,13 +3,13 @@
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
+from clearance.compile.decorators import DISABLED
 from clearance.errors import BadPose, BadShape, NotFinite
 from clearance.kernels.search.pair_query import nearest_at_poses
 from tests.examples import examples
@@ -271,7 +271,7 @@ def test_threads_that_share_a_query_get_their_own_answers():
     assert not wrong
 
 
-@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
+@pytest.mark.skipif(DISABLED, reason="nothing is compiled")
 def test_a_query_lets_go_of_its_memory():
     import resource
 

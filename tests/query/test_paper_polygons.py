@@ -14,7 +14,6 @@ from clearance.kernels.paper.segments import lumelsky
 from clearance.query.paper import polygon_distance_paper
 from tests import oracle
 from tests.examples import some_slow
-from tests.reached import reached
 from tests.strategies import FAMILIES
 
 TRIANGLE = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0]], dtype=float)
@@ -47,7 +46,7 @@ def test_segments_agree_with_the_oracle_on_all_small_integer_ones():
     random = np.random.default_rng(1)
     for _ in range(600):
         ends = [points[i] for i in random.integers(0, len(points), 4)]
-        found = reached(lumelsky)(*ends)
+        found = lumelsky(*ends)
         expected = float(oracle.root(oracle.segment_distance_sq(*ends)))
         assert math.dist(found.p, found.q) == pytest.approx(expected, rel=1e-14, abs=1e-14)
         assert 0 <= found.t <= 1 and 0 <= found.u <= 1
@@ -56,14 +55,14 @@ def test_segments_agree_with_the_oracle_on_all_small_integer_ones():
 def test_segments_lose_digits_only_near_parallel():
     random = np.random.default_rng(2)
     for ends in random.normal(size=(300, 4, 3)):
-        found = reached(lumelsky)(*(Vec3(*x) for x in ends))
+        found = lumelsky(*(Vec3(*x) for x in ends))
         expected = float(oracle.root(oracle.segment_distance_sq(*ends)))
         assert math.dist(found.p, found.q) == pytest.approx(expected, rel=1e-12)
 
 
 def test_an_end_of_a_segment_is_returned_bit_for_bit():
     a, b, c, d = Vec3(0.1, 0.2, 0.3), Vec3(0.7, 0.2, 0.3), Vec3(0.9, 0.7, 0.1), Vec3(1.3, 0.9, 0.1)
-    found = reached(lumelsky)(a, b, c, d)
+    found = lumelsky(a, b, c, d)
     assert (found.t, found.u) == (1.0, 0.0)
     assert tuple(found.p) == tuple(b) and tuple(found.q) == tuple(c)
 

@@ -12,7 +12,6 @@ from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
 from clearance.query.cutting import Cutting, CuttingTask, cut_down
 from clearance.query.intersection import intersect
-from tests.reached import reached
 
 SHAPES = [(1, 1, 1), (1, 1, 1e-3), (1, 1e-6, 1e-6), (1e6, 1, 1e-5)]
 
@@ -38,21 +37,19 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
     on_surface = rng.normal(size=(2000, 3)) * shape @ turn
     on_surface /= (on_surface @ gauges).max(axis=1)[:, None]
     for x in on_surface:
-        assert not reached(is_in_ball)(packed, *(x * (1.0 - 1e-9)))
-        assert reached(cell_of)(packed, *x)[1] >= 1.0 - 1e-13 - standing_out
+        assert not is_in_ball(packed, *(x * (1.0 - 1e-9)))
+        assert cell_of(packed, *x)[1] >= 1.0 - 1e-13 - standing_out
     resolved = max(shape) / min(shape) < 1e8  # else its round frame is lost to rounding
     if n == 300 and resolved:
-        assert any(reached(is_in_ball)(packed, *(0.9 * x)) for x in on_surface)
+        assert any(is_in_ball(packed, *(0.9 * x)) for x in on_surface)
 
 
 @pytest.mark.slow
 def test_the_ball_touches_the_nearest_plane_of_a_cube():
     cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
     packed, numbers = cube.packed, cube.packed.numbers
-    assert reached(is_in_ball)(packed, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(
-        packed, 1.0 - 1e-9, 0, 0
-    )
-    assert not reached(is_in_ball)(packed, 0.6, 0.6, 0.6)
+    assert is_in_ball(packed, 1.0 - 1e-8, 0, 0) and not is_in_ball(packed, 1.0 - 1e-9, 0, 0)
+    assert not is_in_ball(packed, 0.6, 0.6, 0.6)
     assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
 
 

@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.compile.jit import kernel
-from clearance.compile.kernel_table import call, lend
 from clearance.geometry.shapes import cylinder
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, search
 from clearance.kernels.search.front import POOL, PairFront, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 from tests.examples import first_fast
@@ -19,15 +17,13 @@ from tests.made_cases import SOLIDS, at
 from tests.strategies import rotations
 
 
-@kernel
-def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
+def searches(a, b, poses, limits, wanted, seeds, moved, out):
     """Fills `out` (n, 2) [m]: the distance found, or infinity, and the bound proven.
 
     All are of one pair that goes on from its front, b at `poses` (n, 4, 4) in the frame of a, which it has `moved`
     (n,) [m] to from the one before. Seeds (n, 2) of -2 stand for those that the last search gave back.
     """
     fronts, scratch = no_fronts(1, POOL), new_scratch()
-    lent_a, lent_b = lend(a), lend(b)
     face_a, face_b = NO_FACE, NO_FACE
     way = 0.0
     for i in range(len(poses)):
@@ -36,8 +32,8 @@ def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
             face_a, face_b = seeds[i, 0], seeds[i, 1]
         asked = PairQuestion(limits[i], wanted[i], face_a, face_b, True, TO_THE_END, False)
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
-        bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
-        found = measure_pair(table, bodies, asked, PairFront(fronts, 0, way), scratch)
+        bodies = PosedPair(a, 0, b, 0, frames)
+        found = search(bodies, asked, PairFront(fronts, 0, way), scratch)
         out[i, 0] = np.sqrt(found.hit.gap_sq) if found.hit.face_a != 2**62 else np.inf
         out[i, 1] = found.lower_bound
         face_a, face_b = found.face_a, found.face_b
@@ -79,7 +75,7 @@ def test_what_a_search_within_a_limit_says_is_true(kind_a, kind_b):
         seeds[(seeds < 0).any(axis=1)] = NO_FACE
         seeds[random.random(len(poses)) < 0.6] = -2
         out = np.empty((len(poses), 2))
-        call(searches, surface_of(a), surface_of(b), poses, limits, wanted, seeds, moved, out)
+        searches(surface_of(a), surface_of(b), poses, limits, wanted, seeds, moved, out)
         free = truth > 0.0
         (found, proven), truth, limits, wanted = (
             out[free].T,

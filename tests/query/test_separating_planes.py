@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.compile.jit import kernel
-from clearance.compile.kernel_table import call, lend
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder, pipe
 from clearance.geometry.tree import surface_of
@@ -23,14 +21,13 @@ from clearance.kernels.search.front import (
     note_separating_planes,
 )
 from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.separating_planes import separating_planes_of
+from clearance.kernels.search.separating_planes import separate
 from clearance.kernels.search.support import high_corner, top_of
 from tests import oracle
 from tests.made_cases import SOLIDS, at, ball, faces_of, torus
 from tests.strategies import rotations
 
 
-@kernel
 def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
     """Fills (n,) heights, those of `high_corner`, and (n, 25) faces of the leaves within a room of the top."""
     scratch = new_scratch()
@@ -44,15 +41,13 @@ def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
         high[i] = high_corner(surface, root, u, -1)[0].height
 
 
-@kernel
-def separate_all(a, b, poses, points, limits, out, waiting, table):
+def separate_all(a, b, poses, points, limits, out, waiting):
     """Fills `out` (n, 3): what the planes prove [m], of all and of what does not wait, and the margin.
 
     b is at `poses` (n, 4, 4) in the frame of a; the search begins at `points` (n, 2, 3) in the frame of a.
     `waiting` (n, 144, 2) becomes the faces of the leaves that wait, or -1.
     """
     scratch = new_scratch()
-    lent_a, lent_b = lend(a), lend(b)
     root_a, root_b = a.roots[0], b.roots[0]
     for i in range(len(poses)):
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
@@ -60,8 +55,8 @@ def separate_all(a, b, poses, points, limits, out, waiting, table):
         p = Vec3(points[i, 0, 0], points[i, 0, 1], points[i, 0, 2])
         q = Vec3(points[i, 1, 0], points[i, 1, 1], points[i, 1, 2])
         begin = Hit(np.inf, 2**62, 2**62, p, q)
-        roots = PosedPair(lent_a, root_a, lent_b, root_b, frames)
-        found = separating_planes_of(table, roots, begin, limits[i], slack, scratch)
+        roots = PosedPair(a, root_a, b, root_b, frames)
+        found = separate(roots, begin, limits[i], slack, scratch)
         out[i, 0], out[i, 1], out[i, 2] = found.lower_bound, found.beyond, margin_of(slack)
         for k in range(found.n_waiting):
             waiting[i, k, 0] = a.children[~scratch.nodes[k, 0], 0]
@@ -131,7 +126,7 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
         [random.choice([math.inf, 0.5 * near.distance, 0.99 * near.distance]) for near in truths]
     )
     out, waiting = np.empty((n, 3)), np.full((n, 144, 2), -1)
-    call(separate_all, surface_of(a), surface_of(b), poses, points, limits, out, waiting)
+    separate_all(surface_of(a), surface_of(b), poses, points, limits, out, waiting)
     for i, near in enumerate(truths):
         floor, beyond, margin = out[i]
         if i < 4:
@@ -161,8 +156,7 @@ def test_hulls_as_far_apart_as_their_bodies_are_separated(
 ) -> None:
     points = np.array([[[0.1, 0.0, 0.0], pose[:3, 3]]])
     out, waiting = np.empty((1, 3)), np.full((1, 144, 2), -1)
-    call(
-        separate_all,
+    separate_all(
         surface_of(a),
         surface_of(b),
         pose[None],
@@ -177,7 +171,6 @@ def test_hulls_as_far_apart_as_their_bodies_are_separated(
     ) == are_separated
 
 
-@kernel
 def sought(founds, asked):
     """Fills (n,) whether planes are sought, where each search that seeks them finds them as said."""
     fronts = no_fronts(1, 0)

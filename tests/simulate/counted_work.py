@@ -1,8 +1,7 @@
 """The work of warm questions, counted: calls of Python, and what kernels count themselves.
 
 A clock says something else on each machine; these numbers are the same on all. Calls are those of functions of the
-package, and those that it makes of numpy. `clearance.compile` is left out: the way into a kernel is another where
-numba is imported already, as in tests. So are comprehensions, which Python calls up to 3.11 only.
+package, and those that it makes of numpy. Comprehensions are left out, which Python calls up to 3.11 only.
 """
 
 from __future__ import annotations
@@ -58,8 +57,7 @@ def _module(frame: FrameType | None) -> str:
 
 
 def _is_ours(frame: FrameType | None) -> bool:
-    module = _module(frame)
-    return module.startswith("clearance.") and not module.startswith("clearance.compile.")
+    return _module(frame).startswith("clearance.")
 
 
 def _is_of_numpy(callee: object) -> bool:

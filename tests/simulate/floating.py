@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from clearance.compile.kernel_table import call
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import join
 from clearance.kernels.motion.certify import (
@@ -111,8 +110,8 @@ def swept(scene: Scene, within: float = np.inf) -> tuple[StepRows, np.ndarray]:
         np.empty((0, n_pairs)), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
     )
     counts = np.empty(5, dtype=np.int64)
-    call(
-        sweep, join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n), np.empty(0, np.int64)),
+    sweep(
+        join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n), np.empty(0, np.int64)),
         Goal(np.full(n_pairs, within), False, False), FirstLook(np.empty(0, np.int64), 0),
         SweepRows(rows, no_pairs), counts,
     )  # fmt: skip
@@ -129,8 +128,8 @@ def certified(scene: Scene, gap: float = 1e-4) -> IntervalBounds:
     bounds = IntervalBounds(
         np.full(n, np.nan), np.full(n, np.nan), np.empty(n), np.empty(n, np.int64)
     )
-    call(
-        certify, with_whole_faces(join(scene.shapes)), CertifiedMotion(with_turning_balls(scene.world), path),
+    certify(
+        with_whole_faces(join(scene.shapes)), CertifiedMotion(with_turning_balls(scene.world), path),
         CertifiedSteps(0, n - 1, rows.pair, rows.clearance), CertificateGoal(gap, 0.0, 2**24), bounds,
         np.empty(4, dtype=np.int64),
     )  # fmt: skip

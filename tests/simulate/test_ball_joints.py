@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.compile.jit import kernel
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.mesh.surface import box_of
@@ -120,7 +119,6 @@ def test_half_a_turn_sweeps_the_side_of_the_given_signs():
             assert bounds.lower[0] == pytest.approx(floating.swept(scene)[0].clearance[0], abs=1e-4)
 
 
-@kernel
 def ways_in(surface, world, positions):
     radii = np.empty((len(world.frames), positions.shape[1]))
     noise = np.empty(len(world.frames))
@@ -168,7 +166,6 @@ def test_the_bound_by_columns_is_not_idle():
     assert ways_in(surface_of(speck), scene.world, positions)[1] == pytest.approx(turn, rel=0.01)
 
 
-@kernel
 def bound_about(surface, links, link, balls, middle):
     place_by_link(links, middle.positions, middle.poses)
     pose, box = rigid(middle.poses[link]), box_of(surface, 0)
@@ -242,15 +239,10 @@ def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
 
 def test_the_parts_of_an_arc():
     balls = BallPath(np.array([1]), np.eye(4)[None], np.array([[[0, 0, 0, 1.0, 1, 0, 0, 0.8]]]))
-    found = arc_part(balls, 0.25, 0.75)
+    found = part_of_arc(balls, 0, 0, 0.25, 0.75)
     assert found.middle == pytest.approx(0.4, rel=1e-15)
     assert 0.2 < found.swing <= 0.2 * (1.0 + 1e-11)
     assert found.bend == 0.0
-
-
-@kernel
-def arc_part(balls, low, high):
-    return part_of_arc(balls, 0, 0, low, high)
 
 
 def on_one_base(n_steps: int = 30) -> tuple[Scene, dict]:

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance.compile.jit import kernel
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
@@ -30,7 +29,6 @@ def standing(robot):
     return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
 
 
-@kernel
 def drifts(surface, chain, link, poses, swing, bend, direction):
     pose = rigid(poses[link])
     drift = motion_bound_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)

@@ -7,16 +7,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from clearance.compile.jit import kernel
 from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
 from tests.examples import examples
 
 SIZES = st.sampled_from([0.0, 1e-6, 0.3, 7.0, 1e5])
-
-
-@kernel
-def part(path, step, link, low, high):
-    return part_of(path, step, link, low, high)
 
 
 def path_of(positions, velocities, times):
@@ -48,7 +42,7 @@ def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
     )
     i = int(rng.integers(0, 2**depth))
     low, high = i / 2**depth, (i + 1) / 2**depth
-    found = part(path, 0, 0, low, high)
+    found = part_of(path, 0, 0, low, high)
     middle, half = Fraction(low + high) / 2, Fraction(high - low) / 2
     slack = Fraction(2.0**-51) * Fraction(
         max(abs(path.positions[:, 0]))
@@ -61,7 +55,7 @@ def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
 
 def test_the_bend_of_a_parabola_is_no_larger_than_it_must_be():
     there_and_back = path_of([0.0, 0.0], [1.0, -1.0], [0.0, 1.0])
-    found = part(there_and_back, 0, 0, 0.0, 1.0)
+    found = part_of(there_and_back, 0, 0, 0.0, 1.0)
     assert (found.middle, found.swing) == (0.25, 0.0)
     assert found.bend == pytest.approx(0.25, rel=1e-11)
 
@@ -76,7 +70,7 @@ def test_without_velocities_the_motion_is_linear(before, after, i):
         np.empty((0, 1)),
         np.ones(1, dtype=bool),
     )
-    found = part(path, 0, 0, i / 16, (i + 1) / 16)
+    found = part_of(path, 0, 0, i / 16, (i + 1) / 16)
     assert found.middle == before + 0.5 * (i / 16 + (i + 1) / 16) * (after - before)
     assert found.swing == pytest.approx((after - before) / 32, rel=1e-11, abs=1e-300)
     assert found.bend == 0.0
@@ -85,7 +79,7 @@ def test_without_velocities_the_motion_is_linear(before, after, i):
 def test_velocities_of_the_linear_motion_change_nothing_but_rounding():
     path = path_of([0.25, 0.75], [0.5, 0.5], [2.0, 3.0])
     linear = path._replace(velocities=np.empty((0, 1)))
-    found, straight = part(path, 0, 0, 0.25, 0.5), part(linear, 0, 0, 0.25, 0.5)
+    found, straight = part_of(path, 0, 0, 0.25, 0.5), part_of(linear, 0, 0, 0.25, 0.5)
     assert (found.middle, found.swing) == (straight.middle, straight.swing)
-    assert part(path._replace(is_cubic=np.zeros(1, dtype=bool)), 0, 0, 0.25, 0.5) == straight
+    assert part_of(path._replace(is_cubic=np.zeros(1, dtype=bool)), 0, 0, 0.25, 0.5) == straight
     assert 0.0 < found.bend < 1e-14

@@ -12,7 +12,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.compile.jit import kernel
+from clearance.compile.declared import Floats, Floats2
+from clearance.compile.decorators import kernel
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import join, surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
@@ -27,7 +28,7 @@ from clearance.kernels.features.bounds import (
     lower_bound_faces_along_direction,
     rounding_slack,
 )
-from clearance.kernels.mesh.surface import box_of, group_of
+from clearance.kernels.mesh.surface import Surface, box_of, group_of
 from clearance.kernels.motion.body_boxes import new_body_boxes
 from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.placed import new_placed_bodies, put_all
@@ -47,7 +48,10 @@ from tests.strategies import rotations
 
 
 @kernel
-def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, faces):
+def bounds_of_nodes(
+    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, direction: Floats, boxes: Floats2, in_sight: Floats2,
+    alike: Floats2, faces: Floats2,
+) -> None:  # fmt: skip
     """Fills the bounds of all node pairs and face pairs, with the slacks that the search takes off.
 
     `alike` takes how far the bounds of boxes in lanes are from those of one after another.
@@ -72,7 +76,10 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
 
 
 @kernel
-def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_of_b):
+def bounds_of_groups(
+    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, direction: Floats, cut: float, groups_of_a: Floats2,
+    groups_of_b: Floats2,
+) -> None:  # fmt: skip
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
@@ -87,18 +94,11 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
             groups_of_a[i, j], groups_of_b[i, j] = lane(of_a, i % WIDTH), lane(of_b, j % WIDTH)
 
 
-@kernel
 def body_bound_of(surface, world, enough):
     """What a sweep knows of a pair by the boxes of its bodies."""
     placed = new_placed_bodies(0, 2)
     put_all(world, np.empty(0), placed)
     return box_bound(surface, world, 0, placed, new_body_boxes(2), enough)
-
-
-@kernel
-def displacement_of(surface, before, after):
-    """The bound on a body's motion."""
-    return displacement(surface, surface.roots[0], before, after)
 
 
 def triangles(random, n, kind):
@@ -286,7 +286,8 @@ def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
     before = pose(random, 1.0, True)
     after = before.copy() if not turned else pose(random, 1.0, True)
     after[:3, 3] = before[:3, 3] + reach * random.normal(size=3)
-    bound = displacement_of(surface_of(shape), before, after)
+    surface = surface_of(shape)
+    bound = displacement(surface, surface.roots[0], before, after)
     for start, end in zip(posed(shape.vertices, before), posed(shape.vertices, after), strict=True):
         moved_sq = sum((x - y) ** 2 for x, y in zip(start, end, strict=True))
         assert moved_sq <= Fraction(bound) ** 2

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from clearance.compile.jit import kernel
 from clearance.kernels.motion.pair_order import (
     fill_order,
     new_pair_order,
@@ -13,13 +12,11 @@ from clearance.kernels.motion.pair_order import (
 )
 
 
-@kernel
 def ordered(body_pairs, frames, bounds, order):
     fill_order(body_pairs, frames, order)
     sort_all(bounds, order)
 
 
-@kernel
 def ordered_again(bounds, order, body, stop, pair):
     """`sort_one` for a pair, or where that is -1 `sort_first`."""
     if pair >= 0:

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.compile.jit import kernel
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
 from clearance.kernels.motion.interval_motion_bound import (
@@ -32,7 +31,6 @@ ASIDE = np.block(
 )
 
 
-@kernel
 def ways_in(surface, world, positions):
     reach = np.empty((1, positions.shape[1]))
     noise = np.empty(1)

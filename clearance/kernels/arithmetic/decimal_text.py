@@ -6,7 +6,8 @@ table, as quotes, words, nan, and faults: a reader that can tell them takes such
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Bytes, Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.expansion import two_product
 
 TENS = np.array([float(10**k) for k in range(23)])
@@ -110,8 +111,8 @@ def _number(text, i, point):
     return (-value if negative else value), i
 
 
-@kernel(reference_counts=False)
-def read_decimals(text, start, delimiter, point, table):
+@kernel
+def read_decimals(text: Bytes, start: int, delimiter: int, point: int, table: Floats2) -> int:
     """Fills `table` (n, k) from the text's rows from `start` on; returns how many there are, or `NOT_READ`.
 
     Empty lines are no rows. Whatever is not plainly a table of k numbers in at most n rows is not read.

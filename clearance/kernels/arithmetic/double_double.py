@@ -10,7 +10,7 @@ double-word arithmetic, 2017 (algorithms 5, 11, 17).
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.expansion import two_product, two_sum
 from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, relative
 

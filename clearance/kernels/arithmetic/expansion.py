@@ -8,7 +8,7 @@ Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, theorems 7
 
 from __future__ import annotations
 
-from clearance.compile.jit import DISABLED, inline, intrinsic
+from clearance.compile.decorators import inline, when_compiling
 
 N_TERMS = 128
 """Room for the longest expansion here: 24 products of three coordinates, four terms each, and one spare."""
@@ -37,28 +37,34 @@ def rest_by_splitting(a, b, p):
     return a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 
 
-@intrinsic
-def _rest_fused(typing_context, a, b, p):
+def _rest_fused():
     """The same by one fused multiply-subtract: half the time on processors that have it, equal bits."""
     from numba import types
+    from numba.extending import intrinsic
+
+    from clearance.compile.intrinsics import stands_for
 
     number = types.float64
 
-    def emit(context, builder, signature, values):
-        x, y, product = values
-        return builder.fma(x, y, builder.fneg(product))
+    @intrinsic
+    def fused(typing_context, a, b, p):
+        def emit(context, builder, signature, values):
+            x, y, product = values
+            return builder.fma(x, y, builder.fneg(product))
 
-    return number(number, number, number), emit
+        return number(number, number, number), emit
+
+    stands_for(rest_by_splitting, fused)
 
 
-_rest = rest_by_splitting if DISABLED else _rest_fused
+when_compiling.append(_rest_fused)
 
 
 @inline
 def two_product(a, b):
     """(p, e) with p = fl(a b) and a b = p + e exactly."""
     p = a * b
-    return p, _rest(a, b, p)
+    return p, rest_by_splitting(a, b, p)
 
 
 @inline

@@ -7,62 +7,65 @@ processor has in some width.
 
 import numpy as np
 
-from clearance.compile.deferred import defer
-from clearance.compile.jit import DISABLED, inline
+from clearance.compile.decorators import inline, when_compiling
 from clearance.kernels.arithmetic.width import WIDTH as WIDTH
 
 ALL = (1 << WIDTH) - 1
 """Marks of all lanes."""
 
-if DISABLED:
 
-    def square_root(a):
-        """The square root of a number, or of each lane."""
-        return np.sqrt(a)
+def square_root(a):
+    """The square root of a number, or of each lane."""
+    return np.sqrt(a)
 
-    def larger(a, b):
-        """`a` where it is above `b`, else `b`, also where `a` is NaN."""
-        return where_positive(a - b, a, b)
 
-    def where_positive(test, a, b):
-        """`a` where `test` is above 0, else `b`."""
-        return np.where(test > 0.0, a, b)[()]
+def larger(a, b):
+    """`a` where it is above `b`, else `b`, also where `a` is NaN."""
+    return where_positive(a - b, a, b)
 
-    def lanes_at(array, row):
-        """Row `row` of an (n, 4) array of float32 or float64 that lies in one piece."""
-        return array[row].astype(np.float64)
 
-    def number_at(array, row, place):
-        """One of the four of `lanes_at`."""
-        return float(array[row, place])
+def where_positive(test, a, b):
+    """`a` where `test` is above 0, else `b`."""
+    return np.where(test > 0.0, a, b)[()]
 
-    def marks_within(lanes, most):
-        """Bits of the lanes that are at most `most`."""
-        return int((lanes <= most) @ (1 << np.arange(WIDTH)))
 
-    def first_of(marks):
-        """The first lane whose bit is set, of marks that are not 0."""
-        return (int(marks) & -int(marks)).bit_length() - 1
+def lanes_of(a, b, c, d):
+    """Four numbers in lanes."""
+    return np.array([a, b, c, d])
 
-    def lane(lanes, place):
-        """One of the four."""
-        return lanes[place]
-else:
 
-    def _in_llvm(name):
-        def make():
-            from clearance.kernels.arithmetic import lanes_in_llvm
+def lanes_at(array, row):
+    """Row `row` of an (n, 4) array of float32 or float64 that lies in one piece."""
+    return array[row].astype(np.float64)
 
-            return getattr(lanes_in_llvm, name)
 
-        return defer(globals(), make)
+def number_at(array, row, place):
+    """One of the four of `lanes_at`."""
+    return float(array[row, place])
 
-    square_root, larger, where_positive, marks_within = map(
-        _in_llvm, ("square_root", "larger", "where_positive", "marks_within")
-    )
-    lanes_at, number_at, lane, first_of = map(
-        _in_llvm, ("lanes_at", "number_at", "lane", "first_of")
-    )
+
+def marks_within(lanes, most):
+    """Bits of the lanes that are at most `most`."""
+    return int((lanes <= most) @ (1 << np.arange(WIDTH)))
+
+
+def first_of(marks):
+    """The first lane whose bit is set, of marks that are not 0."""
+    return (int(marks) & -int(marks)).bit_length() - 1
+
+
+def lane(lanes, place):
+    """One of the four."""
+    return lanes[place]
+
+
+def _tell_compiler():
+    from clearance.kernels.arithmetic import lanes_in_llvm
+
+    lanes_in_llvm.stand_for(globals())
+
+
+when_compiling.append(_tell_compiler)
 
 
 @inline(force=True)

@@ -9,7 +9,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
-from clearance.compile.numba_private import elements_at, llvm_function
+from clearance.compile.intrinsics import elements_at, llvm_function, stands_for
 from clearance.kernels.arithmetic.width import WIDTH
 
 _VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
@@ -122,6 +122,18 @@ def where_positive(typing_context, test, a, b):
 
 
 @intrinsic
+def lanes_of(typing_context, a, b, c, d):
+    def emit(context, builder, signature, values):
+        vector = ir.Constant(_VECTOR, ir.Undefined)
+        for place, value in enumerate(values):
+            vector = builder.insert_element(vector, value, ir.IntType(32)(place))
+        return vector
+
+    number = types.float64
+    return _lanes(number, number, number, number), emit
+
+
+@intrinsic
 def lanes_at(typing_context, array, row):
     def emit(context, builder, signature, values):
         kind = signature.args[0]
@@ -170,3 +182,11 @@ def lane(typing_context, lanes, place):
         return builder.extract_element(values[0], values[1])
 
     return types.float64(lanes, types.intp), emit
+
+
+def stand_for(functions):
+    """Puts these in the places of the functions of these names, which Python runs."""
+    for function in (
+        square_root, larger, where_positive, lanes_of, lanes_at, number_at, marks_within, first_of, lane,
+    ):  # fmt: skip
+        stands_for(functions[function.__name__], function)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.expansion import grow, grow_product, sign_of, two_sum
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
@@ -33,13 +34,13 @@ class ExactScratch(NamedTuple):
         poses: (2, 3, 3) the rotations of a and b. shift: (2, 3) origin of b minus origin of a, hi and lo.
     """
 
-    sides: np.ndarray
-    lengths: np.ndarray
-    minor: np.ndarray
-    total: np.ndarray
-    count: np.ndarray
-    poses: np.ndarray
-    shift: np.ndarray
+    sides: Floats2
+    lengths: Integers
+    minor: Floats
+    total: Floats
+    count: Integers
+    poses: Floats3
+    shift: Floats2
 
 
 class PosedVertex(NamedTuple):
@@ -49,7 +50,7 @@ class PosedVertex(NamedTuple):
     body: int
 
 
-@shared
+@inline
 def new_exact_scratch():
     """Scratch of one exact decision at a time."""
     return ExactScratch(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Integers
+from clearance.compile.decorators import inline, kernel
 
 
 @inline
@@ -43,7 +44,7 @@ def labels_of(parents, start):
 
 
 @kernel
-def joined_labels(n_items, first, second):
+def joined_labels(n_items: int, first: Integers, second: Integers) -> Integers:
     """(n_items,) a label 0, 1, … for each item, equal for items that pairs (first, second) connect.
 
     Labels are given in the order of the least item that they hold.

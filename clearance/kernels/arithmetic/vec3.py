@@ -5,7 +5,7 @@ Not for: arrays of points (numpy) and poses as users give them (room `geometry.p
 
 from typing import NamedTuple
 
-from clearance.compile.jit import CHECKS_BOUNDS, DISABLED, inline, intrinsic
+from clearance.compile.decorators import CHECKS_BOUNDS, inline, when_compiling
 
 
 class Vec3(NamedTuple):
@@ -70,32 +70,38 @@ def gap_sq(a, b):
     return x * x + y * y + z * z
 
 
-@inline(force=True)
-def _row_checked(array, i):
+def row(array, i):
+    """Row `i`, from 0, of an (n, 3) array that lies in one piece."""
     return Vec3(array[i, 0], array[i, 1], array[i, 2])
 
 
-@intrinsic
-def _row(typing_context, array, i):
+def _row_by_address():
     from numba import types
+    from numba.extending import intrinsic
 
-    from clearance.compile.numba_private import elements_at
+    from clearance.compile.intrinsics import elements_at, stands_for
 
-    place = types.NamedUniTuple(array.dtype, 3, Vec3)
-    if array.layout != "C":
-        raise TypeError(f"{array} does not lie in one piece")
+    @intrinsic
+    def row_at(typing_context, array, i):
+        place = types.NamedUniTuple(array.dtype, 3, Vec3)
+        if array.layout != "C":
+            raise TypeError(f"{array} does not lie in one piece")
 
-    def emit(context, builder, signature, values):
-        start = builder.mul(values[1], values[1].type(3), flags=["nsw"])
-        indices = [builder.add(start, start.type(k), flags=["nsw"]) for k in range(3)]
-        numbers = map(builder.load, elements_at(context, builder, array, values[0], indices))
-        return context.make_tuple(builder, place, list(numbers))
+        def emit(context, builder, signature, values):
+            start = builder.mul(values[1], values[1].type(3), flags=["nsw"])
+            indices = [builder.add(start, start.type(k), flags=["nsw"]) for k in range(3)]
+            numbers = map(builder.load, elements_at(context, builder, array, values[0], indices))
+            return context.make_tuple(builder, place, list(numbers))
 
-    return place(array, types.intp), emit
+        return place(array, types.intp), emit
+
+    stands_for(row, row_at)
 
 
-row = _row_checked if DISABLED or CHECKS_BOUNDS else _row
-"""`row(array, i)`: row `i`, from 0, of an (n, 3) array."""
+if CHECKS_BOUNDS:
+    inline(force=True)(row)
+else:
+    when_compiling.append(_row_by_address)
 
 
 @inline(force=True)

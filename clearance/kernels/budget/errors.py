@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import shared
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 
 TURN, SLIDE, FRAME, TOGETHER = 0.0, 1.0, 2.0, 3.0
 """Kinds of rows."""
@@ -30,11 +31,11 @@ class Extras(NamedTuple):
             [rad]. axes: (m, 3) unit, in that frame, of a joint, whose other size is 0; 0 of a frame, for any axis.
     """
 
-    starts: np.ndarray
-    origins: np.ndarray
-    xyz: np.ndarray
-    angle: np.ndarray
-    axes: np.ndarray
+    starts: Integers
+    origins: Floats2
+    xyz: Floats
+    angle: Floats
+    axes: Floats2
 
 
 class Errors(NamedTuple):
@@ -50,14 +51,14 @@ class Errors(NamedTuple):
         most_rows: of any body.
     """
 
-    joint: np.ndarray
-    xyz: np.ndarray
-    angle: np.ndarray
-    delay: np.ndarray
-    owner: np.ndarray
+    joint: Floats
+    xyz: Floats
+    angle: Floats
+    delay: Floats
+    owner: Integers
     of_links: Extras
     of_bodies: Extras
-    surface: np.ndarray
+    surface: Floats
     most_rows: int
 
 
@@ -72,9 +73,9 @@ class BodyRows(NamedTuple):
             of one motion together puts it, or -1 where there is none, or more than one.
     """
 
-    rows: np.ndarray
-    n_rows: np.ndarray
-    sums: np.ndarray
+    rows: Floats3
+    n_rows: Integers
+    sums: Floats2
 
 
 OFFSETS, REST, REST_AT_REST, REACH, TURNED, SURFACE, BESIDE = range(7)
@@ -96,7 +97,7 @@ class JointMotion(NamedTuple):
     half: float
 
 
-@shared
+@inline
 def new_body_rows(n_bodies, most_rows):
     """Rows of no errors."""
     return BodyRows(

@@ -7,8 +7,7 @@ occurs. Not for: which faces are looked at (`left`).
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
 from clearance.kernels.budget.errors import BodyRows
@@ -156,7 +155,7 @@ def _reach_of_face(surface, face, found, body):
 @inline
 def _reach_of_both(lent, faces):
     """[m] how far the errors can move two faces at most, added up."""
-    scene, bodies = borrow(lent), faces.bodies
+    scene, bodies = lent, faces.bodies
     found = scene.state.work.found
     reach = _reach_of_face(scene.surface, faces.a, found, bodies.a)
     return reach + _reach_of_face(scene.surface, faces.b, found, bodies.b)
@@ -165,7 +164,7 @@ def _reach_of_both(lent, faces):
 @inline
 def look_at_both(lent, direction, bodies):
     """Writes how the errors of both bodies are seen along a direction."""
-    work = borrow(lent).state.work
+    work = lent.state.work
     look_along(work.found, bodies.a, 0, direction.u, work.own)
     look_along(work.found, bodies.b, 1, direction.v, work.own)
 
@@ -178,7 +177,7 @@ def look_beside(lent, faces, back, slack, known, near):
         back: `b_from_a`. known: [m] a bound on what is left of them. near: [m] they may be the nearest if they are
             nearer than that.
     """
-    scene = borrow(lent)
+    scene = lent
     surface = scene.surface
     direction = direction_beside(surface, faces.a, surface, faces.b, faces.m, back)
     apart = lower_bound_faces_along_direction(surface, faces.a, surface, faces.b, direction) - slack
@@ -193,7 +192,7 @@ def look_beside(lent, faces, back, slack, known, near):
 @inline
 def turn_to(lent, direction, m, bodies):
     """The views along a direction, tilted by the errors that were last looked at along it."""
-    scene = borrow(lent)
+    scene = lent
     work = scene.state.work
     box_a, box_b = box_of(scene.surface, bodies.root_a), box_of(scene.surface, bodies.root_b)
     return views_along(tilted(direction, box_a, box_b, work.own, work.kept), m)
@@ -202,7 +201,7 @@ def turn_to(lent, direction, m, bodies):
 @inline
 def taken_at(lent, p, q, direction, m, bodies, aim):
     """What is taken at two points (frame of a), along the direction that was last looked at."""
-    work = borrow(lent).state.work
+    work = lent.state.work
     u, v, q = direction.u, direction.v, move_back(m, q)
     whole = moved_of_point(p, 0, u, work.own) + moved_of_point(q, 1, v, work.own)
     if aim.is_step:
@@ -259,7 +258,7 @@ def target_of(search, aim, n_looks):
 @inline
 def look_at_faces(lent, faces, bound, slack, search, aim, thin, tally):
     """What a search has come to after `TwoFaces`."""
-    scene, m, bodies = borrow(lent), faces.m, faces.bodies
+    scene, m, bodies = lent, faces.m, faces.bodies
     surface, work = scene.surface, scene.state.work
     tally[3] += 1
     margin = margin_of(slack)

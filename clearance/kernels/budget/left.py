@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
     first_of,
@@ -210,7 +209,7 @@ class _Queue(NamedTuple):
     lower_bound: float
 
 
-@inline(one_caller=True)
+@inline
 def _resume(scene, pair, moved, views, reaches, target, tally):
     """Lets that part of a front wait that may have come near; the rest stays in it."""
     fronts, scratch = scene.state.fronts, scene.state.work.scratch
@@ -222,7 +221,11 @@ def _resume(scene, pair, moved, views, reaches, target, tally):
             lower_bound = min(lower_bound, carried - moved)
             n_kept += 1
             continue
-        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
+        group, other, marks = (
+            np.int64(fronts.entries[i, 0]),
+            np.int64(fronts.entries[i, 1]),
+            np.int64(fronts.entries[i, 2]),
+        )
         if carried - moved < target:
             nodes = NodeGroup(marks >= OF_B, group, other)
             before = n_waiting
@@ -246,7 +249,7 @@ def _resume(scene, pair, moved, views, reaches, target, tally):
     return _Queue(n_kept, n_waiting, lower_bound)
 
 
-@inline(one_caller=True)
+@inline
 def _begin(lent, start, m, bodies, aim, thin):
     """A search that has seen nothing but its start."""
     direction = direction_between(start.p, start.q, m)
@@ -278,7 +281,7 @@ def _reaches_of(scene, bodies, solid_a, solid_b, slack):
     return thin, _Reaches(slack, reach, moves, own, across, turn, math.cos(turn), math.sin(turn))
 
 
-@inline(one_caller=True)
+@inline
 def _first(scene, pair, moved, bodies, search, reaches, aim, tally):
     """What waits first: what the front of the pair has left, or the roots."""
     if moved < math.inf and scene.state.fronts.spans[pair, 1] > 0:
@@ -298,7 +301,7 @@ def least_left(lent, pair, moved, frames, start, aim, tally):
         lent: a `BudgetScene`, in which the rows of both bodies are filled. frames: how they lie. start: a `Start`.
         moved: [m] what both bodies have moved in all; infinite where the front of the pair is not gone on from.
     """
-    scene = borrow(lent)
+    scene = lent
     a = b = scene.surface
     scratch, kept, m = scene.state.work.scratch, scene.state.work.kept, frames.m
     body_a, body_b = scene.world.pairs[pair, 0], scene.world.pairs[pair, 1]

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, rigid, sub
 from clearance.kernels.budget.rows import chord
 from clearance.kernels.features.bounds import LEAN
@@ -31,18 +32,18 @@ class Levers(NamedTuple):
             moves between them.
     """
 
-    reach: np.ndarray
-    of_links: np.ndarray
-    beside: np.ndarray
-    ways: np.ndarray
-    sizes: np.ndarray
-    steps: np.ndarray
+    reach: Floats
+    of_links: Floats2
+    beside: Floats2
+    ways: Floats
+    sizes: Floats
+    steps: Floats2
 
 
 WAY_OF, STANDS = 0, 1
 
 
-@shared
+@inline
 def new_levers(n_bodies, n_links):
     """Levers of nothing."""
     return Levers(

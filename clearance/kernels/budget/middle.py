@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Flags2, Floats
+from clearance.compile.decorators import inline
 from clearance.kernels.budget.levers import bow_of
 from clearance.kernels.motion.interval_middle import IntervalMiddle
 from clearance.kernels.motion.joint_path import ANGLE, OUTWARD, part_of, part_of_arc
@@ -27,14 +28,14 @@ class Middle(NamedTuple):
     """
 
     state: IntervalMiddle
-    turned: np.ndarray
-    marks: np.ndarray
+    turned: Floats
+    marks: Flags2
 
 
 WANTED, MOVES = 0, 1
 
 
-@shared
+@inline
 def new_middle_of(n_links):
     """A state that is nowhere yet."""
     return Middle(

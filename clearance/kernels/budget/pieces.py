@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
-from clearance.compile.kernel_table import borrow
+from clearance.compile.declared import Floats, Floats2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import (
     RigidMotion,
     Vec3,
@@ -41,8 +41,8 @@ TRIED = 6
 class TrianglePairs(NamedTuple):
     """Pairs of triangles that wait: (n, 18) corners, of a in its frame, then of b in its own [m]; bounds (n,)."""
 
-    corners: np.ndarray
-    bounds: np.ndarray
+    corners: Floats2
+    bounds: Floats
 
 
 class TwoBodies(NamedTuple):
@@ -80,7 +80,7 @@ class _Triangle(NamedTuple):
     c: Vec3
 
 
-@shared
+@inline
 def new_pieces():
     """Room for pieces."""
     return TrianglePairs(np.empty((MOST_WAITING, 18)), np.empty(MOST_WAITING))
@@ -194,7 +194,7 @@ class _PieceBounds(NamedTuple):
 @inline
 def _look(lent, p, q, m, bodies, slack):
     """What is seen of two pieces, `q` in the frame of b; overwrites the rows along their own direction."""
-    work = borrow(lent).state.work
+    work = lent.state.work
     found, own, body_a, body_b = work.found, work.own, bodies.a, bodies.b
     x, y = _near_points(p, _in_other(q, m))
     d = sub(y, x)
@@ -227,7 +227,7 @@ def _look(lent, p, q, m, bodies, slack):
 @inline
 def _begin(lent, face_a, face_b):
     """All pairs of triangles of two fans; how many, or 0 where they are too many."""
-    scene = borrow(lent)
+    scene = lent
     pieces = scene.state.work.pieces
     a = b = scene.surface
     first_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
@@ -265,7 +265,7 @@ def bound_of_pieces(lent, faces, whole, slack, target, near):
         faces: `TwoFaces`. whole: [m] a bound on both.
         target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
     """
-    pieces = borrow(lent).state.work.pieces
+    pieces = lent.state.work.pieces
     n = _begin(lent, faces.a, faces.b)
     least = math.inf
     if n == 0:

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, sub
 from clearance.kernels.budget.errors import (

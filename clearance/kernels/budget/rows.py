@@ -8,7 +8,7 @@ leave of a distance (`left`), and which errors there are.
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
     cross,

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import borrow, lend
+from clearance.compile.declared import Floats, Floats3, Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.budget.errors import REACH
 from clearance.kernels.budget.face_left import REFINED, REFINED_OF_MANY, Aim
 from clearance.kernels.budget.levers import fill_levers
@@ -17,6 +18,7 @@ from clearance.kernels.budget.middle import go_to_part, half_of
 from clearance.kernels.budget.pair_left import Look, pair_left
 from clearance.kernels.budget.sweep_state import (
     MOVES,
+    BudgetScene,
     answer_of,
     begin_anew,
     bound_by_boxes,
@@ -55,11 +57,11 @@ class BudgetMoments(NamedTuple):
         enough: [m] what is proven beyond it is not looked into. exact_looks: as in `Aim`.
     """
 
-    intervals: np.ndarray
-    shares: np.ndarray
-    order: np.ndarray
-    known: np.ndarray
-    points: np.ndarray
+    intervals: Integers
+    shares: Floats
+    order: Integers
+    known: Floats
+    points: Floats3
     enough: float
     exact_looks: int
 
@@ -73,9 +75,9 @@ class BudgetIntervals(NamedTuple):
         gap, fail: [m] as in `CertificateGoal`. most_parts: of one pair and interval.
     """
 
-    intervals: np.ndarray
-    order: np.ndarray
-    known: np.ndarray
+    intervals: Integers
+    order: Integers
+    known: Floats
     enough: float
     gap: float
     fail: float
@@ -90,15 +92,15 @@ class BudgetRows(NamedTuple):
         share: (n,) where in the interval that was seen, 0 to 1, or -1.
     """
 
-    proven: np.ndarray
-    pair: np.ndarray
-    share: np.ndarray
+    proven: Floats
+    pair: Integers
+    share: Floats
 
 
 @inline
 def _most_taken(lent, pair, look):
     """[m] what errors can take of a pair at most, whose bodies touch."""
-    scene = borrow(lent)
+    scene = lent
     taken = thin_of(lent, pair)
     for side in range(2):
         body = scene.world.pairs[pair, side]
@@ -118,7 +120,7 @@ def _with_boxes(lent, pair, half, look, target, carried):
 
 
 @inline
-def _at_moment(lent, look, start, target, exact_looks, tally, table):
+def _at_moment(lent, look, start, target, exact_looks, tally):
     """What errors leave of a pair at a moment, looked into as far as a target [m], if that is not known."""
     left = answer_of(lent, look.pair)
     if is_answered(lent, look.pair, target):
@@ -126,14 +128,14 @@ def _at_moment(lent, look, start, target, exact_looks, tally, table):
     else:
         refined = REFINED_OF_MANY if exact_looks < EXACT_LOOKS else REFINED
         aim = Aim(target, math.inf, 0.0, 0.0, True, exact_looks, refined)
-        left = pair_left(table, lent, look, start, aim, tally)
+        left = pair_left(lent, look, start, aim, tally)
         note_answer(lent, look.pair, target, left)
         note_bound(lent, look.pair, left.lower_bound)
     return left
 
 
-@kernel(reference_counts=False)
-def budget_moments(scene, asked, rows, tally, table):
+@kernel
+def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, tally: Integers):
     """Fills `rows` with what errors leave of the nearest pair at each of some moments.
 
     A moment at which bodies touch is not looked into: what is left is what errors could take of that pair.
@@ -144,7 +146,8 @@ def budget_moments(scene, asked, rows, tally, table):
             faces looked at, and faces cut.
     """
     lent = lend(scene)
-    surface, world, path, errors, state = scene
+    surface, world, path = scene.surface, scene.world, scene.path
+    errors, state = scene.errors, scene.state
     begin_anew(world, state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
@@ -187,7 +190,7 @@ def budget_moments(scene, asked, rows, tally, table):
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
             look = Look(pair, 0.0, place, is_step and is_rough)
-            left = _at_moment(lent, look, start, target, asked.exact_looks, tally, table)
+            left = _at_moment(lent, look, start, target, asked.exact_looks, tally)
             lowest = min(lowest, left.lower_bound)
             if winner < 0 or (left.lower_bound < best and left.least < math.inf):
                 winner = pair
@@ -209,9 +212,9 @@ class _PairInterval(NamedTuple):
 
 
 @inline
-def _hold(lent, step, pair, look, least, asked, tally, table):
+def _hold(lent, step, pair, look, least, asked, tally):
     """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
-    scene = borrow(lent)
+    scene = lent
     path, state = scene.path, scene.state
     waiting = state.waiting
     waiting[0, 0], waiting[0, 1] = 0.0, 1.0
@@ -230,7 +233,7 @@ def _hold(lent, step, pair, look, least, asked, tally, table):
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
         aim = Aim(target, least, gap, asked.fail, False, 0, REFINED)
         start = start_before(lent, pair)
-        left = pair_left(table, lent, Look(pair, half, look, n_parts == 1), start, aim, tally)
+        left = pair_left(lent, Look(pair, half, look, n_parts == 1), start, aim, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
         if left.completed:
@@ -245,15 +248,16 @@ def _hold(lent, step, pair, look, least, asked, tally, table):
     return _PairInterval(lower_bound, least, share), n_parts > 1, look
 
 
-@kernel(reference_counts=False)
-def budget_intervals(scene, asked, rows, tally, table):
+@kernel
+def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRows, tally: Integers):
     """Fills `rows` with what errors leave of all pairs in the motion from each of some steps to the next.
 
     Args: as of `budget_moments`; ball joints are among the links as joints that turn, whose fixed parts and
         axes are written for each interval.
     """
     lent = lend(scene)
-    surface, world, path, errors, state = scene
+    surface, world, path = scene.surface, scene.world, scene.path
+    errors, state = scene.errors, scene.state
     begin_anew(world, state)
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
@@ -283,7 +287,7 @@ def budget_intervals(scene, asked, rows, tally, table):
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved, look = _hold(lent, step, pair, look, least, asked, tally, table)
+            over, moved, look = _hold(lent, step, pair, look, least, asked, tally)
             note_bound(lent, pair, over.lower_bound)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
-from clearance.compile.kernel_table import borrow
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn_back
 from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.face_left import LeftScratch
@@ -64,17 +64,17 @@ class BudgetSweepState(NamedTuple):
 
     middle: Middle
     boxes: BodyBoxes
-    directions: np.ndarray
+    directions: Floats2
     levers: Levers
     late: bool
-    filled: np.ndarray
-    placed: np.ndarray
-    poses: np.ndarray
-    moved: np.ndarray
-    n_moves: np.ndarray
-    lower_bounds: np.ndarray
-    answers: np.ndarray
-    waiting: np.ndarray
+    filled: Integers
+    placed: Integers
+    poses: Floats3
+    moved: Floats
+    n_moves: Integers
+    lower_bounds: Floats
+    answers: Floats2
+    waiting: Floats2
     fronts: Fronts
     work: LeftScratch
 
@@ -116,7 +116,7 @@ class SearchRoom(NamedTuple):
     scratch: Scratch
 
 
-@shared
+@inline
 def new_room():
     """Room for one sweep at a time."""
     pool = no_fronts(0, POOL)
@@ -131,7 +131,7 @@ def in_room(state, room):
     )
 
 
-@shared
+@inline
 def new_state(world, errors, room):
     """A state that has seen nothing."""
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
@@ -175,7 +175,7 @@ def pose_of(world, body, state):
 @inline
 def fill_body(lent, body, half, look):
     """Writes the rows of a body about the middle, if they are not of this look already."""
-    asked = borrow(lent)
+    asked = lent
     surface, world, errors, path, state = (
         asked.surface,
         asked.world,
@@ -215,7 +215,7 @@ def _place_body(surface, world, body, look, state):
 @inline(force=True)
 def thin_of(lent, pair):
     """[m] the surfaces and balls of both bodies of a pair."""
-    asked = borrow(lent)
+    asked = lent
     surface, world, errors = asked.surface, asked.world, asked.errors
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     radii = radii_of(surface, world.solids[body_a], surface, world.solids[body_b])
@@ -225,7 +225,7 @@ def thin_of(lent, pair):
 @inline(force=True)
 def _reach(lent, body, half, look):
     """[m] how far errors and motion can move any point of a body from the middle at most."""
-    asked = borrow(lent)
+    asked = lent
     state = asked.state
     if state.late:
         fill_body(lent, body, half, look)
@@ -241,7 +241,7 @@ def _reach(lent, body, half, look):
 @inline
 def bound_by_boxes(lent, pair, half, look, enough):
     """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
-    asked = borrow(lent)
+    asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     taken = thin_of(lent, pair)
@@ -256,7 +256,7 @@ def bound_by_boxes(lent, pair, half, look, enough):
 @inline
 def start_at(lent, pair, points):
     """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
-    asked = borrow(lent)
+    asked = lent
     pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state)
     return Start(move_back(pose, row(points, 0)), move_back(pose, row(points, 1)), True)
 
@@ -264,7 +264,7 @@ def start_at(lent, pair, points):
 @inline
 def start_before(lent, pair):
     """A start along the direction in which a pair was seen last, from centre to centre if it was not."""
-    asked = borrow(lent)
+    asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
     seen = row(state.directions, pair)
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -280,7 +280,7 @@ def start_before(lent, pair):
 @inline
 def go_on(lent, before, step):
     """Adds what bodies move from one step to a later one; infinite where that is not known."""
-    asked = borrow(lent)
+    asked = lent
     world, state = asked.world, asked.state
     for body in range(len(world.frames)):
         if world.frames[body] < 0:
@@ -304,7 +304,7 @@ def go_on_to_step(lent, before, step):
     Args:
         before: the step that was gone on to last, or -1.
     """
-    asked = borrow(lent)
+    asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
     poses, levers = state.middle.state.poses, state.levers
     goes_on = before >= 0 and not state.late and step >= before
@@ -348,7 +348,7 @@ def _moves_of_pair(asked, pair):
 @inline(force=True)
 def note_answer(lent, pair, target, left):
     """Keeps what came of a search of a pair that looked as far as a target [m]."""
-    asked = borrow(lent)
+    asked = lent
     answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
     again = answer[MOVES] == moves and answer[TARGET] == target
     answer[MOVES], answer[TARGET], answer[TWICE] = moves, target, 1.0 if again else 0.0
@@ -361,7 +361,7 @@ def is_answered(lent, pair, target):
 
     The second goes on from the front of the first and may find more; a third would come to what it has found.
     """
-    asked = borrow(lent)
+    asked = lent
     answer = asked.state.answers[pair]
     is_same = answer[MOVES] == _moves_of_pair(asked, pair) and answer[TARGET] == target
     return is_same and answer[TWICE] == 1.0
@@ -370,7 +370,7 @@ def is_answered(lent, pair, target):
 @inline(force=True)
 def answer_of(lent, pair):
     """What came of the last search of a pair."""
-    answer = borrow(lent).state.answers[pair]
+    answer = lent.state.answers[pair]
     return PairRemainder(
         answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, Vec3(0.0, 0.0, 0.0)
     )
@@ -379,7 +379,7 @@ def answer_of(lent, pair):
 @inline(force=True)
 def carried_bound(lent, pair):
     """[m] what is left of the bound of a pair after what its bodies have moved."""
-    asked = borrow(lent)
+    asked = lent
     moved = moved_of_pair(asked, pair)
     return asked.state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
 
@@ -387,5 +387,5 @@ def carried_bound(lent, pair):
 @inline(force=True)
 def note_bound(lent, pair, lower_bound):
     """Keeps the bound of a pair for later."""
-    asked = borrow(lent)
+    asked = lent
     asked.state.lower_bounds[pair] = (lower_bound + moved_of_pair(asked, pair)) - KEPT

@@ -7,7 +7,7 @@ affine function, whose slope is added to the direction. What that would overrate
 
 import math
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, along, cross, dot, sub
 from clearance.kernels.budget.view import moved_of_point

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, sub
 from clearance.kernels.budget.errors import (
@@ -32,15 +33,15 @@ class AlongRows(NamedTuple):
         directions: (2, 3) unit.
     """
 
-    linear: np.ndarray
-    n_linear: np.ndarray
-    frames: np.ndarray
-    n_frames: np.ndarray
-    alike: np.ndarray
-    directions: np.ndarray
+    linear: Floats3
+    n_linear: Integers
+    frames: Floats3
+    n_frames: Integers
+    alike: Floats
+    directions: Floats2
 
 
-@shared
+@inline
 def new_along_rows(most_rows):
     """Rows that are not seen yet."""
     return AlongRows(

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.bezier import CHOOSE, hypotenuse
 
 S0, S1, X0, Y0, X1, Y1, CX, CY, RADIUS, SENSE, EPS, COSINE = range(12)
@@ -139,7 +140,7 @@ def arc_error(row, points, n, work):
 
 
 @kernel
-def distances_to_arcs(arcs, x, y):
+def distances_to_arcs(arcs: Floats2, x: float, y: float) -> tuple[float, int]:
     """The least distance from (x, y) to the rows of `arcs`, and which row has it: the slow truth."""
     best, which = np.inf, 0
     for k in range(arcs.shape[0]):

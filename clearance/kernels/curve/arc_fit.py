@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import (
     CX,
     CY,
@@ -29,7 +30,7 @@ from clearance.kernels.curve.arc import (
     set_arc,
     set_segment,
 )
-from clearance.kernels.curve.bezier import cut, hypotenuse, jet
+from clearance.kernels.curve.bezier import Pieces, cut, hypotenuse, jet
 from clearance.kernels.curve.boxes import fill_inner_boxes
 
 BUCKET = 4
@@ -43,9 +44,9 @@ class Leaves(NamedTuple):
     contain the curve itself: the arcs grown by their errors.
     """
 
-    arcs: np.ndarray
-    piece: np.ndarray
-    boxes: np.ndarray
+    arcs: Floats2
+    piece: Integers
+    boxes: Floats2
 
 
 @inline
@@ -109,7 +110,7 @@ def joint_parameter(pieces, i, row, ax, ay, bx, by, steps):
     return s0 + u * (s1 - s0) if 0.01 < u < 0.99 else math.nan
 
 
-@inline(reference_counts=True)
+@inline
 def fit_biarc(pieces, i, s0, s1, flat, steps, work, pair):
     """Writes the biarc of piece `i` on [s0, s1] into the two rows of `pair` and returns how many it used.
 
@@ -150,7 +151,7 @@ def _reverse(row):
 
 
 @kernel
-def fit_leaves(pieces, tolerance, steps):
+def fit_leaves(pieces: Pieces, tolerance: float, steps: int) -> tuple[Floats2, Integers]:
     """Arcs (n, WIDTH) in curve order, each within `tolerance` of its part of the curve, and their pieces.
 
     A part is halved until its biarc is good enough; at the smallest interval that floats allow it is taken
@@ -210,7 +211,7 @@ def _grown(arcs, owner):
 
 
 @kernel
-def box_tree(arcs):
+def box_tree(arcs: Floats2) -> Floats2:
     """The implicit tree of boxes over `arcs` that `Leaves` describes."""
     n_buckets = (arcs.shape[0] + BUCKET - 1) // BUCKET
     size = 1

@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import (
     CX,
     CY,
@@ -103,7 +104,7 @@ def _arc_and_arc(a, b):
 
 
 @kernel
-def arcs_apart(a, b):
+def arcs_apart(a: Floats, b: Floats) -> tuple[float, float]:
     """The least distance of two arcs to rounding, and a bound of that rounding.
 
     A crossing or a foot that rounding puts just beside the end of an arc is missed, but then that end is as near.
@@ -141,7 +142,7 @@ def _set_cell_arc(points, n, shift_x, shift_y, work, row):
     row[Y0], row[Y1], row[CY] = row[Y0] + shift_y, row[Y1] + shift_y, row[CY] + shift_y
 
 
-@inline(reference_counts=True)
+@inline
 def cells_apart(p, n, q, m, shift_x, shift_y, work, rows):
     """A lower bound of the distance of two cells by their arcs, and how much of what it lacks is rounding.
 

@@ -6,7 +6,7 @@ it in turn. The bound is exact where the parts coincide, run parallel or are con
 the search on overlapping curves. Not for: choosing the parts.
 """
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.bezier import CHOOSE
 from clearance.kernels.curve.scratch import GAP, PART_A, PART_B, SQUARES
 

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Flags2, Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 
 HIGHEST_DEGREE = 24
 CHOOSE = np.array(
@@ -25,9 +26,9 @@ CHOOSE = np.array(
 class Pieces(NamedTuple):
     """Bézier pieces of one curve, in homogeneous coordinates about the curve's own origin."""
 
-    control: np.ndarray
-    first: np.ndarray
-    rational: np.ndarray
+    control: Floats2
+    first: Integers
+    rational: Flags
 
 
 class Jet(NamedTuple):
@@ -136,7 +137,7 @@ def keep_left(points, n, t):
                 points[k, c] = points[k - 1, c] + t * (points[k, c] - points[k - 1, c])
 
 
-@inline(reference_counts=True)
+@inline
 def cut(pieces, i, t0, t1, out):
     """Writes the control points of piece `i` on [t0, t1] into `out` and returns the degree.
 
@@ -160,7 +161,7 @@ def cut(pieces, i, t0, t1, out):
 
 
 @kernel
-def pieces_of_spline(control, knots, degree):
+def pieces_of_spline(control: Floats2, knots: Floats, degree: int) -> tuple[Floats2, Floats2]:
     """Bézier control points (n_spans (degree + 1), 3) and the span limits (n_spans, 2) of a B-spline.
 
     Each control point is the blossom of the spline at the span's two ends, found by de Boor's scheme.
@@ -196,7 +197,7 @@ def pieces_of_spline(control, knots, degree):
 
 
 @kernel
-def points_on(pieces, which, local, out):
+def points_on(pieces: Pieces, which: Integers, local: Floats, out: Floats2):
     """Writes point, first and second derivative (n, 6) at the parameters `local` of the pieces `which`."""
     for k in range(which.shape[0]):
         here = jet(pieces, which[k], local[k])
@@ -205,7 +206,7 @@ def points_on(pieces, which, local, out):
 
 
 @kernel
-def control_box(control):
+def control_box(control: Floats2) -> Floats:
     """The least box (x0, y0, x1, y1) around the Cartesian control points of homogeneous `control`."""
     box = np.empty(4)
     box[:2], box[2:] = np.inf, -np.inf
@@ -223,7 +224,7 @@ def hypotenuse(x, y):
 
 
 @kernel
-def piece_spans(rows, first):
+def piece_spans(rows: Floats2, first: Integers) -> tuple[Floats2, Floats2]:
     """Least and greatest of each column of `rows` within each piece: two arrays (n, 3)."""
     n = first.shape[0] - 1
     low, high = np.empty((n, 3)), np.empty((n, 3))
@@ -236,7 +237,7 @@ def piece_spans(rows, first):
 
 
 @kernel
-def rough_joints(pieces, contour, tangent, apart):
+def rough_joints(pieces: Pieces, contour: Integers, tangent: float, apart: float) -> Flags2:
     """(n, 2) flags of the pieces' starts and ends that are ends of contours or corners.
 
     A joint is smooth where the points are within `apart` and the sine between the tangents within `tangent`.

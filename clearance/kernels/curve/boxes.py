@@ -4,7 +4,7 @@ The children of node k are 2 k and 2 k + 1. Not for: what lies in the boxes of
 the last level (`arc_fit`, `hausdorff.segments`).
 """
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 
 
 @inline

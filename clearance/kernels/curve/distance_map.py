@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import Floats, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.bezier import hypotenuse, jet
@@ -25,15 +26,15 @@ class DistanceMap(NamedTuple):
     reached on leaf `deepest_leaf` at the local parameter `deepest_at`.
     """
 
-    depth: np.ndarray
-    arc: np.ndarray
-    first: np.ndarray
+    depth: Floats
+    arc: Integers
+    first: Integers
     deepest: int
     deepest_leaf: int
     deepest_at: float
 
 
-@inline(reference_counts=True)
+@inline
 def nearest_arc(leaves, x, y, hint, enough, stack):
     """The distance from (x, y) to the nearest arc, and its index: the lowest cone at one pixel.
 
@@ -70,7 +71,7 @@ def _samples(row, pixel):
     return max(1, math.ceil(1.2 * hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel))
 
 
-@inline(reference_counts=True)
+@inline
 def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
     """The `DistanceMap` of the curve `other` along this curve, moved by the shift into the other's frame."""
     arcs = leaves.arcs
@@ -107,7 +108,7 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
     return DistanceMap(depth[:used], arc[:used], first, deepest, deepest_leaf, deepest_at)
 
 
-@inline(reference_counts=True)
+@inline
 def lower_bound_of_map(drawn, own, other, pixel):
     """Equation (2): the greatest depth less the errors of biarcs, cones and pixels; a true lower bound.
 

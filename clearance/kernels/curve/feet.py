@@ -2,13 +2,16 @@
 
 import numpy as np
 
-from clearance.compile.jit import kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import kernel
+from clearance.kernels.curve.arc_fit import Leaves
+from clearance.kernels.curve.bezier import Pieces
 from clearance.kernels.curve.nearest import nearest
 from clearance.kernels.curve.scratch import new_scratch, widest
 
 
 @kernel
-def feet(pieces, leaves, points, out):
+def feet(pieces: Pieces, leaves: Leaves, points: Floats2, out: Floats2):
     """Writes distance, proven lower bound, piece and local parameter (n, 4) of each of `points` (n, 2)."""
     work = new_scratch(widest(pieces), 0)
     hint = 0

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.arc import ROUNDOFF
 from clearance.kernels.curve.bernstein import greatest
 from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse
@@ -195,7 +195,7 @@ def _squares(gap, degree, rational, out):
     return 2 * degree
 
 
-@inline(reference_counts=True)
+@inline
 def follow_bound(curves, part, feet, enough, work):
     """A proven upper bound of the distance of a part of A to B, where it is largest, and its rounding.
 

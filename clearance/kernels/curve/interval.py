@@ -6,11 +6,11 @@ or just one, in a cell. Rounding is not enclosed: a cell is only cut while it is
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.bezier import Pieces, cut
 
 
-@inline(reference_counts=True)
+@inline
 def derived(pieces):
     """The homogeneous derivative of every piece as pieces of one degree less; constants stay constants."""
     n_pieces = pieces.first.shape[0] - 1
@@ -58,7 +58,7 @@ def _put_boxes(out, row, points, n):
     out[row, 2], out[row, 3] = _box(points, n, 1)
 
 
-@inline(reference_counts=False)
+@inline
 def enclose(pieces, derivatives, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
 

@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats3
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import EPS, ROUNDOFF, S0, S1, arc_distance
-from clearance.kernels.curve.arc_fit import BUCKET
+from clearance.kernels.curve.arc_fit import BUCKET, Leaves
 from clearance.kernels.curve.bernstein import cubic_square
-from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse, jet
+from clearance.kernels.curve.bezier import CHOOSE, Pieces, cut, hypotenuse, jet
 from clearance.kernels.curve.boxes import box_gap_sq
 from clearance.kernels.curve.scratch import MAP
 
@@ -140,7 +141,7 @@ def _slopes(pieces, i, x, y, t):
     return ex * here.dx + ey * here.dy, speed_sq + ex * here.ddx + ey * here.ddy, speed_sq
 
 
-@inline(reference_counts=True)
+@inline
 def slide_to_foot(pieces, i, x, y, t, low, high):
     """A local minimum of the distance from (x, y) to piece `i` on [low, high], from `t` on.
 
@@ -197,7 +198,7 @@ def _distance_at(pieces, i, x, y, t):
     return hypotenuse(here.x - x, here.y - y)
 
 
-@inline(one_caller=True)
+@inline
 def _foot_where_rising(pieces, i, x, y, a, b, slope, points, n):
     """Where the distance is least on [a, b], if its square's slope rises there: (t, distance, lower bound).
 
@@ -215,7 +216,7 @@ def _foot_where_rising(pieces, i, x, y, a, b, slope, points, n):
     return t, distance, math.sqrt(max(0.0, distance * distance - defect))
 
 
-@inline(reference_counts=True)
+@inline
 def closest_on(pieces, i, s0, s1, x, y, best, work):
     """The nearest point of piece `i` on [s0, s1]: (distance, lower bound, parameter), if below `best`.
 
@@ -308,7 +309,9 @@ def _newton_defect_sq(here, x, y, t, a, b, rise, points, n):
 
 
 @kernel
-def nearest(pieces, leaves, x, y, hint, bound, work):
+def nearest(
+    pieces: Pieces, leaves: Leaves, x: float, y: float, hint: int, bound: float, work: Floats3
+) -> Foot:
     """The `Foot` of (x, y) on a curve; `hint` is a leaf to try first, distances from `bound` on are not sought.
 
     Exactness: `lower` is proven up to the rounding of the evaluation; ties go to the first found.

@@ -3,10 +3,9 @@
 Not for: what the search knows of them (`hausdorff.state`).
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-import numpy as np
-
+from clearance.compile.declared import Flags2, LentTo
 from clearance.kernels.curve.arc_fit import Leaves
 from clearance.kernels.curve.bezier import Pieces
 
@@ -16,14 +15,14 @@ class CurveArrays(NamedTuple):
 
     pieces: Pieces
     leaves: Leaves
-    is_end: np.ndarray
+    is_end: Flags2
 
 
 class Curves(NamedTuple):
     """The curve searched, the other one, and the step from the frame of the first into that of the other."""
 
-    a: Pieces
-    b: Pieces
+    a: Annotated[Pieces, LentTo]
+    b: Annotated[Pieces, LentTo]
     shift_x: float
     shift_y: float
 

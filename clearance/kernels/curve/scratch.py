@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 
 N_NEAREST = (
     5  # planes that `nearest.closest_on` takes; `nearest.nearest` keeps its stack in the next one

@@ -6,7 +6,7 @@ Where a box is taken, four boxes in lanes may stand in its place (`surface.group
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, square_root, where_positive
 from clearance.kernels.arithmetic.vec3 import (
     RigidMotion,

@@ -5,8 +5,7 @@ Not for: whether they meet (`predicates`).
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import COMMON_POINT, apart, at_address, borrow
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
     ZERO3,
     Wide3,
@@ -21,8 +20,8 @@ from clearance.kernels.arithmetic.double_double import (
     point_of_b,
 )
 from clearance.kernels.arithmetic.vec3 import row
-from clearance.kernels.features.meeting import NO_MEETING
-from clearance.kernels.features.posed_pair import posed_pair_like
+from clearance.kernels.features.meeting import Meeting
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.features.wide_features import point_and_triangle, two_segments
 
 
@@ -33,7 +32,7 @@ class CommonPointPair(NamedTuple):
     q: Wide3
 
 
-@inline(reference_counts=True)
+@inline
 def _of_edge_and_triangle(p, q, x, y, z):
     """The points of an edge p q and a triangle x y z nearest to coinciding."""
     n = cross3(minus3(y, x), minus3(z, x))
@@ -53,10 +52,10 @@ def _of_edge_and_triangle(p, q, x, y, z):
     return CommonPointPair(best.p, best.q)
 
 
-@apart(COMMON_POINT, lambda: (posed_pair_like(), NO_MEETING))
-def common_point(faces, found):
+@kernel
+def common_point(faces: PosedPair, found: Meeting) -> CommonPointPair:
     """The points of two faces nearest to coinciding, where an edge was found to meet a triangle."""
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     frames = faces.frames
     if found.edge_of_a:
         p = point_of_a(frames, row(a.exact, a.face_vertices[found.p]))
@@ -75,9 +74,3 @@ def common_point(faces, found):
 
 
 _NOWHERE = CommonPointPair(ZERO3, ZERO3)
-
-
-@inline(one_caller=True)
-def common_point_of(table, faces, found):
-    """The same by address."""
-    return at_address(table, COMMON_POINT, _NOWHERE, (faces, found))

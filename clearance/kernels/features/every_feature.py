@@ -7,7 +7,7 @@ the usual case, in which one feature pair and its lower bound suffice (`refine`)
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import Wide, less, lesser, minus, wide
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
 from clearance.kernels.features.face_pair import has_plane, height, may_be_over
@@ -17,7 +17,7 @@ from clearance.kernels.features.segments import (
     may_be_inside_both,
     nearest_on_segment,
 )
-from clearance.kernels.features.wide_features import Simplex, sized_of
+from clearance.kernels.features.wide_features import Simplex, size_features
 
 
 class FeatureCutoff(NamedTuple):
@@ -49,9 +49,9 @@ class PosedCorner(NamedTuple):
 
 
 @inline
-def _take(frames, one, two, feature, best, table):
+def _take(frames, one, two, feature, best):
     """`best`, or a feature pair that is nearer."""
-    sized = sized_of(table, frames, one, two)
+    sized = size_features(frames, one, two)
     found_sq = sized.pair.gap_sq
     if found_sq.hi == math.inf:
         return best
@@ -70,29 +70,29 @@ def _corner_of(one, at, frames, is_a):
 
 
 @inline
-def _take_corner(frames, corner, other, n_corners, k, best, table):
+def _take_corner(frames, corner, other, n_corners, k, best):
     """`best`, or a vertex against feature `k` of the other body, of so many corners, where that is nearer."""
     if corner.is_a:
         feature = Feature(1, corner.at, n_corners, k)
-        return _take(frames, corner.simplex, other, feature, best, table)
+        return _take(frames, corner.simplex, other, feature, best)
     feature = Feature(n_corners, k, 1, corner.at)
-    return _take(frames, other, corner.simplex, feature, best, table)
+    return _take(frames, other, corner.simplex, feature, best)
 
 
 @inline
-def _corner_to_face(corner, two, face, frames, cutoff, best, table):
+def _corner_to_face(corner, two, face, frames, cutoff, best):
     """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
     y = corner.y
     if has_plane(two, face):
         if abs(height(two, face, y)) > cutoff.limit or not may_be_over(two, face, y, cutoff.margin):
             return best
     for k in range(two.face_starts[face] + 1, two.face_starts[face + 1] - 1):
-        best = _take_corner(frames, corner, simplex(two, face, 3, k), 3, k, best, table)
+        best = _take_corner(frames, corner, simplex(two, face, 3, k), 3, k, best)
     return best
 
 
 @inline
-def _corner_to_segments(corner, two, face, frames, cutoff, best, table):
+def _corner_to_segments(corner, two, face, frames, cutoff, best):
     """`best` with a vertex of one body against the segments of a face of the other."""
     y = corner.y
     for s in range(n_segments(two, face)):
@@ -102,7 +102,7 @@ def _corner_to_segments(corner, two, face, frames, cutoff, best, table):
             continue
         if gap_sq(y, nearest_on_segment(y, start, end)) > cutoff.limit * cutoff.limit:
             continue
-        best = _take_corner(frames, corner, simplex(two, face, 2, s), 2, s, best, table)
+        best = _take_corner(frames, corner, simplex(two, face, 2, s), 2, s, best)
     return best
 
 
@@ -121,7 +121,7 @@ def _far_apart(p0, p1, q0, q1, limit):
 
 
 @inline
-def _between_corners(a, face_a, b, face_b, frames, cutoff, best, table):
+def _between_corners(a, face_a, b, face_b, frames, cutoff, best):
     """`best` with corners against corners."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
         j = b.owned_vertices[n]
@@ -130,12 +130,12 @@ def _between_corners(a, face_a, b, face_b, frames, cutoff, best, table):
             i = a.owned_vertices[o]
             if gap_sq(row(a.vertices, i), y) <= cutoff.limit * cutoff.limit:
                 one, two = simplex(a, face_a, 1, i), simplex(b, face_b, 1, j)
-                best = _take(frames, one, two, Feature(1, i, 1, j), best, table)
+                best = _take(frames, one, two, Feature(1, i, 1, j), best)
     return best
 
 
 @inline
-def _between_segments(a, face_a, b, face_b, frames, cutoff, best, table):
+def _between_segments(a, face_a, b, face_b, frames, cutoff, best):
     """`best` with the insides of the segments of both faces."""
     for j in range(n_segments(b, face_b)):
         j0, j1 = segment(b, face_b, j)
@@ -147,12 +147,12 @@ def _between_segments(a, face_a, b, face_b, frames, cutoff, best, table):
                 continue
             if may_be_inside_both(p0, p1, q0, q1, cutoff.margin):
                 one, two = simplex(a, face_a, 2, i), simplex(b, face_b, 2, j)
-                best = _take(frames, one, two, Feature(2, i, 2, j), best, table)
+                best = _take(frames, one, two, Feature(2, i, 2, j), best)
     return best
 
 
-@inline(reference_counts=True)
-def nearest_of_every(a, face_a, b, face_b, frames, cutoff, table):
+@inline
+def nearest_of_every(a, face_a, b, face_b, frames, cutoff):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
     best = NearestFeatures(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
     one, face_one, two, face_two = a, face_a, b, face_b
@@ -160,8 +160,8 @@ def nearest_of_every(a, face_a, b, face_b, frames, cutoff, table):
         is_a = side == 0
         for n in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
             corner = _corner_of(one, one.owned_vertices[n], frames, is_a)
-            best = _corner_to_face(corner, two, face_two, frames, cutoff, best, table)
-            best = _corner_to_segments(corner, two, face_two, frames, cutoff, best, table)
+            best = _corner_to_face(corner, two, face_two, frames, cutoff, best)
+            best = _corner_to_segments(corner, two, face_two, frames, cutoff, best)
         one, face_one, two, face_two = b, face_b, a, face_a
-    best = _between_corners(a, face_a, b, face_b, frames, cutoff, best, table)
-    return _between_segments(a, face_a, b, face_b, frames, cutoff, best, table)
+    best = _between_corners(a, face_a, b, face_b, frames, cutoff, best)
+    return _between_segments(a, face_a, b, face_b, frames, cutoff, best)

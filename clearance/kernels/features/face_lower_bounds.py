@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import (
     NOISE,
     Wide,
@@ -70,14 +70,14 @@ def whole(surface, face):
     return CornerRange(surface.face_starts[face] + 1, surface.face_starts[face + 1])
 
 
-@inline(one_caller=True)
+@inline
 def corners_of(surface, face, part):
     """Part of a face."""
     start = surface.face_starts[face]
     return FaceCorners(surface.exact, surface.face_vertices, start, part.low, part.high)
 
 
-@inline(one_caller=True)
+@inline
 def _greatest_share(corners, frames, is_a, pair):
     """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and what its rounding is relative to.
 
@@ -107,7 +107,7 @@ def _greatest_share(corners, frames, is_a, pair):
     return share, spread if frames.still_a and frames.still_b else spread + reach
 
 
-@inline(one_caller=True)
+@inline
 def lower_bound_along(frames, a, b, pair):
     """[m] a lower bound on the distance of the hulls of corners of a and b: their gap along a pair's direction."""
     if not pair.w_sq.hi > 0.0:
@@ -150,7 +150,7 @@ def _beyond(surface, face, corner, third, w):
     return along(w, tilt, aside)
 
 
-@inline(one_caller=True)
+@inline
 def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     """True if all of a bent fan but the triangle with middle corner `k` is farther than `least` for certain.
 
@@ -180,7 +180,7 @@ def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     return True
 
 
-@inline(one_caller=True)
+@inline
 def lower_bound_of(a, face_a, b, face_b, frames, feature, pair, margin):
     """[m] a lower bound on the distance of two faces, tight where `pair` is the nearest."""
     part_a, part_b = whole(a, face_a), whole(b, face_b)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 from clearance.kernels.features.bounds import lower_bound_faces_beside
 from clearance.kernels.features.segments import LOOSE, common_perpendicular, foot_inside
@@ -163,7 +163,7 @@ def _upper_sq(surface, face, h, margin):
     return upper * upper
 
 
-@inline(one_caller=True)
+@inline
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
@@ -180,7 +180,7 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@inline(one_caller=True)
+@inline
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
@@ -204,7 +204,7 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@inline(one_caller=True)
+@inline
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
 
@@ -241,7 +241,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@inline(one_caller=True)
+@inline
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):

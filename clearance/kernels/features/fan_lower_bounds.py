@@ -4,13 +4,12 @@ Where two faces bent by rounding lie parallel over each other, no one direction 
 apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
 """
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import FANS, apart, at_address, borrow
-from clearance.kernels.arithmetic.double_double import less, lesser
+from clearance.compile.decorators import inline, kernel
+from clearance.kernels.arithmetic.double_double import Wide, less, lesser
 from clearance.kernels.features.face_lower_bounds import CornerRange, corners_of, lower_bound_along
 from clearance.kernels.features.feature import simplex
-from clearance.kernels.features.posed_pair import posed_pair_like
-from clearance.kernels.features.wide_features import NOTHING_SIZED, Simplex, wide_feature
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.features.wide_features import PointPair, Simplex, wide_feature
 
 MOST = 64
 """Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
@@ -32,7 +31,7 @@ def _start(n, triangle):
     return Simplex(n, triangle.u, triangle.u if n == 1 else triangle.v, triangle.w)
 
 
-@inline(reference_counts=True)
+@inline
 def _nearest_of_triangles(frames, one, two):
     """The nearest pair of points of two triangles that do not meet, and so its direction."""
     best = wide_feature(frames, _start(1, one), _start(1, two))
@@ -49,19 +48,14 @@ def _nearest_of_triangles(frames, one, two):
     return best
 
 
-def _like():
-    far = NOTHING_SIZED.length
-    return posed_pair_like(), NOTHING_SIZED.pair, far, far
-
-
-@apart(FANS, _like)
-def lower_bound_of_fans(faces, pair, least, lower_bound):
+@kernel
+def lower_bound_of_fans(faces: PosedPair, pair: PointPair, least: Wide, lower_bound: Wide) -> Wide:
     """[m] `lower_bound`, or a greater lower bound on the distance of two faces.
 
     Args:
         least: (`Wide`) the lower bound that is enough: triangles that have it along `pair` are not looked at.
     """
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames
     start_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     start_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
@@ -81,9 +75,3 @@ def lower_bound_of_fans(faces, pair, least, lower_bound):
                 direction = _nearest_of_triangles(frames, one, two)
             least_lower_bound = lesser(own, least_lower_bound)
     return lower_bound if less(least_lower_bound, lower_bound) else least_lower_bound
-
-
-@inline
-def fans_lower_bound_of(table, faces, pair, least, lower_bound):
-    """The same by address."""
-    return at_address(table, FANS, lower_bound, (faces, pair, least, lower_bound))

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import cross, dot, move, move_back, row, sub
 from clearance.kernels.features.face_pair import (
     CORNER_EDGE,
@@ -42,7 +42,8 @@ def segment(surface, face, s):
     return surface.owned_edges[at, 0], surface.owned_edges[at, 1]
 
 
-def _simplex(surface, face, n, i):
+@inline
+def simplex(surface, face, n, i):
     """The corners of a feature of a face."""
     u = v = w = i
     if n == 2:
@@ -52,11 +53,6 @@ def _simplex(surface, face, n, i):
         u = surface.face_vertices[surface.face_starts[face]]
         v, w = surface.face_vertices[i], surface.face_vertices[i + 1]
     return Simplex(n, row(surface.exact, u), row(surface.exact, v), row(surface.exact, w))
-
-
-simplex = inline(_simplex)
-simplex_here = inline(force=True)(_simplex)
-"""The same, copied into the caller."""
 
 
 @inline
@@ -75,7 +71,7 @@ def _middle_under(surface, face, y):
     return k
 
 
-@inline(one_caller=True)
+@inline
 def nearest_feature(a, face_a, b, face_b, m, seen):
     """The feature pair that the search in doubles found the nearest."""
     n_a, i, n_b, j = 1, seen.i, 1, seen.j

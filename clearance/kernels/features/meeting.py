@@ -6,19 +6,18 @@ definite surface. Not for: where they meet (`common_point`).
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import MEETING, apart, at_address, borrow
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.predicates import (
+    ExactScratch,
     PosedVertex,
-    new_exact_scratch,
     segment_meets_triangle,
     set_poses,
 )
 from clearance.kernels.arithmetic.vec3 import dot, move, move_back, row, sub
 from clearance.kernels.features.bounds import SLACK
 from clearance.kernels.features.face_pair import ROUGH, has_plane, height
-from clearance.kernels.features.posed_pair import posed_pair_like
+from clearance.kernels.features.posed_pair import PosedPair
 
 
 @inline
@@ -134,14 +133,14 @@ def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
     return True
 
 
-@apart(MEETING, lambda: (posed_pair_like(), new_exact_scratch()))
-def meeting(faces, exact):
+@kernel
+def meeting(faces: PosedPair, exact: ExactScratch) -> Meeting:
     """Where two faces have a point in common, exactly: the first edge and triangle found to meet.
 
     Of two flat faces that meet an edge of one meets the other. Where one is bent, its fan's diagonals are
     edges too.
     """
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames
     bent = a.bent[face_a] or b.bent[face_b]
     if (
@@ -163,9 +162,3 @@ def meeting(faces, exact):
             break
         one, face_one, two, face_two = two, face_two, one, face_one
     return found
-
-
-@inline(one_caller=True)
-def meeting_of(table, faces, exact):
-    """The same by address."""
-    return at_address(table, MEETING, NO_MEETING, (faces, exact))

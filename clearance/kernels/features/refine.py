@@ -11,15 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
-from clearance.compile.kernel_table import (
-    REFINE,
-    REFINE_EVERY,
-    apart,
-    at_address,
-    borrow,
-    table_like,
-)
+from clearance.compile.declared import Floats, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
     FAR,
     NOISE,
@@ -35,12 +28,12 @@ from clearance.kernels.arithmetic.double_double import (
 from clearance.kernels.features.bounds import SeparatingDirection, lower_bound_faces_along_direction
 from clearance.kernels.features.every_feature import FeatureCutoff, nearest_of_every
 from clearance.kernels.features.face_lower_bounds import SURE, UNSURE, lower_bound_of
-from clearance.kernels.features.face_pair import NOTHING_SEEN, UNSEEN, FeatureCandidate, limit_of
-from clearance.kernels.features.fan_lower_bounds import fans_lower_bound_of
-from clearance.kernels.features.feature import nearest_feature, simplex, simplex_here
-from clearance.kernels.features.posed_pair import parts, posed_pair_like
+from clearance.kernels.features.face_pair import UNSEEN, FeatureCandidate, limit_of
+from clearance.kernels.features.fan_lower_bounds import lower_bound_of_fans
+from clearance.kernels.features.feature import nearest_feature, simplex
+from clearance.kernels.features.posed_pair import PosedPair, parts
 from clearance.kernels.features.rounding_guard import may_hide
-from clearance.kernels.features.wide_features import sized_of, too_far, wide_feature_here
+from clearance.kernels.features.wide_features import size_features, too_far, wide_feature
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
@@ -98,48 +91,38 @@ def _better(best, pair, length, face_a, face_b, lower_bound, sure):
     )
 
 
-@apart(
-    REFINE_EVERY,
-    lambda: (posed_pair_like(), FeatureCutoff(0.0, 0.0), NOTHING_REFINED, table_like()),
-)
-def refine_every(faces, cutoff, best, table):
+@kernel
+def refine_every(faces: PosedPair, cutoff: FeatureCutoff, best: RefinedDistance) -> RefinedDistance:
     """`best`, or better: all features of two faces within the limit."""
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames
-    chosen = nearest_of_every(a, face_a, b, face_b, frames, cutoff, table)
+    chosen = nearest_of_every(a, face_a, b, face_b, frames, cutoff)
     if chosen.gap_sq.hi == math.inf:
         return best
     feature = chosen.feature
     one = simplex(a, face_a, feature.n_a, feature.i)
     two = simplex(b, face_b, feature.n_b, feature.j)
-    sized = sized_of(table, frames, one, two)
+    sized = size_features(frames, one, two)
     pair, length = sized.pair, sized.length
     lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, cutoff.margin)
     enough = _enough(length, cutoff.margin)
     if less(lower_bound, enough) and (a.bent[face_a] or b.bent[face_b]):
-        lower_bound = fans_lower_bound_of(table, faces, pair, enough, lower_bound)
+        lower_bound = lower_bound_of_fans(faces, pair, enough, lower_bound)
     return _better(best, pair, length, face_a, face_b, minus(lower_bound, sized.off), chosen.sure)
 
 
-@apart(
-    REFINE,
-    lambda: (
-        posed_pair_like(),
-        NOTHING_SEEN,
-        FeatureCutoff(0.0, 0.0),
-        NOTHING_REFINED,
-        table_like(),
-    ),
-)
-def refine(faces, seen, cutoff, best, table):
+@kernel
+def refine(
+    faces: PosedPair, seen: FeatureCandidate, cutoff: FeatureCutoff, best: RefinedDistance
+) -> RefinedDistance:
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames
     if seen.kind != UNSEEN:
         feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
-        one = simplex_here(a, face_a, feature.n_a, feature.i)
-        two = simplex_here(b, face_b, feature.n_b, feature.j)
-        pair = wide_feature_here(frames, one, two)
+        one = simplex(a, face_a, feature.n_a, feature.i)
+        two = simplex(b, face_b, feature.n_b, feature.j)
+        pair = wide_feature(frames, one, two)
         if pair.gap_sq.hi < math.inf:
             lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, cutoff.margin)
             length = root(pair.gap_sq)
@@ -148,13 +131,7 @@ def refine(faces, seen, cutoff, best, table):
                 return _better(
                     best, pair, length, face_a, face_b, minus(lower_bound, off), minus(length, off)
                 )
-    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (faces, cutoff, best, table))
-
-
-@inline(one_caller=True)
-def refined_of(table, faces, seen, cutoff, best):
-    """The same by address."""
-    return at_address(table, REFINE, NOTHING_REFINED, (faces, seen, cutoff, best, table))
+    return refine_every(faces, cutoff, best)
 
 
 class RefineQueue(NamedTuple):
@@ -165,13 +142,13 @@ class RefineQueue(NamedTuple):
         least_sq: (n,) [m^2] a face pair whose features are no nearer needs not be refined: near_sq, or less.
     """
 
-    faces: np.ndarray
-    near_sq: np.ndarray
-    features: np.ndarray
-    least_sq: np.ndarray
+    faces: Integers2
+    near_sq: Floats
+    features: Integers2
+    least_sq: Floats
 
 
-@shared
+@inline
 def new_refine_queue():
     """Arrays for `N_WAITING` face pairs."""
     return RefineQueue(
@@ -205,7 +182,7 @@ class RefineBounds(NamedTuple):
 
 
 @inline(force=True)
-def settle(table, bodies, waiting, n_waiting, cutoff, bounds, best):
+def settle(bodies, waiting, n_waiting, cutoff, bounds, best):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
@@ -213,7 +190,7 @@ def settle(table, bodies, waiting, n_waiting, cutoff, bounds, best):
         cutoff: of `FeatureCutoff`, for the faces nearest so far.
         bounds: of `RefineBounds`.
     """
-    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    a, b = bodies.surface_a, bodies.surface_b
     margin = cutoff.margin
     for i in range(n_waiting):
         face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
@@ -233,7 +210,7 @@ def settle(table, bodies, waiting, n_waiting, cutoff, bounds, best):
         features = waiting.features
         seen = FeatureCandidate(near_sq, features[i, 0], features[i, 1], features[i, 2])
         faces = parts(bodies, face_a, face_b)
-        best = refined_of(table, faces, seen, FeatureCutoff(limit, margin), best)
+        best = refine(faces, seen, FeatureCutoff(limit, margin), best)
     return best
 
 

@@ -5,7 +5,7 @@ rounding, another face's feature beside it is measured, which is as near only wh
 wait with a lower bound in place of what was seen. Not for: what is seen (`face_pair`).
 """
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import gap_sq, inverse, move, row
 from clearance.kernels.features.bounds import lower_bound_faces_across, lower_bound_faces_beside
 from clearance.kernels.features.face_pair import has_plane

@@ -2,7 +2,7 @@
 
 import math
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import along, cross, dot, sub
 
 

@@ -7,12 +7,11 @@ A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: wh
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import FEATURES, apart, at_address
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
     FAR,
-    FRAMES_AT_REST,
     ZERO3,
+    Frames,
     Wide,
     Wide3,
     along3,
@@ -161,7 +160,8 @@ def two_segments(p0, p1, q0, q1):
     return PointPair(gap_sq, along3(p0, on_p, u), along3(q0, on_q, v), w, dot3(w, w), p0)
 
 
-def _wide_feature(frames, one, two):
+@inline
+def wide_feature(frames, one, two):
     """The pair of a simplex of a and one of b, of which one is a corner or both are edges."""
     x = point_of_a(frames, one.u)
     y = point_of_b(frames, two.u)
@@ -181,11 +181,6 @@ def _wide_feature(frames, one, two):
     if swapped:
         return PointPair(found.gap_sq, found.q, found.p, negative3(found.w), found.w_sq, x)
     return found
-
-
-wide_feature = kernel(_wide_feature)
-wide_feature_here = inline(one_caller=True)(_wide_feature)
-"""The same, copied into the caller."""
 
 
 @inline
@@ -230,22 +225,11 @@ NOTHING_SIZED = PointDistance(
 )
 
 
-def _features_like():
-    corner = Vec3(0.0, 0.0, 0.0)
-    return FRAMES_AT_REST, Simplex(1, corner, corner, corner), Simplex(1, corner, corner, corner)
-
-
-@apart(FEATURES, _features_like)
-def size_features(frames, one, two):
+@kernel
+def size_features(frames: Frames, one: Simplex, two: Simplex) -> PointDistance:
     """A feature pair in double-double; infinitely far where a corner's foot is not in the triangle."""
     pair = wide_feature(frames, one, two)
     if pair.gap_sq.hi == math.inf:
         return PointDistance(pair, pair.gap_sq, wide(0.0))
     length = root(pair.gap_sq)
     return PointDistance(pair, length, too_far(frames, one, two, pair, length))
-
-
-@inline
-def sized_of(table, frames, one, two):
-    """The same by address."""
-    return at_address(table, FEATURES, NOTHING_SIZED, (frames, one, two))

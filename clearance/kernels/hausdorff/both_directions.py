@@ -8,11 +8,12 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
-from clearance.kernels.curve.pair import CurvePair, Curves
+from clearance.kernels.curve.pair import CurveArrays, CurvePair, Curves
 from clearance.kernels.curve.scratch import (
     LARGEST_DEGREE,
     SearchScratch,
@@ -22,7 +23,7 @@ from clearance.kernels.curve.scratch import (
 from clearance.kernels.hausdorff.cutting import ROOM
 from clearance.kernels.hausdorff.interval_search import MANY, close, examine
 from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval, with_room
-from clearance.kernels.hausdorff.state import SEARCH_STATE
+from clearance.kernels.hausdorff.state import SEARCH_STATE, SearchGoal, SearchStates
 from clearance.kernels.hausdorff.trim import trim, trim_nodes
 from clearance.kernels.hausdorff.witness import write_witness
 
@@ -70,7 +71,9 @@ def _search_kept(pair, leaves, aim, drawn, sparing, kept, state, work, heap):
 
 
 @kernel
-def both_directions(one, two, shift_x, shift_y, aim):
+def both_directions(
+    one: CurveArrays, two: CurveArrays, shift_x: float, shift_y: float, aim: SearchGoal
+) -> tuple[SearchStates, Floats2]:
     """What the searches from A to B and from B to A know: (2,) SEARCH_STATE, and witnesses (2, 5).
 
     A witness is the point of the curve searched, the point of the other, each in its own frame, and its kind.

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.arc import EPS, arc_distance, segment_distance
 from clearance.kernels.curve.bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet

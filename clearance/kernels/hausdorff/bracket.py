@@ -7,7 +7,7 @@ Not for: the functions whose roots are sought.
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 
 MOST_STEPS = 60
 NARROWEST = 2e-16  # a bracket of local parameters that floats hardly divide

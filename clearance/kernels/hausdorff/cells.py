@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.interval import enclose
 from clearance.kernels.hausdorff.single_roots import (
     OPEN,

@@ -8,7 +8,7 @@ that the next bound is exact: the certificate. Not for: the bounds (`hausdorff.i
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.nearest import Foot, slide_to_foot
 from clearance.kernels.hausdorff.bounds import consider

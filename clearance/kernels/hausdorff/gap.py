@@ -4,15 +4,16 @@ Two parts are apart by at least the gap of their control polygons along any dire
 middle points this bound errs by the square of their length alone. Not for: the Hausdorff distance.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import ArrayOf
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, WIDTH
-from clearance.kernels.curve.arc_fit import BUCKET
+from clearance.kernels.curve.arc_fit import BUCKET, Leaves
 from clearance.kernels.curve.arcs import cells_apart
-from clearance.kernels.curve.bezier import cut, hypotenuse, jet
+from clearance.kernels.curve.bezier import Pieces, cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest, slide_to_foot
 from clearance.kernels.curve.pair import CurvePart, Curves
 from clearance.kernels.curve.scratch import new_scratch, widest
@@ -42,6 +43,7 @@ LEAST_DISTANCE = np.dtype(
         ],
     )
 )
+LeastDistances = Annotated[np.ndarray, ArrayOf(LEAST_DISTANCE, 1)]
 
 
 class LeafScratch(NamedTuple):
@@ -84,7 +86,7 @@ def _apart_at(curves, i, t, j, s):
     return hypotenuse(a.x + curves.shift_x - b.x, a.y + curves.shift_y - b.y)
 
 
-@inline(reference_counts=False)
+@inline
 def _closest_in(curves, part, other):
     """A pair of parameters near the least distance of two parts, ends and corners of the cell among them.
 
@@ -130,7 +132,7 @@ def _push_quarters(cells, top, part, other, long_a, long_b):
     return top
 
 
-@inline(reference_counts=False)
+@inline
 def _search_leaves(curves, part, other, gap, best, scratch):
     """Lowers `best` by the least distance of the parts of two leaves.
 
@@ -170,7 +172,7 @@ def _search_leaves(curves, part, other, gap, best, scratch):
         top = _push_quarters(cells, top, part, other, _extent(p, n), _extent(q, m))
 
 
-@inline(reference_counts=False)
+@inline
 def _polish(curves, la, lb, best, work):
     """Lowers `best` from foot to foot, to and fro, to a local minimum: most leaves are then never opened."""
     shift_x, shift_y = curves.shift_x, curves.shift_y
@@ -214,7 +216,9 @@ def _search_buckets(curves, la, first_a, lb, first_b, gap, best, scratch):
 
 
 @kernel
-def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
+def least_distance(
+    pa: Pieces, la: Leaves, pb: Pieces, lb: Leaves, shift_x: float, shift_y: float, gap: float
+) -> LeastDistances:
     """The least distance of two curves: (1,) LEAST_DISTANCE."""
     out, curves = np.zeros(1, LEAST_DISTANCE), Curves(pa, pb, shift_x, shift_y)
     best, planes = out[0], new_scratch(max(widest(pa), widest(pb)), CELL_ROWS)

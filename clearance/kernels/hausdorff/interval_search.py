@@ -8,7 +8,7 @@ budget leaves open is never above the greatest bound in the queue, which the ans
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.follow import (
     SHARES,
@@ -167,7 +167,7 @@ def _place_of_bound(curves, interval, feet, share, state):
     return t0, feet.start
 
 
-@inline(reference_counts=False)
+@inline
 def examine(pair, aim, interval, state, work, heap, n_open):
     """Settles an interval of A or puts its parts into the queue.
 
@@ -208,7 +208,7 @@ def examine(pair, aim, interval, state, work, heap, n_open):
     return foot.leaf, n_open
 
 
-@inline(reference_counts=True)
+@inline
 def close(pair, aim, state, work, heap, n_open):
     """Works the queue off, the greatest bound first, until nothing open matters; returns the heap.
 

@@ -10,9 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Floats2, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle
-from clearance.kernels.curve.bezier import hypotenuse, jet
+from clearance.kernels.curve.arc_fit import Leaves
+from clearance.kernels.curve.bezier import Pieces, hypotenuse, jet
 from clearance.kernels.hausdorff.trim import arc_covers, field
 
 
@@ -27,8 +29,8 @@ class Page(NamedTuple):
     x0: float
     y0: float
     pixel: float
-    depth: np.ndarray
-    colour: np.ndarray
+    depth: Floats2
+    colour: Integers2
 
 
 @inline
@@ -40,7 +42,7 @@ def _pixel_of(x, y, page):
 
 
 @kernel
-def greatest_depth(pa, la, shift_x, shift_y, page):
+def greatest_depth(pa: Pieces, la: Leaves, shift_x: float, shift_y: float, page: Page) -> float:
     """The greatest depth read along curve A on the page of B."""
     most = 0.0
     for k in range(la.arcs.shape[0]):
@@ -68,7 +70,9 @@ def _likeliest(points, candidates, arcs):
 
 
 @kernel
-def paper_kept(la, lb, shift_x, shift_y, page, lower_bound):
+def paper_kept(
+    la: Leaves, lb: Leaves, shift_x: float, shift_y: float, page: Page, lower_bound: float
+) -> Flags:
     """Which arcs of A (n,) equations (8) to (10) leave: one arc of B for each, epsilon 1 taken off once."""
     kept = np.ones(la.arcs.shape[0], np.bool_)
     points, candidates = np.empty((3, 2)), np.empty(3, np.int64)
@@ -91,7 +95,7 @@ def paper_kept(la, lb, shift_x, shift_y, page, lower_bound):
 
 
 @kernel
-def draw_page(lb, x0, y0, pixel, n_rows, n_columns):
+def draw_page(lb: Leaves, x0: float, y0: float, pixel: float, n_rows: int, n_columns: int) -> Page:
     """The `Page` (n_rows, n_columns) whose lower left corner is (x0, y0), drawn about B."""
     depth, colour = np.empty((n_rows, n_columns)), np.empty((n_rows, n_columns), np.int64)
     xs = x0 + pixel * (np.arange(n_columns) + 0.5)

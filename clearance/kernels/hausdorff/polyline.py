@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import Chord
 from clearance.kernels.hausdorff.bounds import keep_best
 from clearance.kernels.hausdorff.bracket import (
@@ -34,6 +34,7 @@ from clearance.kernels.hausdorff.segments import (
     nearest_segment,
     point_at,
 )
+from clearance.kernels.hausdorff.state import SearchGoal, SearchStates
 
 SEEDS = 512  # midpoints of A that give a good lower bound first
 MOST_OPEN = 256  # parts of a segment that may be open at once
@@ -152,7 +153,7 @@ def _first_span(lines, i, hint, state, open_nodes):
     return Span(0.0, near0, d0, 1.0, near1, d1)
 
 
-@inline(reference_counts=False)
+@inline
 def _solve_segment(lines, i, hint, aim, state, work):
     """Raises the lower bound to the greatest distance of segment `i` of A to B, proven; returns a hint."""
     spans, first = work.spans, _first_span(lines, i, hint, state, work.open_nodes)
@@ -204,7 +205,14 @@ def _search_bucket(lines, first, last, hint, aim, state, work):
 
 
 @kernel
-def directed_polyline(one, two, shift_x, shift_y, aim, states):
+def directed_polyline(
+    one: Segments,
+    two: Segments,
+    shift_x: float,
+    shift_y: float,
+    aim: SearchGoal,
+    states: SearchStates,
+):
     """Fills the first of `states` with the directed distance from A to B; stops once it passes `aim.limit`.
 
     Args:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 
 BOUND, T0, T1, HINT, WAS_CUT, PIECE = range(6)
 WIDTH = 6

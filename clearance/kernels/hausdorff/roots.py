@@ -5,9 +5,10 @@ Not for: proving that a root is the only one (`hausdorff.single_roots`).
 
 import math
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.nearest import slide_to_foot
+from clearance.kernels.curve.pair import CurvePart, Curves
 from clearance.kernels.hausdorff.bracket import (
     MOST_STEPS,
     NARROWEST,
@@ -17,7 +18,7 @@ from clearance.kernels.hausdorff.bracket import (
 )
 
 
-@inline(reference_counts=False)
+@inline
 def slide_from(curves, i, t, j, s):
     """The foot of A's point at (i, t) on piece `j` of B, followed from the parameter `s`: (s, distance)."""
     here = jet(curves.a, i, t)
@@ -27,8 +28,10 @@ def slide_from(curves, i, t, j, s):
     return s, hypotenuse(there.x - x, there.y - y)
 
 
-@kernel(reference_counts=False)
-def common_normal(curves, part, t, j, s):
+@kernel
+def common_normal(
+    curves: Curves, part: CurvePart, t: float, j: int, s: float
+) -> tuple[float, float]:
     """A root (t, s) of system (12) near the given one, held to A's `part` and to [0, 1]: Newton's method.
 
     Where the foot stands at an end of B's piece, s stays and the root is that of (11): the end's normal to A.
@@ -55,8 +58,10 @@ def common_normal(curves, part, t, j, s):
     return t, s
 
 
-@kernel(reference_counts=False)
-def self_bisector(curves, i, t_one, t_two, j, s, k, r):
+@kernel
+def self_bisector(
+    curves: Curves, i: int, t_one: float, t_two: float, j: int, s: float, k: int, r: float
+) -> float:
     """Where A between two parameters is equally far from two branches of B: system (13), regula falsi.
 
     At `t_one` the branch (j, s) is the nearer, at `t_two` the branch (k, r). Feet are followed by Newton's

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.arc import EPS, RADIUS, X0, X1, Y0, Y1, arc_middle
 from clearance.kernels.curve.bezier import hypotenuse, jet
 

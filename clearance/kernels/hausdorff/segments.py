@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.boxes import box_gap_sq, fill_inner_boxes
 
 BUCKET = 8  # segments in a box
@@ -18,8 +19,8 @@ STACK = 128  # nodes of a tree that may be open at once
 class Segments(NamedTuple):
     """A polyline: its control points (2 n, 3) and their `segment_boxes` (2 P, 4)."""
 
-    control: np.ndarray
-    boxes: np.ndarray
+    control: Floats2
+    boxes: Floats2
 
 
 class OpenNodes(NamedTuple):
@@ -30,7 +31,7 @@ class OpenNodes(NamedTuple):
 
 
 @kernel
-def segment_boxes(control):
+def segment_boxes(control: Floats2) -> Floats2:
     """The implicit tree of boxes (2 P, 4) over segments, rows 2 k and 2 k + 1 of `control`, in their order.
 
     Node k has the children 2 k and 2 k + 1; node P + b holds the segments from BUCKET b on.
@@ -74,7 +75,7 @@ def distance_to(control, k, x, y):
     return math.sqrt(foot_on(control, k, x, y)[0])
 
 
-@inline(reference_counts=False)
+@inline
 def nearest_segment(segments, x, y, hint, open_nodes):
     """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
     control, boxes, (nodes, gaps) = segments.control, segments.boxes, open_nodes

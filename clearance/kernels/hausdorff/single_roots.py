@@ -6,7 +6,7 @@ Boxes are (x0, x1, y0, y1), one for each order of derivative (`curve.interval.en
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.interval import dot, enclose, times
 
 PIECE, S0, S1, OPEN = range(4)  # columns of a cell of B: its part, whether its normal is still open

@@ -3,9 +3,11 @@
 Kernels read and write `state.lower`; Python reads `state["lower"]`. Not for: the search itself.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+
+from clearance.compile.declared import ArrayOf
 
 SEARCH_STATE = np.dtype(
     (
@@ -38,6 +40,9 @@ SEARCH_STATE = np.dtype(
         ],
     )
 )
+
+
+SearchStates = Annotated[np.ndarray, ArrayOf(SEARCH_STATE, 1)]
 
 
 class SearchGoal(NamedTuple):

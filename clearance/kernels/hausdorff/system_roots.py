@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.curve.bezier import jet
 from clearance.kernels.curve.nearest import closest_on
 from clearance.kernels.hausdorff.bounds import consider
@@ -60,7 +60,7 @@ def _is_normal(curves, i, t, j, s):
     return fine and g * g <= ROUNDED_SQ * gap * (b.dx * b.dx + b.dy * b.dy)
 
 
-@inline(reference_counts=False)
+@inline
 def _slope_at_foot(curves, i, t, cell, work):
     """The slope of half the squared distance along A at `t`, from A's foot in one cell of B."""
     s = cell[S0]
@@ -98,7 +98,7 @@ def _normal_to_piece(curves, part, cell, work):
     return _bisected_normal(curves, part, cell, at_start, work)
 
 
-@inline(reference_counts=False)
+@inline
 def try_normal(pair, part, cell, state, work):
     """System (12), or (11) against an end of B: the one root in T, by Newton's method from its middle.
 
@@ -127,7 +127,7 @@ def _difference(curves, i, t, one, two, work):
     return d - e, d + e
 
 
-@inline(reference_counts=False)
+@inline
 def try_bisector(pair, part, one, two, state, work):
     """System (13): the one point of T that is equally far from two cells, if there is one (regula falsi)."""
     state.n_bisectors += 1

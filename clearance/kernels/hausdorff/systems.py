@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.bezier import Pieces
 from clearance.kernels.curve.interval import derived, dot, enclose
-from clearance.kernels.curve.pair import CurvePair, CurvePart, Curves
+from clearance.kernels.curve.pair import CurveArrays, CurvePair, CurvePart, Curves
 from clearance.kernels.curve.scratch import SQUARES, new_scratch, widest
 from clearance.kernels.hausdorff.bounds import consider, extent_bound, upper_bound
 from clearance.kernels.hausdorff.cells import (
@@ -36,6 +37,7 @@ from clearance.kernels.hausdorff.single_roots import (
     normal_is_single,
     same_foot,
 )
+from clearance.kernels.hausdorff.state import SearchStates
 from clearance.kernels.hausdorff.system_roots import keep_root, try_bisector, try_normal
 
 A_ROOT = 40.0  # what finding a root costs beside excluding a cell
@@ -57,7 +59,7 @@ class BoxScratch(NamedTuple):
     room: np.ndarray
 
 
-@inline(reference_counts=False)
+@inline
 def _leave(pair, part, state, work):
     """Bounds an interval whose systems stay open: by its middle and extent, or side by side with B."""
     curves, i = pair.curves, part.piece
@@ -90,7 +92,7 @@ def _settle_normals(systems, part, table, level, n, boxes, state, work):
     return cost
 
 
-@inline(reference_counts=False)
+@inline
 def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
     """Whether system (13) for two cells has no root in T, or one, which is then found; and what that cost.
 
@@ -154,7 +156,7 @@ def _settle_level(systems, da, part, table, level, boxes, state, work):
     return n > 0, fits, cost
 
 
-@inline(reference_counts=True)
+@inline
 def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
     """Finds all candidates on one part of A; see the module.
 
@@ -203,7 +205,16 @@ def _consider_ends(pair, ends_a, a_part, state, work):
 
 
 @kernel
-def solve_directed(one, a_parts, two, b_parts, shift_x, shift_y, budget, states):
+def solve_directed(
+    one: CurveArrays,
+    a_parts: Floats2,
+    two: CurveArrays,
+    b_parts: Floats2,
+    shift_x: float,
+    shift_y: float,
+    budget: float,
+    states: SearchStates,
+):
     """Raises the first of `states` to the directed distance of parts of A, feet on parts of B.
 
     Its `upper` bounds the distance of the parts of A to B, `root` is the greatest distance of any root.

@@ -8,7 +8,8 @@ tested by its whole stadium, which is convex.
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Floats, Floats2, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import (
     COSINE,
     CX,
@@ -24,9 +25,9 @@ from clearance.kernels.curve.arc import (
     arc_middle,
     segment_distance,
 )
-from clearance.kernels.curve.arc_fit import BUCKET
-from clearance.kernels.curve.bezier import hypotenuse
-from clearance.kernels.curve.distance_map import draw, nearest_arc
+from clearance.kernels.curve.arc_fit import BUCKET, Leaves
+from clearance.kernels.curve.bezier import Pieces, hypotenuse
+from clearance.kernels.curve.distance_map import DistanceMap, draw, nearest_arc
 
 
 @inline
@@ -97,7 +98,7 @@ def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
     return distance <= enough, hint
 
 
-@inline(reference_counts=True)
+@inline
 def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack):
     """Clears `kept` for whole nodes of the tree that lie within the lower bound of one arc of the other.
 
@@ -130,7 +131,15 @@ def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack)
 
 
 @kernel
-def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
+def trim(
+    leaves: Leaves,
+    other: Leaves,
+    drawn: DistanceMap,
+    shift_x: float,
+    shift_y: float,
+    lower_bound: float,
+    kept: Flags,
+) -> int:
     """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance; returns how many stay.
 
     The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end,
@@ -164,7 +173,15 @@ def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
 
 
 @kernel
-def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
+def kept_arcs(
+    pa: Pieces,
+    la: Leaves,
+    lb: Leaves,
+    shift_x: float,
+    shift_y: float,
+    lower_bound: float,
+    pixel: float,
+) -> Flags:
     """Which arcs of A trimming leaves at a given lower bound (n,), for pictures and for tests."""
     stack = np.empty((96, 2))
     drawn = draw(pa, la, lb, shift_x, shift_y, pixel, stack)
@@ -174,7 +191,7 @@ def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
 
 
 @kernel
-def field(leaves, xs, ys, depth, which):
+def field(leaves: Leaves, xs: Floats, ys: Floats, depth: Floats2, which: Integers2):
     """Fills `depth` and `which` (len(ys), len(xs)) with the distance map of a curve over a whole page."""
     stack = np.empty((96, 2))
     hint = leaves.arcs.shape[0] // 2

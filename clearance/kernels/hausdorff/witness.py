@@ -2,10 +2,16 @@
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
-from clearance.kernels.curve.pair import Curves
-from clearance.kernels.hausdorff.state import COMMON_NORMAL, END, SELF_BISECTOR
+from clearance.kernels.curve.pair import CurveArrays, Curves
+from clearance.kernels.hausdorff.state import (
+    COMMON_NORMAL,
+    END,
+    SELF_BISECTOR,
+    SearchStates,
+)
 
 AT_THE_END = 1e-12  # a local parameter this near to 0 or 1 is that end
 SAME_POINT = 1e-14  # witnesses no farther apart, relative to their coordinates, have no direction
@@ -44,7 +50,9 @@ def write_witness(curves, ends_a, ends_b, state, out):
 
 
 @kernel
-def witness_of(one, two, shift_x, shift_y, states):
+def witness_of(
+    one: CurveArrays, two: CurveArrays, shift_x: float, shift_y: float, states: SearchStates
+) -> Floats:
     """The points (5,) that the first of `states` names, as `write_witness` gives them."""
     points = np.empty(5)
     curves = Curves(one.pieces, two.pieces, shift_x, shift_y)

@@ -5,7 +5,8 @@ Not for: refusing a polygon (`geometry.faces` looks at those again that are not)
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats3
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
 FLAT = 1e-12
@@ -38,7 +39,7 @@ def _seems_convex(corners):
 
 
 @kernel
-def seem_convex(polygons):
+def seem_convex(polygons: Floats3) -> bool:
     """True if all polygons (k, n, 3) turn one way only, once round, in a plane; False if one is in doubt."""
     for i in range(len(polygons)):
         if not _seems_convex(polygons[i]):

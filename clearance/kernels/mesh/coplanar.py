@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Floats2, Integers, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.union_find import find_root
 
@@ -21,11 +22,11 @@ DEGENERATE = -1
 class HalfEdges(NamedTuple):
     """The surface as rings of half-edges, (n,) each, see above; `face` is the face of each."""
 
-    tail: np.ndarray
-    ahead: np.ndarray
-    behind: np.ndarray
-    twin: np.ndarray
-    face: np.ndarray
+    tail: Integers
+    ahead: Integers
+    behind: Integers
+    twin: Integers
+    face: Integers
 
 
 class FacePlanes(NamedTuple):
@@ -36,9 +37,9 @@ class FacePlanes(NamedTuple):
         axes, signs: of `triangle_axes`.
     """
 
-    group: np.ndarray
-    axes: np.ndarray
-    signs: np.ndarray
+    group: Integers
+    axes: Integers
+    signs: Integers
 
 
 @inline
@@ -62,7 +63,7 @@ def _widest_axes(a, b, c):
 
 
 @kernel
-def triangle_axes(vertices, triangles):
+def triangle_axes(vertices: Floats2, triangles: Integers2) -> tuple[Integers, Integers]:
     """For each triangle an axis along which it has area and the exact sign of that area.
 
     Returns:
@@ -83,7 +84,9 @@ def triangle_axes(vertices, triangles):
 
 
 @kernel
-def coplanar_twins(vertices, triangles, axes, signs, twin):
+def coplanar_twins(
+    vertices: Floats2, triangles: Integers2, axes: Integers, signs: Integers, twin: Integers
+) -> Flags:
     """(3m,) True where half-edge 3t + s and its twin lie in one plane exactly, and face the same way."""
     terms = np.empty(N_TERMS)
     flags = np.zeros(len(twin), dtype=np.bool_)
@@ -115,7 +118,7 @@ def _is_between(vertices, u, v, w):
 
 
 @kernel
-def straight_corners(vertices, before, at, after):
+def straight_corners(vertices: Floats2, before: Integers, at: Integers, after: Integers) -> Flags:
     """(n,) True where `at` lies exactly on the straight line between `before` and `after`, strictly inside."""
     terms = np.empty(N_TERMS)
     flags = np.zeros(len(at), dtype=np.bool_)
@@ -147,13 +150,14 @@ def _stays_convex(vertices, u, v, w, axis, sign, terms):
 
 
 @kernel
-def absorb_needles(vertices, half_edges, axes, parents):
+def absorb_needles(vertices: Floats2, half_edges: HalfEdges, axes: Integers, parents: Integers):
     """Gives the corner of each zero-area triangle to the proper face across its longest edge.
 
     Changes `ahead`, `behind`, `parents` (face joined into face) and `twin` (-2 for an edge taken away) in
     place. The face keeps its points: the corner lies exactly on its edge.
     """
-    tail, ahead, behind, twin, face = half_edges
+    tail, twin, face = half_edges.tail, half_edges.twin, half_edges.face
+    ahead, behind = half_edges.ahead, half_edges.behind
     changed = True
     while changed:
         changed = False
@@ -173,7 +177,9 @@ def absorb_needles(vertices, half_edges, axes, parents):
 
 
 @kernel
-def merge_rings(vertices, order, half_edges, planes, parents):
+def merge_rings(
+    vertices: Floats2, order: Integers, half_edges: HalfEdges, planes: FacePlanes, parents: Integers
+):
     """Takes away, in `order`, each edge between two faces of one plane whose union is convex.
 
     Args:
@@ -182,8 +188,9 @@ def merge_rings(vertices, order, half_edges, planes, parents):
 
     Source: Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983 (their test at each end).
     """
-    tail, ahead, behind, twin, face = half_edges
-    group, axes, signs = planes
+    tail, twin, face = half_edges.tail, half_edges.twin, half_edges.face
+    ahead, behind = half_edges.ahead, half_edges.behind
+    group, axes, signs = planes.group, planes.axes, planes.signs
     terms = np.empty(N_TERMS)
     for h in order:
         g = twin[h]
@@ -207,9 +214,11 @@ def merge_rings(vertices, order, half_edges, planes, parents):
 
 
 @kernel
-def rings(half_edges, parents, n_faces):
+def rings(
+    half_edges: HalfEdges, parents: Integers, n_faces: int
+) -> tuple[Integers, Integers, Integers]:
     """The faces that are left, as (starts, flat vertices, index of the first face that went into each)."""
-    tail, ahead, _, twin, face = half_edges
+    tail, ahead, twin, face = half_edges.tail, half_edges.ahead, half_edges.twin, half_edges.face
     starts = np.zeros(n_faces + 1, dtype=np.int64)
     flat = np.empty(len(tail), dtype=np.int64)
     label = np.empty(n_faces, dtype=np.int64)

@@ -3,26 +3,9 @@
 Each lane holds what a loop over the corners would give, to the bit. Not for: the numbers themselves (`lanes`).
 """
 
-import numpy as np
-
-from clearance.compile.deferred import defer
-from clearance.compile.jit import DISABLED, inline
-from clearance.kernels.arithmetic.lanes import lane
+from clearance.compile.decorators import inline
+from clearance.kernels.arithmetic.lanes import lane, lanes_of
 from clearance.kernels.arithmetic.vec3 import Vec3, row
-
-if DISABLED:
-
-    def lanes_of(a, b, c, d):
-        """Four numbers in lanes."""
-        return np.array([a, b, c, d])
-else:
-
-    def _make():
-        from clearance.kernels.arithmetic.lanes_of_numbers import lanes_of
-
-        return lanes_of
-
-    lanes_of = defer(globals(), _make)
 
 
 @inline(force=True)

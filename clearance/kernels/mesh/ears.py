@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d
 
 LEFT, STRAIGHT, RIGHT, GONE = 1, 0, -1, 2
@@ -41,7 +42,7 @@ class CornerRing(NamedTuple):
     counts: np.ndarray
 
 
-@inline(reference_counts=True)
+@inline
 def _turn(points, i, j, k, terms):
     """The exact sign of the turn i, j, k: 1 to the left."""
     return orient2d(
@@ -49,13 +50,13 @@ def _turn(points, i, j, k, terms):
     )
 
 
-@inline(reference_counts=True)
+@inline
 def _cell(value, least, per_length, n_side, axis):
     """The column or row of the grid that a coordinate is in; the same or a later one for a greater coordinate."""
     return int(min(n_side - 1.0, max(0.0, (value - least[axis]) * per_length[axis])))
 
 
-@inline(reference_counts=True)
+@inline
 def _grid(points, turns, frame):
     """The corners that may block an ear, sorted by cell: (starts, corners)."""
     least, per_length, n_side = frame
@@ -77,12 +78,12 @@ def _grid(points, turns, frame):
     return starts, corners
 
 
-@inline(reference_counts=True)
+@inline
 def _is_same(points, i, j):
     return points[i, 0] == points[j, 0] and points[i, 1] == points[j, 1]
 
 
-@inline(reference_counts=True)
+@inline
 def _is_right(points, i, j, k):
     """Whether i, j, k turn right by more than rounding; where they hardly turn this says no, and takes no time."""
     left = (points[j, 0] - points[i, 0]) * (points[k, 1] - points[i, 1])
@@ -90,7 +91,7 @@ def _is_right(points, i, j, k):
     return left - right < -_CLEAR * (abs(left) + abs(right))
 
 
-@inline(reference_counts=True)
+@inline
 def _holds(points, a, b, c, p, terms):
     """Whether corner p lies in the closed triangle a, b, c, and at none of its corners."""
     for axis in range(2):
@@ -108,7 +109,7 @@ def _holds(points, a, b, c, p, terms):
     )
 
 
-@inline(reference_counts=True)
+@inline
 def _rows_within(points, a, b, c, left, right):
     """The least and greatest ordinate that the triangle has between two abscissae, give or take a rounding."""
     low, high = np.inf, -np.inf
@@ -127,7 +128,7 @@ def _rows_within(points, a, b, c, left, right):
     return low, high
 
 
-@inline(reference_counts=True)
+@inline
 def _is_blocked(b, points, ring, grid, frame, terms):
     """Whether a corner that does not turn left lies in the triangle of corner b and its neighbours."""
     a, c = ring.behind[b], ring.ahead[b]
@@ -151,7 +152,7 @@ def _is_blocked(b, points, ring, grid, frame, terms):
     return False
 
 
-@inline(reference_counts=True)
+@inline
 def _take(i, points, ring, triangles, stamp, terms):
     """Cuts corner i off; its neighbours are turned anew and wait for the next round."""
     before, after = ring.behind[i], ring.ahead[i]
@@ -167,7 +168,7 @@ def _take(i, points, ring, triangles, stamp, terms):
             ring.counts[0] += 1
 
 
-@inline(reference_counts=True)
+@inline
 def _take_straight(points, ring, triangles, stamp, terms):
     """Cuts all straight corners off, for want of an ear."""
     for i in range(len(points)):
@@ -175,7 +176,7 @@ def _take_straight(points, ring, triangles, stamp, terms):
             _take(i, points, ring, triangles, stamp, terms)
 
 
-@inline(reference_counts=True)
+@inline
 def _take_ears(looked_at, points, ring, triangles, grid, frame, stamp, terms):
     """One round: cuts off the ears among some corners, but no two neighbours, which would make needles."""
     ring.counts[0] = 0
@@ -188,7 +189,7 @@ def _take_ears(looked_at, points, ring, triangles, grid, frame, stamp, terms):
                 _take(i, points, ring, triangles, stamp, terms)
 
 
-@inline(reference_counts=True)
+@inline
 def _ring_of(points, terms):
     """The ring of all corners."""
     n = len(points)
@@ -200,7 +201,7 @@ def _ring_of(points, terms):
     return CornerRing(ahead, behind, turns, np.full(n, -1), np.empty(n, dtype=np.int64), counts)
 
 
-@inline(reference_counts=True)
+@inline
 def _frame_of(points, turns):
     """The grid's corner, its cells per length, and how many there are a side: one for each blocking corner."""
     n_side = int(np.sqrt(np.count_nonzero(turns != LEFT))) + 1
@@ -212,7 +213,7 @@ def _frame_of(points, turns):
     return least, per_length, n_side
 
 
-@inline(reference_counts=True)
+@inline
 def _cut_rounds(points, ring, triangles, grid, frame, most, terms):
     """Cuts ears, round after round, until three corners are left; then `CUT`."""
     looked_at, all_are = np.flatnonzero(ring.turns == LEFT), True
@@ -236,7 +237,7 @@ def _cut_rounds(points, ring, triangles, grid, frame, most, terms):
 
 
 @kernel
-def cut_ears(points, triangles, most):
+def cut_ears(points: Floats2, triangles: Integers2, most: int) -> tuple[int, int]:
     """Fills (k - 2, 3) `triangles` with the positions of the triangles of a (k, 2) polygon that turns left.
 
     Args:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
@@ -127,7 +128,15 @@ def _cut_off(points, flat, start, end, normal):
 
 
 @kernel
-def face_planes(points, starts, flat, normals, blunt, width, bent):
+def face_planes(
+    points: Floats2,
+    starts: Integers,
+    flat: Integers,
+    normals: Floats2,
+    blunt: Floats,
+    width: Floats,
+    bent: Flags,
+):
     """Fills the fields of `Surface` for all faces."""
     terms = np.empty(N_TERMS)
     for face in range(len(starts) - 1):

@@ -27,7 +27,7 @@ Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001 (local minimu
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
     lanes_at,

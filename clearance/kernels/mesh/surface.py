@@ -9,7 +9,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import (
+    Bits16,
+    Flags,
+    Floats,
+    Floats2,
+    Integers,
+    Integers2,
+    Shorts,
+    Shorts2,
+    Singles2,
+)
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, lanes_at, number_at
 from clearance.kernels.arithmetic.vec3 import Vec3, along
 
@@ -56,44 +67,31 @@ class Surface(NamedTuple):
             corner each, no edges and no normal; its root's box holds the balls, other boxes their centres.
     """
 
-    vertices: np.ndarray
-    exact: np.ndarray
-    face_starts: np.ndarray
-    face_vertices: np.ndarray
-    normals: np.ndarray
-    blunt: np.ndarray
-    width: np.ndarray
-    bent: np.ndarray
-    corner_normals: np.ndarray
-    vertex_starts: np.ndarray
-    owned_vertices: np.ndarray
-    edge_starts: np.ndarray
-    owned_edges: np.ndarray
-    owns: np.ndarray
-    centres: np.ndarray
-    boxes: np.ndarray
-    cones: np.ndarray
-    children: np.ndarray
-    roots: np.ndarray
-    probe_starts: np.ndarray
-    probes: np.ndarray
-    turns: np.ndarray
-    cap_starts: np.ndarray
-    caps: np.ndarray
-    radii: np.ndarray
-
-
-def surface_like():
-    """A surface of nothing, by its types."""
-    points, numbers = np.empty((0, 3)), np.empty(0)
-    indices, pairs = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
-    singles = np.empty((0, 4), dtype=np.float32)
-    return Surface(
-        points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
-        indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
-        np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
-        indices, indices, indices, np.empty(0, dtype=np.int32), indices, points, numbers,
-    )  # fmt: skip
+    vertices: Floats2
+    exact: Floats2
+    face_starts: Integers
+    face_vertices: Integers
+    normals: Floats2
+    blunt: Floats
+    width: Floats
+    bent: Flags
+    corner_normals: Floats2
+    vertex_starts: Integers
+    owned_vertices: Integers
+    edge_starts: Integers
+    owned_edges: Integers2
+    owns: Bits16
+    centres: Floats2
+    boxes: Singles2
+    cones: Singles2
+    children: Shorts2
+    roots: Integers
+    probe_starts: Integers
+    probes: Integers
+    turns: Shorts
+    cap_starts: Integers
+    caps: Floats2
+    radii: Floats
 
 
 class Box(NamedTuple):
@@ -164,7 +162,7 @@ def group_of(surface, group):
 @inline(force=True)
 def is_leaf(surface, node):
     """True if the node is of one face, which is `children[node, 0]`."""
-    return surface.children[node, 1] == 0
+    return np.int64(surface.children[node, 1]) == 0
 
 
 @inline(force=True)

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2, Integers, Shorts2, Singles2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.lanes import WIDTH
 
 OUTWARD = 1.0 + 1e-15
@@ -240,7 +241,14 @@ def _write_group(room, n_parts, group, centres, boxes):
 
 
 @kernel
-def build_tree(points, starts, order, centres, boxes, children):
+def build_tree(
+    points: Floats2,
+    starts: Integers,
+    order: Integers,
+    centres: Floats2,
+    boxes: Singles2,
+    children: Shorts2,
+) -> int:
     """Fills the nodes of a tree over the f faces in `order`, with corners `points[starts[i]:starts[i + 1]]`.
 
     The order becomes that of the leaves. `centres`, `boxes` and `children` are those of `Surface`, with room for

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats3, Integers, Integers2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import row
 from clearance.kernels.features.face_pair import Hit, write_points
 
@@ -24,14 +25,14 @@ class AnswerCache(NamedTuple):
         faces: (p, 2). points: (p, 2, 3) in the world [m].
     """
 
-    asked: np.ndarray
-    gaps_sq: np.ndarray
-    lower_bounds: np.ndarray
-    faces: np.ndarray
-    points: np.ndarray
+    asked: Integers
+    gaps_sq: Floats
+    lower_bounds: Floats
+    faces: Integers2
+    points: Floats3
 
 
-@shared
+@inline
 def no_answers(n_pairs):
     """Nothing is known yet."""
     return AnswerCache(

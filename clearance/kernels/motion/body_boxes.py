@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import defect_of
 from clearance.kernels.arithmetic.vec3 import dot, move, row, sub, turn
 from clearance.kernels.features.bounds import LEAN, SLACK, between_boxes, lower_bound_between
@@ -29,15 +30,15 @@ class BodyBoxes(NamedTuple):
         moves: (bodies,) how often each body had moved when its box was placed, or -1.
     """
 
-    axes: np.ndarray
-    centres: np.ndarray
-    halves: np.ndarray
-    radii: np.ndarray
-    slacks: np.ndarray
-    moves: np.ndarray
+    axes: Floats3
+    centres: Floats2
+    halves: Floats2
+    radii: Floats
+    slacks: Floats
+    moves: Integers
 
 
-@shared
+@inline
 def new_body_boxes(n_bodies):
     """Boxes of which none is placed yet."""
     return BodyBoxes(

@@ -6,19 +6,26 @@ Python cost more than all that they do. Not for: poses that are known (`search.b
 
 import numpy as np
 
-from clearance.compile.jit import kernel
-from clearance.kernels.motion.kinematics import place_links
-from clearance.kernels.search.boxes_along_path import steps_together
+from clearance.compile.declared import Floats2, Floats4, Integers2
+from clearance.compile.decorators import kernel
+from clearance.kernels.motion.kinematics import Links, place_links
+from clearance.kernels.search.boxes_along_path import CarriedBoxes, steps_together
 
 
 @kernel
-def overlaps_at_positions(links, boxes, pairs, positions, poses, spans, table):
+def overlaps_at_positions(
+    links: Links,
+    boxes: CarriedBoxes,
+    pairs: Integers2,
+    positions: Floats2,
+    poses: Floats4,
+    spans: Integers2,
+) -> int:
     """The number of pairs whose boxes may overlap at one of n positions.
 
     Args:
         links: a `Links`. boxes, pairs, spans: as `steps_together` takes them, and fills them.
         positions: (n, columns) [rad or m]. poses: (n, links, 4, 4) [m] where those of the links are written.
-        table: as `call` hands it over; nothing here is compiled apart.
     """
     all_wanted = np.zeros(len(links.parents), dtype=np.int64)
     for i in range(len(positions)):

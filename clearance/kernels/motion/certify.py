@@ -16,20 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import (
-    CERTIFY,
-    LentArgument,
-    apart,
-    at_address,
-    borrow,
-    lend,
-    table_like,
-)
+from clearance.compile.declared import Floats, Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import box_of, surface_like
+from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.certify_pair import allowed_gap, hold
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
@@ -46,8 +39,8 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box,
     orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import NO_BALLS, JointPath
-from clearance.kernels.motion.kinematics import BALL, Links
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.kinematics import BALL
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -88,8 +81,8 @@ class CertifiedSteps(NamedTuple):
 
     first: int
     last: int
-    order: np.ndarray
-    clearance: np.ndarray
+    order: Integers
+    clearance: Floats
 
 
 class CertificateGoal(NamedTuple):
@@ -115,10 +108,10 @@ class IntervalBounds(NamedTuple):
         pair: (n,) which pair was seen there, or -1.
     """
 
-    lower: np.ndarray
-    upper: np.ndarray
-    share: np.ndarray
-    pair: np.ndarray
+    lower: Floats
+    upper: Floats
+    share: Floats
+    pair: Integers
 
 
 class PairInterval(NamedTuple):
@@ -181,7 +174,7 @@ def _pose_of(world, body, middle):
 
 
 @inline
-def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally, table):
+def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally):
     """`hold` of a pair at the state in `middle`.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -191,13 +184,20 @@ def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally, tabl
     tally[1] += 1
     witness_faces = state.witness_faces[pair]
     bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
-    held = hold(bodies, witness_faces, motion, least, aim, state.scratch, tally, table)
+    held = hold(bodies, witness_faces, motion, least, aim, state.scratch, tally)
     witness_faces[0], witness_faces[1] = held.face_a, held.face_b
     return held
 
 
 @kernel
-def certify(surface, motion, steps, aim, bounds, tally, table):
+def certify(
+    surface: Surface,
+    motion: CertifiedMotion,
+    steps: CertifiedSteps,
+    aim: CertificateGoal,
+    bounds: IntervalBounds,
+    tally: Integers,
+):
     """Fills `bounds` for the motion between some steps.
 
     Args:
@@ -209,34 +209,18 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
     if (world.links.kinds == BALL).any():
         raise AssertionError("a joint that turns takes its place")
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
-    state = CertifyState(
+    state = lend(CertifyState(
         new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 9)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
-    )  # fmt: skip
-    at_address(table, CERTIFY, 0, (lend(surface), motion, steps, aim, bounds, tally, state, table))
+    ))  # fmt: skip
+    _certify(lend(surface), motion, steps, aim, bounds, tally, state)
 
 
-def _like():
-    numbers, places, rows = np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 0))
-    pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
-    links = Links(places, places, rows, poses, places, numbers, numbers)
-    middle = IntervalMiddle(numbers, numbers, numbers, poses)
-    state = CertifyState(middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
-    world = World(places, places, places, poses, pairs, links)
-    path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
-    motion = CertifiedMotion(world, path)
-    steps = CertifiedSteps(0, 0, places, numbers)
-    aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
-    return (
-        LentArgument(surface_like()), motion, steps, aim, bounds, places, state, table_like()
-    )  # fmt: skip
-
-
-@apart(CERTIFY, _like)
-def _certify(lent, motion, steps, aim, bounds, tally, state, table):
+@inline
+def _certify(lent, motion, steps, aim, bounds, tally, state):
     """`certify`, with the arrays of its state."""
-    surface = borrow(lent)
+    surface = lent
     world, order, clearance = motion.world, steps.order, steps.clearance
     n_pairs = len(world.pairs)
     displacements, lower_bounds = state.displacements, state.lower_bounds
@@ -257,9 +241,7 @@ def _certify(lent, motion, steps, aim, bounds, tally, state, table):
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over = _hold_interval(
-                lent, surface, motion, step, pair, least, aim, state, tally, table
-            )
+            over = _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally)
             lower_bounds[pair] = (over.lower_bound + moved) * KEPT_DOWN
             if over.share >= 0.0:
                 least, share, seen = over.least, over.share, pair
@@ -279,7 +261,7 @@ def _loosened_in(surface, world, body, state):
 
 
 @inline
-def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, table):
+def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally):
     """`hold` of a pair over the whole interval after `step`, halved until that is done.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -292,7 +274,7 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
         motion_bound_at(state.motion_bounds, body_b),
         b_moves,
     )
-    held = _hold_pair(lent, world, pair, state.whole, moving, least, aim, state, tally, table)
+    held = _hold_pair(lent, world, pair, state.whole, moving, least, aim, state, tally)
     share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
         return PairInterval(held.lower_bound, held.least, share)
@@ -315,7 +297,7 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
             _loosened_in(surface, world, body_b, state),
             b_moves,
         )
-        held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)
+        held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally)
         if held.least < least:
             least, share = held.least, 0.5 * (low + high)
         if least <= 0.0:

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import larger, marks_within
 from clearance.kernels.features.bounds import (
     direction_beside,
@@ -21,7 +20,7 @@ from clearance.kernels.features.bounds import (
     rounding_slack,
 )
 from clearance.kernels.features.face_pair import may_meet, nearest_of_faces, nothing_yet
-from clearance.kernels.features.meeting import meeting_of
+from clearance.kernels.features.meeting import meeting
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.joint_motion_bound import (
@@ -155,7 +154,7 @@ def allowed_gap(least, gap, fail):
     return max(min(gap, 0.5 * (least - fail)), gap * FINEST)
 
 
-@inline(one_caller=True)
+@inline
 def _begin(a, b, faces, least, aim, moving):
     """What is seen first: the faces that were nearest before, if any were."""
     m, margin = faces.frames.m, margin_of(moving.slack)
@@ -169,11 +168,11 @@ def _begin(a, b, faces, least, aim, moving):
 
 
 @inline
-def _meet(a, b, faces, margin, scratch, table):
+def _meet(a, b, faces, margin, scratch):
     """True if two faces have a point in common, by exact signs."""
     if not may_meet(a, faces.a, b, faces.b, faces.frames.m, margin):
         return False
-    return meeting_of(table, faces, scratch.exact).found
+    return meeting(faces, scratch.exact).found
 
 
 @inline
@@ -183,8 +182,8 @@ def _face_lower_bound(a, b, faces, direction, moving):
     return apart - _faces_moved_along(a, b, faces, direction, moving.motion)
 
 
-@inline(one_caller=True)
-def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, table):
+@inline
+def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally):
     """([m] a lower bound on the faces' distance over the interval, what is seen then, True if they touch).
 
     Many arguments: it is inlined into its one caller, whose locals they are.
@@ -204,7 +203,7 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
         near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
         own = direction_between(near.p, near.q, m)
         apart = lower_bound_faces_along_direction(a, face_a, b, face_b, own) - slack
-        if apart <= 0.0 and _meet(a, b, faces, margin, scratch, table):
+        if apart <= 0.0 and _meet(a, b, faces, margin, scratch):
             touches = True
         else:
             bound = max(bound, apart - _faces_moved_along(a, b, faces, own, moving.motion))
@@ -234,7 +233,7 @@ def _seen_of_balls(search, asked, balls):
 
 
 @inline
-def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
+def hold(bodies, witness_faces, motion, least, aim, scratch, tally):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
     The search is given up where that cannot be proven, unless the bodies stand still.
@@ -244,7 +243,7 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
         witness_faces: (2,) the faces that were nearest before, or -1.
         motion: a `PairMotion`. least: [m] asked about. aim: a `CertificateGoal`.
     """
-    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    a, b = bodies.surface_a, bodies.surface_b
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
     balls = radii_of(a, bodies.a, b, bodies.b).both
@@ -263,7 +262,10 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
             return PairProof(0.0, 0.0, True, search.face_a, search.face_b)
         n_waiting -= 1
         target = search.least - search.allowed
-        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
+        node_a, node_b = (
+            np.int64(scratch.nodes[n_waiting, 0]),
+            np.int64(scratch.nodes[n_waiting, 1]),
+        )
         bound = scratch.bounds[n_waiting]
         if bound >= target:
             lower_bound = min(lower_bound, bound)
@@ -271,7 +273,7 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             faces = parts(bodies, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
             bound, search, touches = _look_at_faces(
-                a, b, faces, bound, moving, search, aim, scratch, tally, table
+                a, b, faces, bound, moving, search, aim, scratch, tally
             )
             if touches or _balls_touch(search, balls):
                 return PairProof(0.0, 0.0, True, faces.a, faces.b)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.decorators import inline
 from clearance.kernels.motion.clock_tree import is_leaf_of_clock
 
 DEPTH = 256
@@ -58,7 +58,7 @@ class RectangleStack(NamedTuple):
     listed: np.ndarray
 
 
-@shared
+@inline
 def new_rectangle_stack(n_pairs):
     """Room for rectangles, of which none waits."""
     return RectangleStack(

@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel, shared
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import displacement
-from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place_box
 from clearance.kernels.motion.interval_middle import (
     begin_arcs,
@@ -25,8 +26,10 @@ from clearance.kernels.motion.interval_middle import (
     note_motion_bound,
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
+from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import place_by_link
 from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.motion.world import World
 
 ANY_TURN = math.pi
 """[rad] No body turns farther from where it was."""
@@ -48,19 +51,19 @@ class ClockTree(NamedTuple):
     """
 
     start: int
-    first: np.ndarray
-    last: np.ndarray
-    left: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    middle: np.ndarray
-    moved: np.ndarray
-    poses: np.ndarray
-    motion_bounds: np.ndarray
+    first: Integers
+    last: Integers
+    left: Integers
+    low: Floats
+    high: Floats
+    middle: Floats
+    moved: Floats2
+    poses: Floats3
+    motion_bounds: Floats2
     boxes: BodyBoxes
 
 
-@shared
+@inline
 def new_clock_tree(start, n_leaves, n_bodies):
     """A tree of so many leaves that nothing is known of."""
     n_nodes, n_rows = 2 * n_leaves - 1, n_leaves * n_bodies
@@ -159,7 +162,9 @@ def _fill_moved(surface, world, bodies, tree):
 
 
 @kernel
-def fill_steps_tree(surface, world, path, bodies, tree):
+def fill_steps_tree(
+    surface: Surface, world: World, path: JointPath, bodies: Integers, tree: ClockTree
+):
     """Fills a tree whose leaves are steps.
 
     Args:
@@ -182,7 +187,9 @@ def fill_steps_tree(surface, world, path, bodies, tree):
 
 
 @kernel
-def fill_intervals_tree(surface, world, path, bodies, tree):
+def fill_intervals_tree(
+    surface: Surface, world: World, path: JointPath, bodies: Integers, tree: ClockTree
+):
     """Fills a tree whose leaves are the intervals between steps; arguments as above."""
     n_leaves = len(tree.poses) // len(bodies)
     middle = new_middle(len(world.links.parents))

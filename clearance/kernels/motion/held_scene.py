@@ -1,32 +1,32 @@
 """A scene asked about at one configuration after another: what a look has found is held for the next one.
 
-Surfaces, bodies and all that is known lie in one structure on the heap, of which a call from Python hands over the
-address, as in `pair_query`. Not for: many steps that are known beforehand (`sweep`, whose answers these are).
+Surfaces, bodies and all that is known are written down once, and a call from Python hands over the address, as in
+`pair_query`. Not for: many steps that are known beforehand (`sweep`, whose answers these are).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.heap import HeapHandle
-from clearance.compile.jit import DISABLED, inline, kernel, lie_on_heap
-from clearance.compile.kernel_table import lend
+from clearance.compile.calls import Written
+from clearance.compile.declared import Floats2, Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.row_search import RowLook, nearest_by_boxes, nearest_of
 from clearance.kernels.motion.schedule import all_due
 from clearance.kernels.motion.sweep_goal import Goal
-from clearance.kernels.motion.sweep_rows import write_step
-from clearance.kernels.motion.sweep_state import carried, new_sweep_state
-from clearance.kernels.motion.world import box_bound
+from clearance.kernels.motion.sweep_rows import PairRows, StepRows, write_step
+from clearance.kernels.motion.sweep_state import SweepState, carried, new_sweep_state
+from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
 
 LOOK, WINNER = 0, 1
 
 AFRESH = 2**21
 """Looks after which nothing is carried on: displacements are bounded for twice as many (`placed.GROWTH`)."""
-
-_FIELDS = ("surface", "world", "goal", "pair_rows", "state", "at")
 
 
 class HeldScene(NamedTuple):
@@ -39,51 +39,76 @@ class HeldScene(NamedTuple):
         at: (2,) looks that came to their end since all was begun afresh, and the pair that was nearest.
     """
 
-    surface: object
-    world: object
-    goal: object
-    pair_rows: object
-    state: object
-    at: np.ndarray
+    surface: Surface
+    world: World
+    goal: Goal
+    pair_rows: PairRows
+    state: SweepState
+    at: Integers
 
 
-if not DISABLED:
+class Scene:
+    """A scene as Python holds it: written down once, so that a question hands over one address."""
 
-    class HeldScene(HeapHandle):
-        """The handle that Python has of a scene on the heap; fields as above."""
+    def __init__(self, surface, world, pair_rows, n_columns) -> None:
+        self._goal = Goal(np.full(len(world.pairs), np.inf), False, False)
+        self._given = surface, world, pair_rows, n_columns
+        self._at = np.zeros(2, dtype=np.int64)
+        self._begin_afresh()
 
-    lie_on_heap(HeldScene, _FIELDS)
+    def _begin_afresh(self) -> None:
+        surface, world, pair_rows, n_columns = self._given
+        state = new_sweep_state(world, n_columns, self._goal.within.copy())
+        self._at[LOOK] = 0
+        held = HeldScene(surface, world, self._goal, pair_rows, state, self._at)
+        self._held = Written(held, HeldScene)
+
+    def always_at(self, positions, rows, tally):
+        """`nearest_at` with these arrays for all times, (1, columns): their addresses are written down once."""
+        of, ask = None, None
+
+        def nearest() -> None:
+            nonlocal of, ask
+            if self._at[LOOK] == 0 or self._at[LOOK] >= AFRESH:
+                self._begin_afresh()
+            if of is not self._held:
+                of = self._held
+                ask = nearest_at_positions.prepared(of, positions, 0, rows, tally)
+            tally[:] = 0
+            ask()
+
+        return nearest
+
+    def nearest_at(self, positions, rows, tally) -> None:
+        """Fills `rows` for the joints at `positions` (k, columns) [rad or m]; `tally` as in `sweep`.
+
+        A call that did not come to its end leaves nothing to carry on: the next one begins afresh.
+        """
+        tally[:] = 0
+        done = 0
+        while done < len(positions):
+            if self._at[LOOK] == 0 or self._at[LOOK] >= AFRESH:
+                self._begin_afresh()
+            done = nearest_at_positions(self._held, positions, done, rows, tally)
 
 
 @kernel
-def hold_scene(surface, world, pair_rows, n_columns):
-    """A scene of which nothing is known yet; `n_columns` of joint positions."""
-    goal = Goal(np.full(len(world.pairs), np.inf), False, False)
-    state = new_sweep_state(world, n_columns, goal.within.copy())
-    return HeldScene(surface, world, goal, pair_rows, state, np.zeros(2, dtype=np.int64))
-
-
-@kernel
-def nearest_at_positions(held, positions, rows, tally, table):
-    """Fills `rows` for the joints at `positions` (k, columns) [rad or m]; `tally` as in `sweep`.
-
-    A call that did not come to its end leaves nothing to carry on: the next one begins afresh.
-    """
-    n_columns = positions.shape[1]
-    for i in range(len(tally)):
-        tally[i] = 0
-    for row in range(len(positions)):
-        if held.at[LOOK] == 0 or held.at[LOOK] >= AFRESH:
-            held.state = new_sweep_state(held.world, n_columns, held.goal.within.copy())
-            held.at[LOOK] = 0
+def nearest_at_positions(
+    held: HeldScene, positions: Floats2, first: int, rows: StepRows, tally: Integers
+) -> int:
+    """Fills `rows` from row `first` on, until all are done or all must begin afresh; the next row."""
+    row = first
+    while row < len(positions) and held.at[LOOK] < AFRESH:
         _look(
             held.surface, held.world, held.goal, held.pair_rows, held.state, held.at, positions[row], row, rows,
-            tally, table,
+            tally,
         )  # fmt: skip
+        row += 1
+    return row
 
 
-@inline(reference_counts=False)
-def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally, table):
+@inline
+def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -106,7 +131,7 @@ def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tall
     if carried(world, first, state) <= 0.0:
         first = nearest_by_boxes(surface, world, bodies, state, first)
     asked = RowLook(bodies, row, row, first, -1, np.inf, TO_THE_END)
-    best = nearest_of(lend(surface), world, asked, goal, state, pair_rows, tally, table)
+    best = nearest_of(lend(surface), world, asked, goal, state, pair_rows, tally)
     at[WINNER] = best.pair
     at[LOOK] = look + 1
     write_step(row, best.pair, best.hit, best.lowest, rows)

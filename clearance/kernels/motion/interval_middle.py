@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import Floats, Floats3
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_motion_bound import (
@@ -24,10 +25,10 @@ from clearance.kernels.motion.kinematics import orient, place_by_link
 class IntervalMiddle(NamedTuple):
     """The state in the middle of an interval or of a part of it."""
 
-    positions: np.ndarray  # (links,)
-    swing: np.ndarray  # (links,)
-    bend: np.ndarray  # (links,)
-    poses: np.ndarray  # (links, 4, 4)
+    positions: Floats  # (links,)
+    swing: Floats  # (links,)
+    bend: Floats  # (links,)
+    poses: Floats3  # (links, 4, 4)
 
 
 @inline

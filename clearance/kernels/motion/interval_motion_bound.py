@@ -21,7 +21,7 @@ Not for: the motion between the steps (`joint_motion_bound`).
 
 import math
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import defect_of
 from clearance.kernels.arithmetic.vec3 import cross, dot, rigid, row
 from clearance.kernels.mesh.surface import box_of, corner_of

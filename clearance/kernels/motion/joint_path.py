@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import Flags, Floats, Floats2, Floats3, Integers
+from clearance.compile.decorators import inline
 
 OUTWARD = 1.0 + 1e-12
 """Covers the rounding of a bound that is a sum of a few positive terms."""
@@ -36,9 +37,9 @@ class BallPath(NamedTuple):
             there; the angle [rad].
     """
 
-    links: np.ndarray
-    parent_from_joint: np.ndarray
-    arcs: np.ndarray
+    links: Integers
+    parent_from_joint: Floats3
+    arcs: Floats3
 
 
 ANGLE = 7
@@ -59,10 +60,10 @@ class JointPath(NamedTuple):
         balls: of the ball joints, which have no positions or velocities of their own.
     """
 
-    times: np.ndarray
-    positions: np.ndarray
-    velocities: np.ndarray
-    is_cubic: np.ndarray
+    times: Floats
+    positions: Floats2
+    velocities: Floats2
+    is_cubic: Flags
     balls: BallPath = NO_BALLS
 
 

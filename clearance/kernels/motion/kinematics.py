@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Floats3, Floats4, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, after, move, rigid
 
 FIXED, TURNING, SLIDING, BALL = 0, 1, 2, 3
@@ -25,13 +26,13 @@ class Links(NamedTuple):
         factors, offsets: (links,) its position is factor times that, plus offset [rad or m]; 1, 0 of a ball joint.
     """
 
-    parents: np.ndarray
-    kinds: np.ndarray
-    axes: np.ndarray
-    parent_from_joint: np.ndarray
-    columns: np.ndarray
-    factors: np.ndarray
-    offsets: np.ndarray
+    parents: Integers
+    kinds: Integers
+    axes: Floats2
+    parent_from_joint: Floats3
+    columns: Integers
+    factors: Floats
+    offsets: Floats
 
 
 @inline(force=True)
@@ -153,7 +154,7 @@ def place_by_link(links, positions, poses):
 
 
 @kernel
-def place_each(links, positions, poses):
+def place_each(links: Links, positions: Floats2, poses: Floats4):
     """`place_links` of all links for positions (n, columns) and poses (n, links, 4, 4)."""
     all_wanted = np.zeros(len(links.parents), dtype=np.int64)
     for step in range(len(positions)):
@@ -161,7 +162,15 @@ def place_each(links, positions, poses):
 
 
 @kernel
-def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions, poses):
+def forward(
+    world_from_base: Floats2,
+    parents: Integers,
+    kinds: Integers,
+    parent_from_joint: Floats3,
+    axes: Floats2,
+    positions: Floats2,
+    poses: Floats4,
+):
     """Fills `poses` (n, n_links, 4, 4) from joint `positions` (n, n_links) in link order.
 
     Link 0 is the root; link i > 0 hangs on link `parents[i]` < i by a joint of kind `kinds[i]` with the

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Integers
+from clearance.compile.decorators import inline
 
 
 class PairOrder(NamedTuple):
@@ -22,12 +23,12 @@ class PairOrder(NamedTuple):
         pairs: (p + 1,).
     """
 
-    starts: np.ndarray
-    ends: np.ndarray
-    pairs: np.ndarray
+    starts: Integers
+    ends: Integers
+    pairs: Integers
 
 
-@shared
+@inline
 def new_pair_order(n_bodies, n_pairs):
     """No pair is in a list yet."""
     return PairOrder(

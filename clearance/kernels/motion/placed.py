@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Floats3, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.features.bounds import displacement
 from clearance.kernels.motion.kinematics import NO_PARENT, place_links
 
@@ -27,15 +28,15 @@ class PlacedBodies(NamedTuple):
         looks: (bodies,) how often it was looked at after the first time.
     """
 
-    links: np.ndarray
-    wanted: np.ndarray
-    poses: np.ndarray
-    displacements: np.ndarray
-    moves: np.ndarray
-    looks: np.ndarray
+    links: Floats3
+    wanted: Integers
+    poses: Floats3
+    displacements: Floats
+    moves: Integers
+    looks: Integers
 
 
-@shared
+@inline
 def new_placed_bodies(n_links, n_bodies):
     """Bodies that are nowhere yet."""
     return PlacedBodies(

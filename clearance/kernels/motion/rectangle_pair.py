@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
@@ -114,7 +114,7 @@ def _bound_by_boxes(clocks, rectangle, pair, target):
 
 
 @inline
-def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
+def _settled_coarsely(surface, bodies, faces, moved, target, scratch):
     """(a bound [m], True if it is enough or none can be) of a pair over spans of several intervals.
 
     Args:
@@ -124,14 +124,14 @@ def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
     a, b = bodies.frames.a, bodies.frames.b
     if corners_apart(surface, faces, a, b) < limit:
         return 0.0, True
-    planes = apart_by_planes(surface, bodies, faces, limit, scratch, table)
+    planes = apart_by_planes(surface, bodies, faces, limit, scratch)
     if planes > limit:
         return planes - moved, True
     return 0.0, corners_apart(surface, faces, a, b) < limit
 
 
 @inline
-def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state, table):
+def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state):
     """What holds of a pair over a rectangle, as a `PairLook`; `lent` is `surface`, lent."""
     r, world, tally = rectangle, clocks.world, state.tally
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -154,13 +154,13 @@ def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state, table):
     one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
     if not goal.is_fine and (moved_b > moved_a or not one_a):  # else it may be halved for ever
         bound, settled = _settled_coarsely(
-            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch, table
+            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch
         )
         if settled:
             return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
     tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)
-    held = hold(bodies, faces, motion, goal.least, goal.aim, state.scratch, tally[1:], table)
+    held = hold(bodies, faces, motion, goal.least, goal.aim, state.scratch, tally[1:])
     faces[0], faces[1] = held.face_a, held.face_b
     is_done = held.completed and (goal.counts or held.lower_bound >= goal.target)
     return PairLook(held.lower_bound, held.least, is_done, moved_a, moved_b)

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.features.face_pair import Hit, nothing_yet
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.motion.answer_cache import (
@@ -29,7 +28,7 @@ from clearance.kernels.motion.sweep_state import (
     spare,
 )
 from clearance.kernels.motion.world import pair_frames
-from clearance.kernels.search.body_pair import TO_THE_END, PairQuestion, measure_pair
+from clearance.kernels.search.body_pair import TO_THE_END, PairQuestion, search
 from clearance.kernels.search.front import KEPT_DOWN, PairFront, forget
 
 LOOK_AHEAD = 2.0
@@ -100,8 +99,8 @@ def nearest_by_boxes(surface, world, bodies, state, winner):
     return winner
 
 
-@inline(one_caller=True)
-def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally, table):
+@inline
+def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
     """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on.
 
     Many arguments: it is inlined into its one caller, whose locals they are.
@@ -117,8 +116,7 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally, ta
         forget(state.fronts, pair)  # where bodies may meet, nearest first from the roots is best
     apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
     touches = was_contact(answers, pair)
-    measured = measure_pair(
-        table,
+    measured = search(
         PosedPair(
             lent,
             world.solids[body_a],
@@ -142,8 +140,8 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally, ta
     return measured.hit, measured.lower_bound
 
 
-@inline(one_caller=True)
-def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table):
+@inline
+def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally):
     """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer.
 
     Many arguments: it is inlined into its one caller, whose locals they are.
@@ -154,7 +152,7 @@ def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, t
         lower_bound = bounded_again(surface, world, pair, state, gap)
     if lower_bound <= gap:
         hit, lower_bound = _measured_pair(
-            world, pair, lower_bound, gap, look.effort, lent, state, tally, table
+            world, pair, lower_bound, gap, look.effort, lent, state, tally
         )
         if hit.face_a != 2**62:
             seen = np.sqrt(hit.gap_sq)
@@ -167,10 +165,10 @@ def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, t
     return best, lower_bound
 
 
-@inline(one_caller=True)
-def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
+@inline
+def nearest_of(lent, world, look, goal, state, pair_rows, tally):
     """The nearest pair of some bodies at a row, as a `RowNearest`; `lent` is the surface of all bodies."""
-    surface = borrow(lent)
+    surface = lent
     order, first = state.order, look.first
     best = RowNearest(nothing_yet(np.inf), -1, state.within[0], look.lowest)
     lowest = look.lowest
@@ -200,7 +198,7 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
                     stop, place = place, in_order
             else:
                 best, lower_bound = _with_pair(
-                    surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table
+                    surface, lent, world, pair, look, goal, state, best, pair_rows, tally
                 )
                 lowest = min(lowest, lower_bound)
                 lower_bound = spare(world, pair, state, goal)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Flags, Floats, Floats2, Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.motion.interval_motion_bound import interval_motion_bound_of
 
 ROUNDED_UP = 1.0 + 2.0**-51
@@ -32,19 +33,19 @@ class Schedule(NamedTuple):
         is_due: (groups,) room.
     """
 
-    motion_radii: np.ndarray
-    noise: np.ndarray
-    nearest: np.ndarray
-    rows: np.ndarray
-    looks: np.ndarray
-    bodies: np.ndarray
-    between: np.ndarray
-    ways: np.ndarray
-    most: np.ndarray
-    is_due: np.ndarray
+    motion_radii: Floats2
+    noise: Floats
+    nearest: Floats
+    rows: Integers
+    looks: Integers
+    bodies: Integers
+    between: Floats
+    ways: Floats
+    most: Floats2
+    is_due: Flags
 
 
-@shared
+@inline
 def new_schedule(n_bodies, n_columns):
     """Nothing is said yet."""
     return Schedule(

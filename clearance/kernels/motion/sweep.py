@@ -6,22 +6,24 @@ asked for, only the bodies are looked at that may have come near (`schedule`).
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import lend
+from clearance.compile.declared import Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.answer_cache import was_contact
 from clearance.kernels.motion.interval_motion_bound import fill_motion_radii
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.row_search import RowLook, nearest_by_boxes, nearest_of
 from clearance.kernels.motion.schedule import all_due, find_due
-from clearance.kernels.motion.sweep_goal import SweptSteps
-from clearance.kernels.motion.sweep_rows import pass_over, write_step
+from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
+from clearance.kernels.motion.sweep_rows import SweepRows, pass_over, write_step
 from clearance.kernels.motion.sweep_state import NOT_LESS, carried, new_sweep_state
-from clearance.kernels.motion.world import box_bound
+from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
 
 
-@inline(one_caller=True)
+@inline
 def _next_look(world, positions, row, look, within, due, rows, tally):
     """The next row, from `row` on, at which a body is due; writes those before, where nothing comes `within` [m].
 
@@ -38,7 +40,15 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
 
 
 @kernel
-def sweep(surface, world, path, goal, first, found, tally, table):
+def sweep(
+    surface: Surface,
+    world: World,
+    path: SweptSteps,
+    goal: Goal,
+    first: FirstLook,
+    found: SweepRows,
+    tally: Integers,
+):
     """Fills `found` and `tally`: pairs skipped, queries, nodes, faces, steps passed over.
 
     Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
@@ -58,15 +68,15 @@ def sweep(surface, world, path, goal, first, found, tally, table):
         for i in range(len(few)):
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
-        state = new_sweep_state(world, n_columns, within)
-        rough = SweptSteps(few, first.rows, path.known[:0])
-        _sweep(surface, world, rough, goal, first.effort, state, found, tally, table)
-    state = new_sweep_state(world, n_columns, within)
-    _sweep(surface, world, path, goal, TO_THE_END, state, found, tally, table)
+        state = lend(new_sweep_state(world, n_columns, within))
+        rough = lend(SweptSteps(few, first.rows, path.known[:0]))
+        _sweep(surface, world, rough, goal, first.effort, state, found, tally)
+    state = lend(new_sweep_state(world, n_columns, within))
+    _sweep(surface, world, path, goal, TO_THE_END, state, found, tally)
 
 
-@inline(reference_counts=False)
-def _sweep(surface, world, path, goal, effort, state, found, tally, table):
+@inline
+def _sweep(surface, world, path, goal, effort, state, found, tally):
     """`sweep`, with the arrays of its state. The rows after a first look are overwritten.
 
     Many arguments: those of `sweep`, and what it has made; called once a sweep.
@@ -102,7 +112,7 @@ def _sweep(surface, world, path, goal, effort, state, found, tally, table):
             first = nearest_by_boxes(surface, world, bodies, state, first)
         known = path.known[row] if len(path.known) > 0 else -1
         asked = RowLook(bodies, row, steps[row], first, known, lowest, effort)
-        best = nearest_of(lent, world, asked, goal, state, found.pair_rows, tally, table)
+        best = nearest_of(lent, world, asked, goal, state, found.pair_rows, tally)
         lowest = best.lowest
         if best.pair >= 0:
             winner = best.pair

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-import numpy as np
+from clearance.compile.declared import Floats, Floats2, Integers
 
 
 class Goal(NamedTuple):
@@ -15,7 +15,7 @@ class Goal(NamedTuple):
         lasting: a best holds for the later steps too: only what is nearer than all before is measured.
     """
 
-    within: np.ndarray
+    within: Floats
     each: bool
     lasting: bool
 
@@ -28,9 +28,9 @@ class SweptSteps(NamedTuple):
         known: (k,) the pair that is not measured at each, since it has been, or -1; (0,) where all are.
     """
 
-    positions: np.ndarray
-    steps: np.ndarray
-    known: np.ndarray
+    positions: Floats2
+    steps: Integers
+    known: Integers
 
 
 class FirstLook(NamedTuple):
@@ -41,5 +41,5 @@ class FirstLook(NamedTuple):
         effort: of `PairQuestion`; what is found with less than `TO_THE_END` is an upper bound.
     """
 
-    rows: np.ndarray
+    rows: Integers
     effort: int

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers, Integers2
+from clearance.compile.decorators import inline
 from clearance.kernels.features.face_pair import nothing_yet, write_points
 
 
@@ -18,11 +19,11 @@ class StepRows(NamedTuple):
         faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
     """
 
-    clearance: np.ndarray
-    lower_bound: np.ndarray
-    pair: np.ndarray
-    faces: np.ndarray
-    points: np.ndarray
+    clearance: Floats
+    lower_bound: Floats
+    pair: Integers
+    faces: Integers2
+    points: Floats3
 
 
 class PairRows(NamedTuple):
@@ -34,10 +35,10 @@ class PairRows(NamedTuple):
             none, and the first step that has it.
     """
 
-    every: np.ndarray
-    clearance: np.ndarray
-    step: np.ndarray
-    points: np.ndarray
+    every: Floats2
+    clearance: Floats
+    step: Integers
+    points: Floats3
 
 
 class SweepRows(NamedTuple):

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Integers2
+from clearance.compile.decorators import inline
 from clearance.kernels.motion.answer_cache import AnswerCache, no_answers
 from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes
 from clearance.kernels.motion.pair_order import PairOrder, new_pair_order
@@ -37,10 +38,10 @@ class SweepState(NamedTuple):
         fronts, scratch: of `descend`.
     """
 
-    within: np.ndarray
-    lower_bounds: np.ndarray
+    within: Floats
+    lower_bounds: Floats
     order: PairOrder
-    witness_faces: np.ndarray
+    witness_faces: Integers2
     placed: PlacedBodies
     due: Schedule
     boxes: BodyBoxes
@@ -76,7 +77,7 @@ def bounded_again(surface, world, pair, state, enough):
     return lower_bound
 
 
-@shared
+@inline
 def new_sweep_state(world, n_columns, within):
     n_pairs, n_bodies = len(world.pairs), len(world.frames)
     return SweepState(

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.declared import Integers
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import dot, move, row, sub
 from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
@@ -20,7 +21,7 @@ from clearance.kernels.motion.clock_tree import ClockTree
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.separating_planes import separating_planes_of
+from clearance.kernels.search.separating_planes import separate
 
 FEW = 4
 """Corners of a face that are looked at."""
@@ -41,7 +42,7 @@ class TwoClocks(NamedTuple):
     path: JointPath
     tree_a: ClockTree
     tree_b: ClockTree
-    columns: np.ndarray
+    columns: Integers
     band: Band
 
 
@@ -70,7 +71,7 @@ def corners_apart(surface, faces, pose_a, pose_b):
 
 
 @inline
-def apart_by_planes(surface, bodies, faces, limit, scratch, table):
+def apart_by_planes(surface, bodies, faces, limit, scratch):
     """[m] a lower bound beyond `limit` by two planes between the bodies' hulls, or -inf if that is not found.
 
     Each tree is searched by itself: a few dozen nodes, where pairs of nodes take hundreds to thousands.
@@ -90,7 +91,7 @@ def apart_by_planes(surface, bodies, faces, limit, scratch, table):
     else:
         p, q = box_of(surface, roots.a).centre, move(m, box_of(surface, roots.b).centre)
         best = Hit(math.inf, np.int64(2**62), np.int64(2**62), p, q)
-    planes = separating_planes_of(table, roots, best, limit + rest, slack, scratch)
+    planes = separate(roots, best, limit + rest, slack, scratch)
     if planes.face_a >= 0 and planes.face_b >= 0:
         faces[0], faces[1] = planes.face_a, planes.face_b
     return planes.lower_bound - rest if planes.lower_bound > limit + rest else -math.inf

@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import lend
+from clearance.compile.declared import Floats, Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER, CertificateGoal
 from clearance.kernels.motion.certify_pair import allowed_gap
 from clearance.kernels.motion.clock_rectangles import (
@@ -32,6 +34,7 @@ from clearance.kernels.motion.clock_rectangles import (
 from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
 from clearance.kernels.motion.interval_middle import begin_arcs, go_to_middle, new_middle
 from clearance.kernels.motion.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
+from clearance.kernels.motion.two_clocks import TwoClocks
 from clearance.kernels.search.scratch import new_scratch
 
 
@@ -44,12 +47,12 @@ class TwoClockBounds(NamedTuple):
             where in it. pair: (m,) which pair.
     """
 
-    lower: np.ndarray
-    upper: np.ndarray
-    share_a: np.ndarray
-    step_b: np.ndarray
-    share_b: np.ndarray
-    pair: np.ndarray
+    lower: Floats
+    upper: Floats
+    share_a: Floats
+    step_b: Integers
+    share_b: Floats
+    pair: Integers
 
 
 class StepsOfClock(NamedTuple):
@@ -60,9 +63,9 @@ class StepsOfClock(NamedTuple):
         step_b: (m + 1,) the step of clock b at which it occurs. pair: (m + 1,) which pair.
     """
 
-    clearance: np.ndarray
-    step_b: np.ndarray
-    pair: np.ndarray
+    clearance: Floats
+    step_b: Integers
+    pair: Integers
 
 
 @inline
@@ -105,7 +108,7 @@ def _note_seen(clocks, rectangle, pair, distance, bounds):
 
 
 @inline
-def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, table):
+def _look(lent, surface, clocks, rectangle, count, aim, bounds, state):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
 
     Those that are left are listed.
@@ -122,7 +125,7 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, table):
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
             return 0, True
         pair = listed[place]
-        seen = look_at_pair(lent, surface, clocks, r, pair, goal, state, table)
+        seen = look_at_pair(lent, surface, clocks, r, pair, goal, state)
         if seen.is_done:
             bound = seen.lower_bound
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
@@ -191,7 +194,14 @@ def _end(clocks, bounds, state):
 
 
 @kernel
-def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
+def certify_unsynchronised(
+    surface: Surface,
+    clocks: TwoClocks,
+    steps: StepsOfClock,
+    aim: CertificateGoal,
+    bounds: TwoClockBounds,
+    tally: Integers,
+):
     """Fills `bounds` of the intervals of clock a that are the leaves of its tree.
 
     Args:
@@ -202,21 +212,21 @@ def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
     """
     n_links, n_rows = len(clocks.world.links.parents), len(bounds.upper)
     n_pairs = len(clocks.world.pairs)
-    state = RectangleState(
+    state = lend(RectangleState(
         new_rectangle_stack(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
         np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
         new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
         tally,
-    )  # fmt: skip
+    ))  # fmt: skip
     for i in range(len(tally)):
         tally[i] = 0
     _begin(clocks, steps, aim, bounds, state)
-    _certify(surface, clocks, aim, bounds, state, table)
+    _certify(surface, clocks, aim, bounds, state)
     _end(clocks, bounds, state)
 
 
-@inline(reference_counts=False)
-def _certify(surface, clocks, aim, bounds, state, table):
+@inline
+def _certify(surface, clocks, aim, bounds, state):
     """`certify_unsynchronised`, with the arrays of its state."""
     lent = lend(surface)
     tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
@@ -237,7 +247,7 @@ def _certify(surface, clocks, aim, bounds, state, table):
                 r = clipped(tree_a, tree_b, r, clocks.band)
         _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
         _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
-        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state, table)
+        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state)
         if n_left == 0:
             continue
         if n_waiting + 2 > DEPTH:

@@ -10,12 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import lend
+from clearance.compile.declared import Floats, Floats3, Integers
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.body_boxes import bound_between
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.clock_rectangles import (
@@ -32,13 +34,13 @@ from clearance.kernels.motion.clock_rectangles import (
 )
 from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
 from clearance.kernels.motion.sweep_state import NOT_LESS
-from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
+from clearance.kernels.motion.two_clocks import TwoClocks, apart_by_planes, corners_apart
 from clearance.kernels.search.body_pair import (
     NO_FACE,
     NOTHING_MEASURED,
     TO_THE_END,
     PairQuestion,
-    measure_pair,
+    search,
 )
 from clearance.kernels.search.front import Fronts, PairFront, no_fronts
 from clearance.kernels.search.scratch import Scratch, new_scratch
@@ -59,11 +61,11 @@ class StepMinima(NamedTuple):
         gaps_sq: (m,) [m^2] room for the squares.
     """
 
-    clearance: np.ndarray
-    step_b: np.ndarray
-    pair: np.ndarray
-    points: np.ndarray
-    gaps_sq: np.ndarray
+    clearance: Floats
+    step_b: Integers
+    pair: Integers
+    points: Floats3
+    gaps_sq: Floats
 
 
 class StepsState(NamedTuple):
@@ -107,14 +109,14 @@ def _bodies_at(lent, clocks, pair, row_a, row_b):
 
 
 @inline
-def _measured(asked, state, tally, table):
-    """A `StepsPair` as `measure_pair` finds it."""
+def _measured(asked, state, tally):
+    """A `StepsPair` as `search` finds it."""
     faces = state.witness_faces[asked.pair]
     question = PairQuestion(
         asked.within, asked.within, faces[0], faces[1], asked.apart, TO_THE_END, False
     )
     front = PairFront(state.fronts, 0, 0.0)
-    found = measure_pair(table, asked.bodies, question, front, state.scratch)
+    found = search(asked.bodies, question, front, state.scratch)
     faces[0], faces[1] = found.face_a, found.face_b
     tally[2] += 1
     tally[3] += found.tally.nodes
@@ -141,7 +143,7 @@ def _note(row, step_b, pair, hit, found):
 
 
 @inline
-def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
+def _at_steps(lent, clocks, pair, row, step_b, state, found, tally):
     """Measures a pair at a step of either clock, if it can be the least there; True if it is.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -152,7 +154,7 @@ def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
     if bound > within:
         return False
     bodies = _bodies_at(lent, clocks, pair, row_a, row_b)
-    hit = _measured(StepsPair(pair, bodies, bound > 0.0, within), state, tally, table).hit
+    hit = _measured(StepsPair(pair, bodies, bound > 0.0, within), state, tally).hit
     return _note(row, step_b, pair, hit, found)
 
 
@@ -179,40 +181,40 @@ def _nearest_step(clocks, row):
 
 
 @inline
-def _first_look(lent, clocks, row, state, found, tally, table):
+def _first_look(lent, clocks, row, state, found, tally):
     """Some distance at a step of clock a that is near the least."""
     n_b = n_leaves_of(clocks.tree_b)
     own = _nearest_step(clocks, row)
     if not _occur(clocks, row, own):
         return
     for pair in range(len(clocks.world.pairs)):
-        _at_steps(lent, clocks, pair, row, own, state, found, tally, table)
+        _at_steps(lent, clocks, pair, row, own, state, found, tally)
     for k in range(FIRST_LOOK):
         step_b = (n_b - 1) * k // (FIRST_LOOK - 1)
         if _occur(clocks, row, step_b):
             for pair in range(len(clocks.world.pairs)):
-                _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table)
+                _at_steps(lent, clocks, pair, row, step_b, state, found, tally)
 
 
 @inline
-def _walk(lent, clocks, row, state, found, tally, table):
+def _walk(lent, clocks, row, state, found, tally):
     """From the best of the step before, some distance at the next that is near the least."""
     n_b = n_leaves_of(clocks.tree_b)
     pair, step_b = found.pair[row - 1], found.step_b[row - 1]
     own = _nearest_step(clocks, row)
     if step_b < 0 or not _occur(clocks, row, own):
-        _first_look(lent, clocks, row, state, found, tally, table)
+        _first_look(lent, clocks, row, state, found, tally)
         return
     while not _occur(clocks, row, step_b):
         step_b += 1 if step_b < own else -1
-    _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table)
+    _at_steps(lent, clocks, pair, row, step_b, state, found, tally)
     for way in (-1, 1):
         at = step_b
         for _ in range(WALK):
             at += way
             if at < 0 or at >= n_b or not _occur(clocks, row, at):
                 break
-            if not _at_steps(lent, clocks, pair, row, at, state, found, tally, table):
+            if not _at_steps(lent, clocks, pair, row, at, state, found, tally):
                 break
 
 
@@ -236,7 +238,7 @@ def _within(clocks, node, found):
 
 
 @inline
-def _look_at_pair(surface, asked, seen_enough, state, tally, table):
+def _look_at_pair(surface, asked, seen_enough, state, tally):
     """(what is known of a pair in the middle of a rectangle, True if it is farther than was asked).
 
     Args:
@@ -248,18 +250,18 @@ def _look_at_pair(surface, asked, seen_enough, state, tally, table):
     seen = corners_apart(surface, faces, a, b) * NOT_LESS
     if seen_enough < seen < asked.within:
         return NOTHING_MEASURED, False
-    planes = apart_by_planes(surface, bodies, faces, asked.within, state.scratch, table)
+    planes = apart_by_planes(surface, bodies, faces, asked.within, state.scratch)
     if planes > asked.within:
         return NOTHING_MEASURED, True
     seen = corners_apart(surface, faces, a, b) * NOT_LESS
     if seen_enough < seen < asked.within:
         return NOTHING_MEASURED, False
-    near = _measured(asked, state, tally, table)
+    near = _measured(asked, state, tally)
     return near, near.lower_bound > asked.within
 
 
 @inline
-def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
+def _look(lent, surface, clocks, rectangle, count, state, found, tally):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -288,7 +290,7 @@ def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
         seen_enough = found.clearance[leaf_a] if occurs else 0.0
         if one_a and one_b:
             seen_enough = np.inf
-        near, is_far = _look_at_pair(surface, asked, seen_enough, state, tally, table)
+        near, is_far = _look_at_pair(surface, asked, seen_enough, state, tally)
         if occurs:
             _note(leaf_a, tree_b.start + leaf_b, pair, near.hit, found)
         if not (is_far or (one_a and one_b)):
@@ -299,12 +301,12 @@ def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
 
 
 @inline
-def _look_at_few(lent, clocks, state, found, tally, table):
+def _look_at_few(lent, clocks, state, found, tally):
     """Looks at some steps of clock a, evenly spread; at the others nothing is asked that is not nearer."""
     n_a, least = len(found.clearance), np.inf
     for k in range(FIRST_LOOK):
         row = (n_a - 1) * k // (FIRST_LOOK - 1)
-        _first_look(lent, clocks, row, state, found, tally, table)
+        _first_look(lent, clocks, row, state, found, tally)
         least = min(least, found.clearance[row])
     for row in range(n_a):
         if found.clearance[row] > least:
@@ -312,7 +314,9 @@ def _look_at_few(lent, clocks, state, found, tally, table):
 
 
 @kernel
-def least_of_unsynchronised_steps(surface, clocks, least_only, found, tally, table):
+def least_of_unsynchronised_steps(
+    surface: Surface, clocks: TwoClocks, least_only: bool, found: StepMinima, tally: Integers
+):
     """Fills `found` of the steps of clock a that are the leaves of its tree.
 
     Args:
@@ -321,28 +325,33 @@ def least_of_unsynchronised_steps(surface, clocks, least_only, found, tally, tab
         tally: (5,) as in `certify_unsynchronised`.
     """
     n_pairs = len(clocks.world.pairs)
-    state = StepsState(
-        new_rectangle_stack(n_pairs), np.full((n_pairs, 2), NO_FACE), no_fronts(1, 0), new_scratch()
+    state = lend(
+        StepsState(
+            new_rectangle_stack(n_pairs),
+            np.full((n_pairs, 2), NO_FACE),
+            no_fronts(1, 0),
+            new_scratch(),
+        )
     )
     for i in range(len(tally)):
         tally[i] = 0
     for row in range(len(found.clearance)):
         found.clearance[row], found.gaps_sq[row] = np.inf, np.inf
         found.pair[row], found.step_b[row] = n_pairs, -1
-    _least_of_steps(surface, clocks, least_only, state, found, tally, table)
+    _least_of_steps(surface, clocks, least_only, state, found, tally)
 
 
-@inline(reference_counts=False)
-def _least_of_steps(surface, clocks, least_only, state, found, tally, table):
+@inline
+def _least_of_steps(surface, clocks, least_only, state, found, tally):
     """The same, with the arrays of its state."""
     lent = lend(surface)
     tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
     if least_only:
-        _look_at_few(lent, clocks, state, found, tally, table)
+        _look_at_few(lent, clocks, state, found, tally)
     else:
-        _first_look(lent, clocks, 0, state, found, tally, table)
+        _first_look(lent, clocks, 0, state, found, tally)
         for row in range(1, len(found.clearance)):
-            _walk(lent, clocks, row, state, found, tally, table)
+            _walk(lent, clocks, row, state, found, tally)
     put_rectangle(ALL_TIMES, len(waiting.listed), waiting, 0)
     n_waiting = 1
     while n_waiting > 0:
@@ -351,7 +360,7 @@ def _least_of_steps(surface, clocks, least_only, state, found, tally, table):
         if not meets_band(tree_a, tree_b, r, clocks.band):
             continue
         tally[0] += 1
-        n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally, table)
+        n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally)
         if n_left == 0:
             continue
         if n_waiting + 2 > DEPTH:

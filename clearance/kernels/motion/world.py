@@ -2,9 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
-from clearance.compile.jit import inline
+from clearance.compile.declared import Floats3, Integers, Integers2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.motion.body_boxes import bound_of_bodies, place_box
@@ -27,11 +26,11 @@ class World(NamedTuple):
         links: what moves the links.
     """
 
-    solids: np.ndarray
-    frames: np.ndarray
-    groups: np.ndarray
-    standing: np.ndarray
-    pairs: np.ndarray
+    solids: Integers
+    frames: Integers
+    groups: Integers
+    standing: Floats3
+    pairs: Integers2
     links: Links
 
 

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
     dot,
@@ -34,11 +35,11 @@ class PaperBody(NamedTuple):
     """Faces one after the other: `corners[starts[i]:starts[i + 1]]`, with normals, centres and
     radii [m]."""
 
-    corners: np.ndarray
-    starts: np.ndarray
-    normals: np.ndarray
-    centres: np.ndarray
-    radii: np.ndarray
+    corners: Floats2
+    starts: Integers
+    normals: Floats2
+    centres: Floats2
+    radii: Floats
 
 
 class PaperDistance(NamedTuple):
@@ -56,7 +57,7 @@ class PaperDistance(NamedTuple):
     cut_by_rule_1: int
     cut_by_rule_2: int
     measured: int
-    passes: np.ndarray
+    passes: Integers
 
 
 @inline
@@ -95,7 +96,15 @@ def face_polygon(body, i, normal, centre):
 
 
 @kernel
-def nearest_bodies_paper(a, b_own, world_from_a, world_from_b, tolerance, rule_1, rule_2):
+def nearest_bodies_paper(
+    a: PaperBody,
+    b_own: PaperBody,
+    world_from_a: Floats2,
+    world_from_b: Floats2,
+    tolerance: float,
+    rule_1: bool,
+    rule_2: bool,
+) -> PaperDistance:
     """Steps 1 to 8 for two bodies at two (4, 4) poses; computed in the frame of `a`.
 
     Rule 2 comes first, as in the steps. Ties: the least face of a, then of b.

@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, along, cross, dot, gap_sq, row, sub
 from clearance.kernels.paper.segments import lumelsky
 
@@ -158,7 +159,14 @@ def nearest_by_paper(a, b):
 
 
 @kernel
-def nearest_polygons_paper(corners_a, normal_a, centre_a, corners_b, normal_b, centre_b):
+def nearest_polygons_paper(
+    corners_a: Floats2,
+    normal_a: Floats2,
+    centre_a: Floats2,
+    corners_b: Floats2,
+    normal_b: Floats2,
+    centre_b: Floats2,
+) -> PaperMinimum:
     """The iteration for two polygons given as (n, 3), (m, 3) with normals and centres as (1, 3)
     rows."""
     a = Polygon(corners_a, 0, len(corners_a), row(normal_a, 0), row(centre_a, 0))

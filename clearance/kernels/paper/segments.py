@@ -9,7 +9,7 @@ Processing Letters 21, 55-61.
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, sub
 
 

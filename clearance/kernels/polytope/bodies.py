@@ -13,41 +13,53 @@ import ctypes
 
 import numpy as np
 
-from clearance.compile.jit import DISABLED, inline, intrinsic
+from clearance.compile.decorators import inline, when_compiling
 from clearance.kernels.polytope.body import PackedBody
 
 NUMBERS, INDICES, FIRST_PLANE = 0, 2, 4
 
 
-@intrinsic
-def _array_at(typing_context, rows, at, number):
-    from numba import types
+def array_at(rows, at, number):
+    """The array whose address and length stand from entry `at` of `rows` on, (m, 4) or (m, 5) int64 row by row.
 
-    from clearance.compile.numba_private import array_from, elements_at
-
-    result = types.Array(number.dtype, 1, "C")
-
-    def emit(context, builder, signature, values):
-        here, after = values[1], builder.add(values[1], values[1].type(1))
-        both = elements_at(context, builder, signature.args[0], values[0], (here, after))
-        address, length = map(builder.load, both)
-        return array_from(context, builder, result, address, length)
-
-    return result(rows, types.intp, number), emit
-
-
-def _array_from(rows, at, number):
+    Args:
+        number: the type of its numbers.
+    """
     kind = ctypes.POINTER(np.ctypeslib.as_ctypes_type(number))
     address, length = (int(x) for x in rows.ravel()[at : at + 2])
     return np.ctypeslib.as_array(ctypes.cast(address, kind), (length,))
 
 
-array_at = _array_from if DISABLED else _array_at
-"""`array_at(rows, at, number)`: the array whose address and length stand from entry `at` of `rows` on, (m, 4) or
-(m, 5) int64 row by row; `number` is the type of its numbers."""
+def _array_by_address():
+    from numba import carray, types
+    from numba.extending import intrinsic, overload
+
+    from clearance.compile.intrinsics import elements_at
+
+    @intrinsic
+    def pointer_and_length(typing_context, rows, at):
+        def emit(context, builder, signature, values):
+            here, after = values[1], builder.add(values[1], values[1].type(1))
+            both = elements_at(context, builder, signature.args[0], values[0], (here, after))
+            address, length = map(builder.load, both)
+            pointer = builder.inttoptr(address, context.get_value_type(types.voidptr))
+            return context.make_tuple(builder, signature.return_type, [pointer, length])
+
+        return types.Tuple((types.voidptr, types.int64))(rows, types.intp), emit
+
+    @overload(array_at, jit_options={"forceinline": True}, strict=False)
+    def call(rows, at, number):
+        def implementation(rows, at, number):
+            pointer, length = pointer_and_length(rows, at)
+            return carray(pointer, (length,), number)
+
+        return implementation
 
 
-@inline(one_caller=True)
+when_compiling.append(_array_by_address)
+
+
+@inline
 def body_at(rows, i):
     """Body `i`."""
     first = i * rows.shape[1]

@@ -14,9 +14,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from clearance.compile.jit import inline
+from clearance.compile.declared import Floats, Shorts
+from clearance.compile.decorators import inline
 
 CENTROID, ROUND_FROM_BODY, GREATEST_WIDTH, SIZE, INNER_SQ = 0, 3, 12, 13, 14
 HEAD, ROW = 16, 8
@@ -32,8 +31,8 @@ class PackedBody(NamedTuple):
         numbers: (p,) float64; indices: (q,) int32.
     """
 
-    numbers: np.ndarray
-    indices: np.ndarray
+    numbers: Floats
+    indices: Shorts
 
 
 @inline(force=True)

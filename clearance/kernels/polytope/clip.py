@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Integers, Integers2, Shorts2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import (
     GREATEST_WIDTH,
@@ -77,7 +78,7 @@ class Cutter(NamedTuple):
     shift: tuple[float, float, float]
 
 
-@inline(one_caller=True)
+@inline
 def other_face(cut, cutter, face, v, tolerance):
     """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
@@ -113,7 +114,7 @@ def other_face(cut, cutter, face, v, tolerance):
     return -1
 
 
-@inline(one_caller=True)
+@inline
 def flood_level(spots, mesh, start, plane, noise, stamp, work):
     """A vertex above `start` next to the level ground about it, or -1; level means within `noise`."""
     level = over(spots, start, plane)
@@ -138,7 +139,7 @@ def flood_level(spots, mesh, start, plane, noise, stamp, work):
     return -1
 
 
-@inline(one_caller=True)
+@inline
 def climb(spots, mesh, start, plane, noise, state, work):
     """The top vertex over the plane, uphill from `start`; level ground is searched by flooding.
 
@@ -153,7 +154,7 @@ def climb(spots, mesh, start, plane, noise, state, work):
     return top
 
 
-@inline(one_caller=True)
+@inline
 def is_copy(spots, mesh, v, base):
     """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
     u = v - 1
@@ -162,8 +163,8 @@ def is_copy(spots, mesh, v, base):
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
 
-@kernel(reference_counts=False)
-def rooms_about(rows, origin, rooms):
+@kernel
+def rooms_about(rows: Integers2, origin: Floats, rooms: Floats):
     """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to the origin leaves."""
     for i in range(len(rows)):
         body = body_at(rows, i)
@@ -174,7 +175,7 @@ def rooms_about(rows, origin, rooms):
         rooms[i] = (1.0 - gauge) * face_number(body.numbers, face, WIDTH)
 
 
-@inline(one_caller=True)
+@inline
 def face_to_cut_by(cut, cutter, v, place, tolerance):
     """A face of the body that `v`, whose place is given about the centroid, is above, and that may cut; or -1."""
     body = cutter.body
@@ -190,21 +191,23 @@ def face_to_cut_by(cut, cutter, v, place, tolerance):
     return face
 
 
-@inline(one_caller=True)
+@inline
 def place_about_centroid(cutter, spots, v):
     """The place of a vertex about the centroid of the body that cuts."""
     shift = cutter.shift
     return spots[v, 0] + shift[0], spots[v, 1] + shift[1], spots[v, 2] + shift[2]
 
 
-@inline(one_caller=True)
+@inline
 def cut_from(cut, cutter, start, turn, n_later, limits):
     """Cuts from a vertex on, until neither it nor what its cuts have made is above a face; (status, `n_later`).
 
     Args:
         turn: the round (`cut_by_body`). n_later: how many vertices were put off before.
     """
-    spots, mesh, state, work, rim, table = cut
+    spots, mesh, state, work, rim, table = (
+        cut.spots, cut.mesh, cut.state, cut.work, cut.rim, cut.table
+    )  # fmt: skip
     body, base, tolerance = cutter.body, cutter.base, limits.on_plane
     work[STACK, 0] = start
     n_stack = 1
@@ -249,7 +252,7 @@ def cut_from(cut, cutter, start, turn, n_later, limits):
     return CUT, n_later
 
 
-@inline(one_caller=True)
+@inline
 def cut_by_body(cut, cutter, limits):
     """The status after cutting the polytope by one body.
 
@@ -280,8 +283,17 @@ def cut_by_body(cut, cutter, limits):
     return CUT
 
 
-@kernel(reference_counts=False)
-def cut_by_bodies(block, state, table, rows, origin, turns, tolerance, sparse):
+@kernel
+def cut_by_bodies(
+    block: Floats,
+    state: Integers,
+    table: Shorts2,
+    rows: Integers2,
+    origin: Floats,
+    turns: Integers,
+    tolerance: float,
+    sparse: float,
+) -> tuple[int, int]:
     """Cuts the polytope by bodies in turn; (status, how many of `turns` are done).
 
     Args:

@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers, Integers2, Shorts2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import N_FACES, PackedBody, face_edges, place_of
 
@@ -43,15 +44,15 @@ class Cut(NamedTuple):
             it is to come in with a patch (`polytope.patch`), `WHOLE` once it has.
     """
 
-    spots: np.ndarray
-    mesh: np.ndarray
-    state: np.ndarray
-    work: np.ndarray
-    rim: np.ndarray
-    table: np.ndarray
+    spots: Floats2
+    mesh: Shorts2
+    state: Integers
+    work: Shorts2
+    rim: Shorts2
+    table: Shorts2
 
 
-@inline(one_caller=True)
+@inline
 def cut_in(block, state, table):
     """The `Cut` of c rows whose arrays lie in `block` (12 c,) float64: `spots`, `mesh`, `work`, `rim`."""
     c = len(block) // 12
@@ -65,13 +66,13 @@ def cut_in(block, state, table):
     )
 
 
-@inline(one_caller=True)
+@inline
 def over(spots, v, plane):
     """[m] How far vertex `v` stands above the plane."""
     return plane[0] * spots[v, 0] + plane[1] * spots[v, 1] + plane[2] * spots[v, 2] - plane[3]
 
 
-@inline(one_caller=True)
+@inline
 def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     """Number of connected vertices above the plane, from `top`; they are queued and marked `stamp`.
 
@@ -99,7 +100,7 @@ def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     return n_above
 
 
-@inline(one_caller=True)
+@inline
 def has_corner(indices, face, corner):
     """True if the face has the corner."""
     begin, end = face_edges(indices, face)
@@ -109,7 +110,7 @@ def has_corner(indices, face, corner):
     return False
 
 
-@inline(one_caller=True)
+@inline
 def own_corner(indices, base, a, b, c):
     """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
     n = indices[N_FACES]
@@ -123,14 +124,16 @@ def own_corner(indices, base, a, b, c):
     return -1
 
 
-@inline(one_caller=True)
+@inline
 def put_rim(cut, n_above, stamp, name, body, base, origin):
     """Number of new vertices, one on each edge that leaves the marked region, or -1 if two lie on one plane.
 
     A corner of the body itself, whose planes are `body` and `base`, gets its given place. The outside is not
     linked yet.
     """
-    spots, mesh, state, work, rim, table = cut
+    spots, mesh, state, work, rim, table = (
+        cut.spots, cut.mesh, cut.state, cut.work, cut.rim, cut.table
+    )  # fmt: skip
     n_rim = 0
     for i in range(n_above):
         u = work[QUEUE, i]
@@ -173,7 +176,7 @@ def put_rim(cut, n_above, stamp, name, body, base, origin):
     return n_rim
 
 
-@inline(one_caller=True)
+@inline
 def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
     i = 0
@@ -187,7 +190,7 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
     return False
 
 
-@inline(one_caller=True)
+@inline
 def swap_rows(state, mesh, n_above, n_rim, work):
     """Takes the rows of the new vertices from the free ones and frees those above the plane."""
     taken = min(n_rim, state[N_FREE])
@@ -199,7 +202,7 @@ def swap_rows(state, mesh, n_above, n_rim, work):
         state[N_FREE] += 1
 
 
-@inline(one_caller=True)
+@inline
 def close_rim(mesh, rim, n_rim, table):
     """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
@@ -212,10 +215,12 @@ def close_rim(mesh, rim, n_rim, table):
         mesh[after, 2] = v
 
 
-@inline(one_caller=True)
+@inline
 def cut_by_plane(cut, top, plane, name, tolerance, body, base, origin):
     """(status, number of new vertices, which are `rim[:n, NEW]`) of the cut by a plane that `top` is above."""
-    spots, mesh, state, work, rim, table = cut
+    spots, mesh, state, work, rim, table = (
+        cut.spots, cut.mesh, cut.state, cut.work, cut.rim, cut.table
+    )  # fmt: skip
     state[STAMP] += 2
     stamp = state[STAMP]
     n_above = gather_above(spots, mesh, top, plane, tolerance, stamp, work)
@@ -231,8 +236,16 @@ def cut_by_plane(cut, top, plane, name, tolerance, body, base, origin):
     return CUT, n_rim
 
 
-@kernel(reference_counts=False)
-def begin(spots, mesh, rows, i_body, corner, form, origin):
+@kernel
+def begin(
+    spots: Floats2,
+    mesh: Shorts2,
+    rows: Integers2,
+    i_body: int,
+    corner: Integers,
+    form: Shorts2,
+    origin: Floats,
+):
     """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`.
 
     Args:
@@ -249,7 +262,7 @@ def begin(spots, mesh, rows, i_body, corner, form, origin):
         mesh[v, LOOKED] = 0
 
 
-@inline(one_caller=True)
+@inline
 def close_up(spots, mesh, state, work):
     """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
     n_kept = 0
@@ -269,7 +282,9 @@ def close_up(spots, mesh, state, work):
 
 
 @kernel
-def cut_by_planes(block, state, table, planes, name, tolerance):
+def cut_by_planes(
+    block: Floats, state: Integers, table: Shorts2, planes: Floats2, name: int, tolerance: float
+) -> int:
     """The status after cutting a small polytope, or a large one a few times, by planes (k, 4) in turn.
 
     A plane is (normal, offset [m]), and plane i is number `name` + i. The top is found by looking at all.

@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.polytope.bodies import body_at
 from clearance.kernels.polytope.body import (
     NORMAL,
@@ -49,7 +50,7 @@ class PlacedBody(NamedTuple):
     name: int
 
 
-@inline(one_caller=True)
+@inline
 def invert(basis):
     """True if the faces' matrix could be inverted, by Gauss-Jordan with row pivoting."""
     a = basis[SCRATCH : SCRATCH + 4]
@@ -81,7 +82,7 @@ def invert(basis):
     return True
 
 
-@inline(one_caller=True)
+@inline
 def solve(basis):
     """False if the faces' planes meet in no one point or a multiplier is below 0; else sets both."""
     if not invert(basis):
@@ -99,7 +100,7 @@ def solve(basis):
     return sound
 
 
-@inline(one_caller=True)
+@inline
 def start_around(basis, names, reach):
     """A tetrahedron far around the origin; t at its middle is 1."""
     side = 1.0 / math.sqrt(3.0)
@@ -113,7 +114,7 @@ def start_around(basis, names, reach):
     solve(basis)
 
 
-@inline(one_caller=True)
+@inline
 def put_face(basis, names, j, placed, away, face):
     """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
     pose, numbers = placed.pose, placed.body.numbers
@@ -129,7 +130,7 @@ def put_face(basis, names, j, placed, away, face):
     names[j] = (placed.name << 32) + np.int64(face)
 
 
-@inline(one_caller=True)
+@inline
 def leaving(basis, placed, face):
     """The place in the basis that the ratio test gives to a face, or -1."""
     pose, numbers = placed.pose, placed.body.numbers
@@ -153,7 +154,7 @@ def leaving(basis, placed, face):
     return leave
 
 
-@inline(one_caller=True)
+@inline
 def centre_of(placed, origin):
     """From the origin to the body's centroid in the world."""
     pose = placed.pose
@@ -165,7 +166,7 @@ def centre_of(placed, origin):
     )
 
 
-@inline(one_caller=True)
+@inline
 def deepen(placed, origin, basis, names, margin):
     """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
     pose, body, away = placed.pose, placed.body, centre_of(placed, origin)
@@ -191,7 +192,7 @@ def deepen(placed, origin, basis, names, margin):
     return False, TURN
 
 
-@inline(one_caller=True)
+@inline
 def recall(placed, origin, basis, names):
     """Puts the faces that the basis names of one body where they are now."""
     away = centre_of(placed, origin)
@@ -231,14 +232,23 @@ def deepen_two(a, b, origin, basis, names, margin, begin, passes):
     return False, n_entered, passes
 
 
-@inline(one_caller=True)
+@inline
 def placed_body(rows, poses, k):
     """Body `k`; where there is one pose it is that of all."""
     return PlacedBody(body_at(rows, k), poses[min(k, len(poses) - 1)], k)
 
 
-@kernel(reference_counts=False)
-def deepen_all(rows, poses, origin, basis, names, margin, begin, passes):
+@kernel
+def deepen_all(
+    rows: Integers2,
+    poses: Floats3,
+    origin: Floats,
+    basis: Floats2,
+    names: Integers,
+    margin: float,
+    begin: int,
+    passes: int,
+) -> tuple[bool, int, int]:
     """Brings in faces of all bodies, two bodies at a time until none has a worse one; (settled, faces, passes).
 
     Args:

@@ -15,7 +15,8 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.polytope.body import (
     INNER_SQ,
     INVERSE_WIDTH,
@@ -24,6 +25,7 @@ from clearance.kernels.polytope.body import (
     NORMAL,
     ROUND_FROM_BODY,
     WIDTH,
+    PackedBody,
     bound_at,
     cell_entries,
     face_number,
@@ -35,7 +37,7 @@ BALL_SLACK = 4e-9
 """[-] How much less than its greatest possible radius the inner ball has: what lies in it is inside for all."""
 
 
-@inline(one_caller=True)
+@inline
 def cell_at(x, y, z, k):
     """(cell, greatest coordinate's magnitude) of a direction in the round frame."""
     ax = abs(x)
@@ -55,7 +57,7 @@ def cell_at(x, y, z, k):
     return (side * k + i) * k + j, most
 
 
-@inline(one_caller=True)
+@inline
 def cell_of(body, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
     numbers, indices = body.numbers, body.indices
@@ -64,14 +66,14 @@ def cell_of(body, x, y, z):
     return cell, most * numbers[bound_at(indices, cell)]
 
 
-@inline(one_caller=True)
+@inline
 def is_in_ball(body, x, y, z):
     """True if (x, y, z) about the centroid lies in a ball of the round frame that is wholly inside the body."""
     u, v, w = into_round(body.numbers, x, y, z)
     return u * u + v * v + w * w < body.numbers[INNER_SQ]
 
 
-@inline(one_caller=True)
+@inline
 def exit_in(body, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
     numbers, indices = body.numbers, body.indices
@@ -172,7 +174,9 @@ def cell_span(ring, n, column, pad, k):
 
 
 @kernel
-def exit_cells(corners, starts, flat, k, pad):
+def exit_cells(
+    corners: Floats2, starts: Integers, flat: Integers, k: int, pad: float
+) -> tuple[Integers, Integers]:
     """(cell of each entry, face of each entry): which faces each cell sees, faces ascending.
 
     Args:
@@ -231,7 +235,7 @@ def inner_radius_sq(numbers, n_faces, back, slack):
 
 
 @kernel
-def bound_cells(body, back):
+def bound_cells(body: PackedBody, back: Floats2):
     """Fills in each cell's bound: the greatest gauge of its faces in its four corners; and the ball.
 
     The bounds are raised by 1e-12, and by what rounding in the round frame may hide: 8 u |there| |back|.

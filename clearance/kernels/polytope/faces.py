@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers, Integers2, Shorts2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.expansion import two_sum
 from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import (
     N_FACES,
     NORMAL,
+    PackedBody,
     face_edges,
     face_vector,
     place_of,
@@ -33,7 +35,7 @@ from clearance.kernels.polytope.cut import (
 
 
 @kernel
-def face_rings(mesh, n_rows):
+def face_rings(mesh: Shorts2, n_rows: int) -> tuple[Integers, Integers, Integers]:
     """The faces of the trivalent polytope: (plane of each ring, ring starts, trivalent vertices in order)."""
     walked = np.zeros((n_rows, 3), dtype=np.bool_)
     names = np.empty(n_rows, dtype=np.int64)
@@ -63,7 +65,7 @@ def face_rings(mesh, n_rows):
 
 
 @kernel
-def ring_moments(places, starts, corners, origin):
+def ring_moments(places: Floats2, starts: Integers, corners: Integers, origin: Floats) -> Floats:
     """(volume [m^3], volume times centroid less `origin` [m^4]) inside rings that close a surface."""
     moments = np.zeros(4)
     for f in range(len(starts) - 1):
@@ -88,7 +90,7 @@ def ring_moments(places, starts, corners, origin):
 
 
 @kernel
-def face_areas(body):
+def face_areas(body: PackedBody) -> Floats2:
     """(f, 4) area [m^2] and centroid [m] of each face."""
     numbers, indices = body.numbers, body.indices
     areas = np.empty((indices[N_FACES], 4))
@@ -116,7 +118,7 @@ def face_areas(body):
     return areas
 
 
-@inline(one_caller=True)
+@inline
 def whole_face(rows, i_body, areas, name, origin):
     """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face, by its name."""
     face = name - rows[i_body, FIRST_PLANE]
@@ -128,7 +130,7 @@ def whole_face(rows, i_body, areas, name, origin):
     return cone, x, y, z
 
 
-@inline(one_caller=True)
+@inline
 def cone_over(places, o, u, w):
     """(volume, volume times centroid) of the tetrahedron of the origin and three vertices."""
     ax, ay, az = places[o, 0], places[o, 1], places[o, 2]
@@ -139,8 +141,16 @@ def cone_over(places, o, u, w):
     return cone, quarter * (ax + bx + cx), quarter * (ay + by + cy), quarter * (az + bz + cz)
 
 
-@kernel(reference_counts=False)
-def trivalent_moments(block, state, table, rows, areas, areas_laid, origin):
+@kernel
+def trivalent_moments(
+    block: Floats,
+    state: Integers,
+    table: Shorts2,
+    rows: Integers2,
+    areas: Floats2,
+    areas_laid: Floats2,
+    origin: Floats,
+) -> tuple[float, float, float, float, float]:
     """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of a `Cut`.
 
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin; a face that no

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 
 SEPARATED, COMMON, STALLED = 0, 1, 2
 LIMIT = 128
@@ -21,9 +22,9 @@ LIMIT = 128
 class VertexGraph(NamedTuple):
     """The corners of a convex body (n, 3) [m], and its edges: the starts (n + 1,) of each corner's neighbours."""
 
-    vertices: np.ndarray
-    starts: np.ndarray
-    neighbours: np.ndarray
+    vertices: Floats2
+    starts: Integers
+    neighbours: Integers
 
 
 @inline
@@ -32,7 +33,7 @@ def hill_climb(graph, v, x, y, z):
 
     Source: Tereshchenko (2013), section 1; Ericson (2005), section 9.5.4.
     """
-    vertices, starts, neighbours = graph
+    vertices, starts, neighbours = graph.vertices, graph.starts, graph.neighbours
     best = vertices[v, 0] * x + vertices[v, 1] * y + vertices[v, 2] * z
     while True:
         here = v
@@ -47,7 +48,7 @@ def hill_climb(graph, v, x, y, z):
 
 
 @kernel
-def support(graph, v, direction):
+def support(graph: VertexGraph, v: int, direction: Floats) -> int:
     """The index of the vertex farthest in `direction`, climbing from vertex `v`."""
     return hill_climb(graph, v, direction[0], direction[1], direction[2])
 
@@ -168,7 +169,9 @@ def least_point(points, n, keep, shares, nearest):
 
 
 @kernel
-def gjk(a, b, ia, ib, tolerance):
+def gjk(
+    a: VertexGraph, b: VertexGraph, ia: int, ib: int, tolerance: float
+) -> tuple[int, int, int, Integers, Integers, Floats, Floats]:
     """GJK from vertices `ia`, `ib`: a common point with its simplex, or the nearest points of both.
 
     Args:

@@ -8,8 +8,9 @@ matched. Not for: deciding anything; if the edges do not match one to one, nothi
 
 from __future__ import annotations
 
-from clearance.compile.jit import inline, kernel
-from clearance.kernels.polytope.body import N_FACES, centroid_of, face_edges, place_of
+from clearance.compile.declared import Flags, Floats, Integers, Shorts, Shorts2
+from clearance.compile.decorators import inline, kernel
+from clearance.kernels.polytope.body import N_FACES, PackedBody, centroid_of, face_edges, place_of
 from clearance.kernels.polytope.cut import (
     FIRST,
     FREE,
@@ -24,6 +25,7 @@ from clearance.kernels.polytope.cut import (
     STAMP,
     USED,
     WHOLE,
+    Cut,
     own_corner,
 )
 from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
@@ -36,8 +38,15 @@ INSIDE = 1.0 - 1e-9
 """[-] Greatest gauge of a corner that counts as wholly inside: the rest are left to the seam."""
 
 
-@kernel(reference_counts=False)
-def mark_patch(body_a, body_b, base, table, inside, in_patch):
+@kernel
+def mark_patch(
+    body_a: PackedBody,
+    body_b: PackedBody,
+    base: int,
+    table: Shorts2,
+    inside: Flags,
+    in_patch: Flags,
+):
     """Sets `in_patch` (n,) for the corners of faces of B wholly inside A; these faces become `LATENT`.
 
     Args:
@@ -64,7 +73,7 @@ def mark_patch(body_a, body_b, base, table, inside, in_patch):
                 in_patch[indices[edge]] = True
 
 
-@inline(one_caller=True)
+@inline
 def is_under_patch(mesh, v, indices, base, in_patch):
     """True for a vertex over the patch or in one of its corners."""
     if mesh[v, 0] < 0:
@@ -78,7 +87,7 @@ def is_under_patch(mesh, v, indices, base, in_patch):
     return corner >= 0 and in_patch[corner]
 
 
-@inline(one_caller=True)
+@inline
 def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     """Number of edges that lead out of the marked vertices, or -1 if two lie on one plane."""
     n_rim = 0
@@ -105,7 +114,7 @@ def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     return n_rim
 
 
-@inline(one_caller=True)
+@inline
 def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
     """True if the patch's edges that lead out are those of `rim`, one to one."""
     n_out = 0
@@ -126,7 +135,7 @@ def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
     return n_out == n_rim
 
 
-@inline(one_caller=True)
+@inline
 def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
     """True if each vertex of the patch got its row, -1 for the others; the rows of those gone are freed first."""
     n_patch = 0
@@ -151,8 +160,17 @@ def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
     return True
 
 
-@kernel(reference_counts=False)
-def lay_patch(cut, body, corner, form, in_patch, rows, origin, base):
+@kernel
+def lay_patch(
+    cut: Cut,
+    body: PackedBody,
+    corner: Integers,
+    form: Shorts2,
+    in_patch: Flags,
+    rows: Shorts,
+    origin: Floats,
+    base: int,
+) -> bool:
     """True if the patch took the place of the vertices over it; faces left `LATENT` may then cut or not.
 
     Args:
@@ -160,7 +178,9 @@ def lay_patch(cut, body, corner, form, in_patch, rows, origin, base):
         rows: (t,) scratch; origin: (3,) what the places in `cut` are about; base: the number of the body's first
             plane.
     """
-    spots, mesh, state, work, rim, table = cut
+    spots, mesh, state, work, rim, table = (
+        cut.spots, cut.mesh, cut.state, cut.work, cut.rim, cut.table
+    )  # fmt: skip
     indices = body.indices
     state[STAMP] += 2
     stamp = state[STAMP]

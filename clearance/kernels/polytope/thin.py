@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import kernel
+from clearance.compile.declared import Floats2, Floats3, Integers2
+from clearance.compile.decorators import kernel
 from clearance.kernels.arithmetic.double_double import Wide3, cross3, difference, dot3, wide
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient3d
 from clearance.kernels.arithmetic.vec3 import row
 
 
 @kernel
-def supporting_triples(points):
+def supporting_triples(points: Floats2) -> Integers2:
     """(t, 3) corners i < j < l of a face, counter-clockwise, whose plane no other corner is above, exactly."""
     n = len(points)
     terms = np.empty(N_TERMS)
@@ -38,7 +39,7 @@ def supporting_triples(points):
 
 
 @kernel
-def stretched_planes(corners, origin, frame):
+def stretched_planes(corners: Floats3, origin: Floats2, frame: Floats2) -> Floats2:
     """(k, 4) rows (n, d): the planes n.y <= d through three corners each, where x = origin + frame y.
 
     Args:

@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 
 
 @inline
@@ -67,7 +68,7 @@ def _follows(points, first, count, tolerance, s, c, ux, uy):
 
 
 @kernel
-def arcs_of_ring(points, tolerance):
+def arcs_of_ring(points: Floats2, tolerance: float) -> tuple[Integers, Floats]:
     """Vertices and bulges (tan of a quarter of the sweep, positive to the left) of a ring's lines and arcs.
 
     Args:

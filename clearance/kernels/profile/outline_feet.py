@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats, Floats2, Integers
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.boxes import box_gap_sq
 
 RUN = 16
@@ -30,13 +31,13 @@ class FlatPieces(NamedTuple):
         box: (n, 4) [m] least and greatest x and y of each piece. run_box: (ceil(n / RUN), 4) of each run.
     """
 
-    start: np.ndarray
-    along: np.ndarray
-    center: np.ndarray
-    arm: np.ndarray
-    sweep: np.ndarray
-    box: np.ndarray
-    run_box: np.ndarray
+    start: Floats2
+    along: Floats2
+    center: Floats2
+    arm: Floats2
+    sweep: Floats
+    box: Floats2
+    run_box: Floats2
 
 
 @inline
@@ -83,7 +84,7 @@ def _squareness(pieces, k, share, ex, ey):
 
 
 @kernel
-def places_of(pieces, piece, share, out):
+def places_of(pieces: FlatPieces, piece: Integers, share: Floats, out: Floats2):
     """Writes the points (n, 2) at shares of pieces."""
     for i in range(len(piece)):
         out[i, 0], out[i, 1] = _point_at(pieces, piece[i], share[i])
@@ -100,7 +101,9 @@ def _nearest_run(pieces, x, y):
 
 
 @kernel
-def nearest_places(pieces, points, piece, share, foot):
+def nearest_places(
+    pieces: FlatPieces, points: Floats2, piece: Integers, share: Floats, foot: Floats2
+):
     """Writes piece and share (n,), and the nearest point (n, 2), for each of `points` (n, 2)."""
     n, n_runs = len(pieces.sweep), len(pieces.run_box)
     for i in range(len(points)):

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags2, Floats3, Integers, Integers2, Shorts2, Signs2
+from clearance.compile.decorators import inline, kernel
 
 SAFE = 1e-9
 """[m] How much wider edges are drawn than they are: a thousand times the rounding of a coordinate near 1e4 m."""
@@ -28,7 +29,7 @@ class Raster(NamedTuple):
     x: float
     y: float
     pixel: float
-    covered: np.ndarray
+    covered: Flags2
 
 
 @inline
@@ -88,14 +89,14 @@ class SweptEdges(NamedTuple):
         ways: of each of these, 1 where it runs from the edge's first vertex to the second, -1 where back.
     """
 
-    ends: np.ndarray
-    starts: np.ndarray
-    faces: np.ndarray
-    ways: np.ndarray
+    ends: Integers2
+    starts: Integers
+    faces: Integers
+    ways: Integers
 
 
 @kernel
-def add_cover(raster, points, edges, signs):
+def add_cover(raster: Raster, points: Floats3, edges: SweptEdges, signs: Signs2):
     """Marks what one body covers at several instants.
 
     Args:
@@ -105,7 +106,7 @@ def add_cover(raster, points, edges, signs):
         signs: (k, f) 1 for faces seen from the front at each instant, -1 from behind, 0 edge-on.
     """
     rows, columns = raster.covered.shape
-    ends, starts, faces, ways = edges
+    ends, starts, faces, ways = edges.ends, edges.starts, edges.faces, edges.ways
     touched = np.zeros((rows, columns + 1), np.bool_)
     steps = np.zeros((rows, columns + 1), np.int32)
     for k in range(points.shape[0]):
@@ -127,7 +128,7 @@ def add_cover(raster, points, edges, signs):
 
 
 @kernel
-def row_sums(covered):
+def row_sums(covered: Flags2) -> Shorts2:
     """(rows, columns + 1) the number of covered pixels before each column of each row."""
     rows, columns = covered.shape
     sums = np.zeros((rows, columns + 1), np.int32)

@@ -9,8 +9,10 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Flags, Floats2, Floats3, Integers, Integers2, Shorts2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.profile.swept_cover import (
+    Raster,
     add_inside,
     column_of,
     draw_edge,
@@ -36,7 +38,9 @@ def _crossing(p, q, level, out):
 
 
 @kernel
-def cut_segments(points, face_starts, face_vertices, closed, out):
+def cut_segments(
+    points: Floats2, face_starts: Integers, face_vertices: Integers, closed: Flags, out: Floats2
+) -> int:
     """Writes the directed cuts of the faces with the plane, inside on their left; returns how many.
 
     Args:
@@ -64,7 +68,9 @@ def cut_segments(points, face_starts, face_vertices, closed, out):
 
 
 @kernel
-def add_cut_cover(raster, points, face_starts, face_vertices, closed):
+def add_cut_cover(
+    raster: Raster, points: Floats3, face_starts: Integers, face_vertices: Integers, closed: Flags
+):
     """Marks the pixels that the closed parts of a body fill in the plane at several instants, (k, v, 3)."""
     rows, columns = raster.covered.shape
     touched = np.zeros((rows, columns + 1), np.bool_)
@@ -131,7 +137,16 @@ def _quarter(stack, at, six):
 
 
 @kernel
-def cut_hulls(raster, sums, start, end, triangles, reach, width, slack):
+def cut_hulls(
+    raster: Raster,
+    sums: Shorts2,
+    start: Floats2,
+    end: Floats2,
+    triangles: Integers2,
+    reach: float,
+    width: float,
+    slack: float,
+) -> tuple[Floats3, Integers]:
     """What triangles leave in the plane from one instant to the next, as convex polygons, uncovered only.
 
     Args:

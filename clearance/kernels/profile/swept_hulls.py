@@ -8,8 +8,9 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.kernels.profile.swept_cover import lies_covered
+from clearance.compile.declared import Floats2, Floats3, Integers, Integers2, Shorts2, Signs2
+from clearance.compile.decorators import inline, kernel
+from clearance.kernels.profile.swept_cover import Raster, SweptEdges, lies_covered
 
 MOST = 8
 """Corners of the largest polygon that is handed out here."""
@@ -110,7 +111,15 @@ def _part_of(points, k, a, b, low, high, four):
 
 
 @kernel
-def edge_hulls(raster, sums, points, edges, states, width, slack):
+def edge_hulls(
+    raster: Raster,
+    sums: Shorts2,
+    points: Floats3,
+    edges: SweptEdges,
+    states: Signs2,
+    width: float,
+    slack: float,
+) -> tuple[Floats3, Integers, Integers]:
     """What the edges that may bound a body's outline sweep between neighbouring instants, uncovered only.
 
     An edge is cut in halves until what it sweeps is convex or within `slack` of its hull.
@@ -126,7 +135,7 @@ def edge_hulls(raster, sums, points, edges, states, width, slack):
     Returns:
         corners (m, MOST, 2), n_corners (m,), interval (m,).
     """
-    ends, starts, faces, ways = edges
+    ends, starts, faces, ways = edges.ends, edges.starts, edges.faces, edges.ways
     found = 0
     corners, n_corners = np.empty((1024, MOST, 2)), np.empty(1024, np.int64)
     intervals = np.empty(1024, np.int64)
@@ -168,7 +177,9 @@ def edge_hulls(raster, sums, points, edges, states, width, slack):
 
 
 @kernel
-def triangle_hulls(raster, sums, points, triangles, width):
+def triangle_hulls(
+    raster: Raster, sums: Shorts2, points: Floats2, triangles: Integers2, width: float
+) -> tuple[Floats3, Integers]:
     """The triangles of one body at one instant that are not covered; as `edge_hulls`, without intervals."""
     corners = np.empty((len(triangles), MOST, 2))
     n_corners = np.empty(len(triangles), np.int64)

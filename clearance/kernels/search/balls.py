@@ -6,7 +6,7 @@ Bodies that are no clouds have the radius 0, so that one search serves all. Not 
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import minus, wide
 from clearance.kernels.arithmetic.vec3 import along, dot, sub
 

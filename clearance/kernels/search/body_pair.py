@@ -4,14 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import (
-    SEARCH,
-    apart,
-    at_address,
-    borrow,
-    table_like,
-)
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import (
     Wide3,
     plus3,
@@ -20,7 +13,7 @@ from clearance.kernels.arithmetic.double_double import (
 )
 from clearance.kernels.arithmetic.vec3 import Vec3, move, row
 from clearance.kernels.features.bounds import margin_of, rounding_slack
-from clearance.kernels.features.common_point import common_point_of
+from clearance.kernels.features.common_point import common_point
 from clearance.kernels.features.face_pair import (
     NOTHING_SEEN,
     FacePairState,
@@ -28,7 +21,7 @@ from clearance.kernels.features.face_pair import (
     nearest_of_faces,
     nothing_yet,
 )
-from clearance.kernels.features.posed_pair import parts, posed_pair_like
+from clearance.kernels.features.posed_pair import PosedPair, parts
 from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of
@@ -42,12 +35,11 @@ from clearance.kernels.search.front import (
     PairFront,
     forget,
     is_worth_separating,
-    no_fronts,
     note_separating_planes,
 )
-from clearance.kernels.search.overlap import Overlap, overlap_of
-from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.separating_planes import NOT_SEPARATED, separating_planes_of
+from clearance.kernels.search.overlap import Overlap, overlap
+from clearance.kernels.search.scratch import Scratch
+from clearance.kernels.search.separating_planes import NOT_SEPARATED, separate
 
 NO_FACE = -1
 
@@ -102,10 +94,10 @@ def _in_world(frames, x):
     return rounded(plus3(x, Wide3(wide(t.x), wide(t.y), wide(t.z))))
 
 
-@inline(one_caller=True)
-def _contact(bodies, found, tally, table):
+@inline
+def _contact(bodies, found, tally):
     face_a, face_b = found.face_a, found.face_b
-    common = common_point_of(table, parts(bodies, face_a, face_b), found.meeting)
+    common = common_point(parts(bodies, face_a, face_b), found.meeting)
     p, q = _in_world(bodies.frames, common.p), _in_world(bodies.frames, common.q)
     return PairDistance(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
@@ -137,12 +129,6 @@ NOTHING_MEASURED = PairDistance(
 )
 
 
-def _like():
-    question = PairQuestion(0.0, 0.0, 0, 0, False, 0, False)
-    front = PairFront(no_fronts(1, 0), 0, 0.0)
-    return posed_pair_like(), question, front, new_scratch(), table_like()
-
-
 @inline(force=True)
 def _afresh(a, root_a, b, root_b, m):
     """What a search begins with that knows nothing: the bodies' centres."""
@@ -165,13 +151,13 @@ def _begin(a, root_a, b, root_b, m, margin, question):
     return _afresh(a, root_a, b, root_b, m)
 
 
-@inline(one_caller=True)
-def _seek_planes(roots, best, limit, slack, front, scratch, table):
+@inline
+def _seek_planes(roots, best, limit, slack, front, scratch):
     """Planes that separate the bodies, where it may take less to seek them than to go on from the front."""
     fronts, pair = front.fronts, front.pair
     if not is_worth_separating(fronts, pair):
         return NOT_SEPARATED
-    planes = separating_planes_of(table, roots, best, limit, slack, scratch)
+    planes = separate(roots, best, limit, slack, scratch)
     if planes.n_waiting == 0:
         note_separating_planes(fronts, pair, planes.lower_bound > limit, HULLS_TOUCH)
     return planes
@@ -184,7 +170,7 @@ def _is_within(found, radii):
     return radii.both > 0.0 and refined.face_a != 2**62 and refined.length.hi <= radii.both
 
 
-@inline(one_caller=True)
+@inline
 def _of_planes(planes, question, slack, radii, tally):
     """What planes say that are farther apart than the limit."""
     nothing = nothing_yet(question.wanted * question.wanted)
@@ -192,7 +178,7 @@ def _of_planes(planes, question, slack, radii, tally):
     return PairDistance(nothing, lower_bound, 0.0, planes.face_a, planes.face_b, tally)
 
 
-@inline(one_caller=True)
+@inline
 def _of_descent(found, question, frames, slack, radii, tally):
     """What a descent has come to that has found no contact."""
     lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack) - radii.both)
@@ -213,8 +199,10 @@ def _of_descent(found, question, frames, slack, radii, tally):
     return PairDistance(hit, lower_bound, error, refined.face_a, refined.face_b, tally)
 
 
-@apart(SEARCH, _like)
-def search(bodies, question, front, scratch, table):
+@kernel
+def search(
+    bodies: PosedPair, question: PairQuestion, front: PairFront, scratch: Scratch
+) -> PairDistance:
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
@@ -222,7 +210,7 @@ def search(bodies, question, front, scratch, table):
         question: what is wanted and known, a `PairQuestion`.
         front: a `PairFront`; of clouds it holds how far their points are, as all does before the answer.
     """
-    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    a, b = bodies.surface_a, bodies.surface_b
     radii = radii_of(a, bodies.a, b, bodies.b)
     question = _of_centres(question, radii)
     frames, fronts, pair = bodies.frames, front.fronts, front.pair
@@ -231,26 +219,25 @@ def search(bodies, question, front, scratch, table):
     margin = margin_of(slack)
     n_nodes, n_faces, n_exact = 0, 0, 0
     if question.touches:
-        over = overlap_of(table, roots, slack, radii.both, scratch)
+        over = overlap(roots, slack, radii.both, scratch)
         n_nodes, n_faces = over.n_nodes, over.n_faces
         if over.face_a != NO_FACE:
             forget(fronts, pair)
             tally = Tally(n_nodes, n_faces, 0)
             if radii.both > 0.0:
                 return _touch(frames, over, radii, tally)
-            return _contact(bodies, over, tally, table)
+            return _contact(bodies, over, tally)
     first = _begin(a, roots.a, b, roots.b, frames.m, margin, question)
     limit = question.limit + margin
-    planes = _seek_planes(roots, first.best, limit, slack, front, scratch, table)
+    planes = _seek_planes(roots, first.best, limit, slack, front, scratch)
     n_nodes += planes.n_nodes
     if planes.lower_bound > limit:
         return _of_planes(planes, question, slack, radii, Tally(n_nodes, 0, 0))
     limits = SearchLimits(limit, question.wanted, slack, question.effort)
     best = first.best
     for _ in range(2):
-        found = descend(roots, best, first, limits, planes, front, scratch, table)
-        n_nodes += found.tally.nodes
-        n_faces += found.tally.faces
+        found = descend(roots, best, first, limits, planes, front, scratch)
+        n_nodes, n_faces = n_nodes + found.tally.nodes, n_faces + found.tally.faces
         n_exact += found.tally.exact_decisions
         if planes.n_waiting == 0:
             break
@@ -261,9 +248,8 @@ def search(bodies, question, front, scratch, table):
         best, planes = found.hit, NOT_SEPARATED  # the hulls are nearer than the bodies
     if found.meeting.found or _is_within(found, radii):
         # which of several is the answer must not depend on where the search began
-        over = overlap_of(table, roots, slack, radii.both, scratch)
-        n_nodes += over.n_nodes
-        n_faces += over.n_faces
+        over = overlap(roots, slack, radii.both, scratch)
+        n_nodes, n_faces = n_nodes + over.n_nodes, n_faces + over.n_faces
         tally = Tally(n_nodes, n_faces, n_exact)
         if radii.both > 0.0 and over.face_a != NO_FACE:
             forget(fronts, pair)
@@ -272,18 +258,12 @@ def search(bodies, question, front, scratch, table):
             if not over.meeting.found:
                 best = found.hit
                 over = Overlap(found.meeting, best, best.face_a, best.face_b, 0, 0)
-            return _contact(bodies, over, tally, table)
+            return _contact(bodies, over, tally)
     tally = Tally(n_nodes, n_faces, n_exact)
     if not (question.apart or planes.n_waiting > 0):
-        inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch, table)
+        inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
             return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
     return _of_descent(found, question, frames, slack, radii, tally)
-
-
-@inline(one_caller=True)
-def measure_pair(table, bodies, question, front, scratch):
-    """The same by address."""
-    return at_address(table, SEARCH, NOTHING_MEASURED, (bodies, question, front, scratch, table))

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.declared import Floats3, Floats4, Integers, Integers2
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
@@ -36,9 +37,9 @@ class CarriedBoxes(NamedTuple):
         standing: (b, 4, 4) [m] poses of those that stand.
     """
 
-    bounds: np.ndarray
-    links: np.ndarray
-    standing: np.ndarray
+    bounds: Floats3
+    links: Integers
+    standing: Floats3
 
 
 class BoxDisplacements(NamedTuple):
@@ -184,7 +185,7 @@ def _fill_displacements(boxes, poses, displacements):
 
 
 @kernel
-def steps_together(boxes, pairs, poses, spans):
+def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans: Integers2):
     """Fills the first step at which the boxes of each pair may overlap, and the one after the last; 0, 0 if none.
 
     Args:

@@ -18,14 +18,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import WINDING_NUMBER, apart, at_address
-from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
+from clearance.compile.declared import Shorts2
+from clearance.compile.decorators import inline, kernel
+from clearance.kernels.arithmetic.double_double import Frames, size
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.predicates import (
     FILTER,
+    ExactScratch,
     PosedVertex,
-    new_exact_scratch,
     orient_posed,
     set_poses,
     side_along,
@@ -33,7 +33,7 @@ from clearance.kernels.arithmetic.predicates import (
 )
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, inverse, move, move_back, row, sub
 from clearance.kernels.features.bounds import LEAN, lower_bound_boxes, rounding_slack
-from clearance.kernels.mesh.surface import box_of, is_leaf, surface_like
+from clearance.kernels.mesh.surface import Surface, box_of, is_leaf
 
 AXIS = 2
 """The ray's coordinate axis."""
@@ -183,32 +183,26 @@ class Probe(NamedTuple):
     far: float
 
 
-def _like():
-    nodes = np.empty((0, 2), dtype=np.int32)
-    nowhere = Vec3(0.0, 0.0, 0.0)
-    return (
-        surface_like(),
-        0,
-        True,
-        Probe(nowhere, nowhere, 0.0),
-        FRAMES_AT_REST,
-        new_exact_scratch(),
-        nodes,
-    )
-
-
 @inline
 def _wait_for_children(surface, node, waiting, n_waiting):
     """Lets the children of a node wait; how many nodes wait."""
     first = WIDTH * np.int64(surface.children[node, 0])
-    for k in range(surface.children[node, 1]):
+    for k in range(np.int64(surface.children[node, 1])):
         waiting[n_waiting, 0] = first + k
         n_waiting += 1
     return n_waiting
 
 
-@apart(WINDING_NUMBER, _like)
-def winding_number(surface, body, is_b, probe, frames, exact, nodes):
+@kernel
+def winding_number(
+    surface: Surface,
+    body: int,
+    is_b: bool,
+    probe: Probe,
+    frames: Frames,
+    exact: ExactScratch,
+    nodes: Shorts2,
+) -> int:
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
 
     Args:
@@ -232,7 +226,9 @@ def winding_number(surface, body, is_b, probe, frames, exact, nodes):
         if not is_leaf(surface, node):
             n_waiting = _wait_for_children(surface, node, nodes, n_waiting)
         elif surface.turns[first] != 0:
-            number += surface.turns[first] * _crossings(surface, first, side, vertex, exact)
+            number += np.int64(surface.turns[first]) * _crossings(
+                surface, first, side, vertex, exact
+            )
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
         one, two = (
             PosedVertex(row(surface.caps, i), side),
@@ -245,7 +241,7 @@ def winding_number(surface, body, is_b, probe, frames, exact, nodes):
 
 
 @inline
-def _is_inside(one, at, two, body_two, is_a, frames, scratch, table):
+def _is_inside(one, at, two, body_two, is_a, frames, scratch):
     """(True if vertex `at` of a body is inside the other, the vertex, the same in the other's frame)."""
     v = row(one.vertices, at)
     x = move_back(frames.m, v) if is_a else move(frames.m, v)
@@ -254,7 +250,7 @@ def _is_inside(one, at, two, body_two, is_a, frames, scratch, table):
     if in_box(two, two.roots[body_two], x, away):
         probe = Probe(row(one.exact, at), x, away)
         arguments = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
-        number = at_address(table, WINDING_NUMBER, 0, arguments)
+        number = winding_number(*arguments)
         inside = number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL
     return inside, v, x
 
@@ -273,7 +269,7 @@ def _is_probe(surface, body, at):
 
 
 @inline
-def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table):
+def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch):
     """The same of all probes of a cloud, those in nodes that reach into the other body's box."""
     m = inverse(frames.m) if is_a else frames.m  # from the cloud to the other body
     slack = rounding_slack(one, one.roots[body_one], two, two.roots[body_two], frames)
@@ -291,14 +287,14 @@ def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table):
             continue
         at = one.face_vertices[one.face_starts[first]]
         if _is_probe(one, body_one, at):
-            inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch, table)
+            inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch)
             if inside:
                 return True, v, x
     return False, frames.m.t, frames.m.t
 
 
-@inline(one_caller=True)
-def contained(a, body_a, b, body_b, frames, scratch, table):
+@inline
+def contained(a, body_a, b, body_b, frames, scratch):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
@@ -307,13 +303,13 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
     for side in range(2):
         is_a = side == 0
         if one.radii[body_one] > 0.0:
-            inside, v, x = _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table)
+            inside, v, x = _of_cloud(one, body_one, two, body_two, is_a, frames, scratch)
             if inside:
                 return True, v if is_a else x
         else:
             for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
                 at = one.probes[i]
-                inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch, table)
+                inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch)
                 if inside:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a

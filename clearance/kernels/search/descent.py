@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
     first_of,
@@ -128,7 +127,7 @@ def _leave_pair(scratch, n_left, node_a, node_b, kept):
     return leave(scratch, n_left, nodes, 1 << node_a % WIDTH, kept)
 
 
-@inline(one_caller=True)
+@inline
 def _resume(a, b, near, slack, front, scratch):
     """Splits the front of a pair: what is still far stays in it, the rest waits."""
     fronts, moved = front.fronts, front.moved
@@ -139,7 +138,11 @@ def _resume(a, b, near, slack, front, scratch):
     nearest = 0
     lower_bound = math.inf
     for i in range(start, start + fronts.spans[front.pair, 1]):
-        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
+        group, other, marks = (
+            np.int64(fronts.entries[i, 0]),
+            np.int64(fronts.entries[i, 1]),
+            np.int64(fronts.entries[i, 2]),
+        )
         carried = fronts.lower_bounds[i]
         if carried - moved <= near.cut:
             nodes = NodeGroup(marks >= OF_B, group, other)
@@ -169,7 +172,7 @@ def _resume(a, b, near, slack, front, scratch):
     return NodeQueue(n_kept, n_waiting, n_nodes, lower_bound)
 
 
-@inline(one_caller=True)
+@inline
 def _begin(a, b, roots, near, slack, planes, front, scratch):
     """What waits first: what the separating planes or the front have left, or the roots."""
     if planes.n_waiting > 0:
@@ -186,8 +189,8 @@ def _begin(a, b, roots, near, slack, planes, front, scratch):
     return NodeQueue(0, n_waiting, n_nodes, math.inf)
 
 
-@inline(one_caller=True)
-def descend(roots, best, first, limits, planes, front, scratch, table):
+@inline
+def descend(roots, best, first, limits, planes, front, scratch):
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 
     Args:
@@ -199,13 +202,12 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
         planes: of `SeparatingPlanes`: if leaves wait already only these are looked at; nothing else is nearer than
             it says.
         front: of `PairFront`, where the front of the pair is kept.
-        table: of `kernel_table`.
 
     A pair of nodes or faces is left only if a lower bound exceeds the best distance by more than its own
     error, so that every face pair that attains the minimum is refined, and the answer does not depend on
     the order of the search. It stops at the first contact.
     """
-    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    a, b = roots.surface_a, roots.surface_b
     slack, n_exact = limits.slack, scratch.exact.count[0]
     near = nearest_so_far(best, limits, roots.frames.m)
     queue = _begin(a, b, roots, near, slack, planes, front, scratch)
@@ -219,7 +221,10 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
             lower_bound = -math.inf
             break
         n_waiting -= 1
-        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
+        node_a, node_b = (
+            np.int64(scratch.nodes[n_waiting, 0]),
+            np.int64(scratch.nodes[n_waiting, 1]),
+        )
         bound = scratch.bounds[n_waiting]
         is_kept = node_a < 0  # leaves, which the front has
         if is_kept:
@@ -231,7 +236,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
                 n_left = _leave_pair(scratch, n_left, node_a, node_b, kept)
         elif is_leaf(a, node_a) and is_leaf(b, node_b):
             faces = parts(roots, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
-            search = look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch)
+            search = look_at_faces(faces, bound, first, search, limits, n_waiting, scratch)
             if not is_kept:  # the roots
                 kept = (bound + front.moved) * KEPT_DOWN
                 n_left = _leave_pair(scratch, n_left, node_a, node_b, kept)
@@ -252,7 +257,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
     met = search.meeting
     refined = search.progress.refined
     if not met.found:
-        refined = settle_waiting(table, roots, search, limits, search.near.gap, scratch)
+        refined = settle_waiting(roots, search, limits, search.near.gap, scratch)
     if met.found or lower_bound == -math.inf:
         forget(front.fronts, front.pair)
     elif planes.n_waiting == 0:

@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import WINDING_NUMBER, at_address
+from clearance.compile.declared import Flags, Floats, Floats2, Floats3
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.double_double import frames_of, size
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
@@ -21,12 +21,14 @@ from clearance.kernels.arithmetic.vec3 import (
     row,
     sub,
 )
+from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.search.containment import (
     DOUBTFUL,
     Probe,
     in_box,
     signed_turns_of_caps,
     solid_angle,
+    winding_number,
 )
 from clearance.kernels.search.scratch import new_scratch
 
@@ -35,7 +37,14 @@ WOUND = 0.98
 
 
 @kernel
-def generalized_windings(surface, points, poses, poses_of_points, least, most, table):
+def generalized_windings(
+    surface: Surface,
+    points: Floats2,
+    poses: Floats3,
+    poses_of_points: Floats3,
+    least: Floats,
+    most: Floats,
+):
     """Fills the least and greatest magnitude of the points' winding numbers at each of n poses, caps not counted.
 
     Points outside the body's box have 0. To rounding, but for points near a cap, which may be off by 1.
@@ -65,10 +74,7 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
                     scratch.exact,
                     scratch.nodes,
                 )
-                number = abs(
-                    at_address(table, WINDING_NUMBER, 0, arguments)
-                    - signed_turns_of_caps(surface, 0, x)
-                )
+                number = abs(winding_number(*arguments) - signed_turns_of_caps(surface, 0, x))
             least[i] = min(least[i], number)
             most[i] = max(most[i], number)
 
@@ -123,7 +129,15 @@ def _is_beside(low, high, low_of_other, high_of_other, frame, frame_of_other):
 
 
 @kernel
-def near_holes(holes, bounds, low, high, poses, poses_of_box, found):
+def near_holes(
+    holes: Floats2,
+    bounds: Floats2,
+    low: Floats,
+    high: Floats,
+    poses: Floats3,
+    poses_of_box: Floats3,
+    found: Flags,
+):
     """Sets `found` (n,) where a box may see more than nearly `DOUBTFUL` through holes, at each of n poses.
 
     A surface of area A that is nowhere nearer than d has a solid angle of at most A / d^2.
@@ -183,7 +197,15 @@ def _all_within(bounds, points, frame, frame_of_points):
 
 
 @kernel
-def wound_by_loose(triangles, bounds, points, poses, poses_of_points, stride, found):
+def wound_by_loose(
+    triangles: Floats3,
+    bounds: Floats2,
+    points: Floats2,
+    poses: Floats3,
+    poses_of_points: Floats3,
+    stride: float,
+    found: Flags,
+):
     """Sets `found` (n,) where triangles go round all of some points, within their bounds, by `WOUND`.
 
     Of poses in a row at which the points are within the bounds, the first and the last are asked, and each at

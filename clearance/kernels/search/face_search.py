@@ -6,8 +6,7 @@ Not for: which faces are looked at (`descent`).
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import borrow
+from clearance.compile.decorators import inline
 from clearance.kernels.features.bounds import lower_bound_faces_along_direction, margin_of
 from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import (
@@ -17,7 +16,7 @@ from clearance.kernels.features.face_pair import (
     may_own_nearest,
     nearest_of_faces,
 )
-from clearance.kernels.features.meeting import Meeting, meeting_of
+from clearance.kernels.features.meeting import Meeting, meeting
 from clearance.kernels.features.refine import (
     N_WAITING,
     RefineBounds,
@@ -108,18 +107,18 @@ def _nearest_last(scratch, n_waiting):
 
 
 @inline(force=True)
-def settle_waiting(table, bodies, search, limits, least, scratch):
+def settle_waiting(bodies, search, limits, least, scratch):
     """The best after all face pairs that wait; no two are nearer than `least` [m] but for rounding."""
     near, progress = search.near, search.progress
     refine_bounds = RefineBounds(near.views.a.direction, limits.slack, least)
     cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin_of(limits.slack))
     return settle(
-        table, bodies, scratch.waiting, progress.n_waiting, cutoff, refine_bounds, progress.refined
+        bodies, scratch.waiting, progress.n_waiting, cutoff, refine_bounds, progress.refined
     )
 
 
 @inline(force=True)
-def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
+def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch):
     """Lets a face pair wait to be refined; where too many wait, those are refined that can still win.
 
     Many arguments: it is inlined into the inner loop, whose locals they are.
@@ -132,16 +131,16 @@ def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
         if n_waiting > N_WAITING // 2:
             few = RefineProgress(n_waiting, refined, progress.hides)
             left = FaceSearch(near, few, search.meeting, search.lower_bound, search.n_measured)
-            refined = settle_waiting(table, faces, left, limits, 0.0, scratch)
+            refined = settle_waiting(faces, left, limits, 0.0, scratch)
             n_waiting = 0
     put(scratch.waiting, n_waiting, faces.a, faces.b, seen, least_sq)
     return RefineProgress(n_waiting + 1, refined, progress.hides)
 
 
-@inline(one_caller=True)
-def look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch):
+@inline
+def look_at_faces(faces, bound, first, search, limits, n_waiting, scratch):
     """What is known after a pair of leaves, `bound` [m] apart at least, while so many node pairs wait."""
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     before, slack, margin = search.near, limits.slack, margin_of(limits.slack)
     face_a, face_b, m = faces.a, faces.b, faces.frames.m
     near, lower_bound, met = before, search.lower_bound, search.meeting
@@ -165,7 +164,7 @@ def look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch
             apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
         gap = sure_gap(a, face_a, b, face_b, m, margin, apart)
         if bound <= 0.0 and gap <= 0.0:
-            met = meeting_of(table, faces, scratch.exact)
+            met = meeting(faces, scratch.exact)
         if met.found:
             touching = Hit(0.0, face_a, face_b, m.t, m.t)
             near = NearestSoFar(touching, near.gap, near.cut, near.views)
@@ -180,9 +179,7 @@ def look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch
             may_win = least_sq < math.inf and least_sq <= reach * reach
             if may_win:
                 known = FaceSearch(near, progress, met, lower_bound, n_measured)
-                progress = _let_wait(
-                    a, b, faces, measured.seen, least_sq, known, limits, scratch, table
-                )
+                progress = _let_wait(a, b, faces, measured.seen, least_sq, known, limits, scratch)
             if may_win and not is_told:
                 progress = RefineProgress(progress.n_waiting, progress.refined, True)
             elif least_sq < math.inf:

@@ -8,11 +8,12 @@ An entry is a group of nodes of one body against a node of the other, `(group, o
 says that node k of the group is meant, `OF_B` that the group is of b.
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Integers, Integers2, LentTo, Shorts2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH
 
 POOL = 1 << 17
@@ -52,10 +53,10 @@ class Fronts(NamedTuple):
         used: (1,) places of the pool that are given away.
     """
 
-    entries: np.ndarray
-    lower_bounds: np.ndarray
-    spans: np.ndarray
-    used: np.ndarray
+    entries: Shorts2
+    lower_bounds: Floats
+    spans: Integers2
+    used: Integers
 
 
 class PairFront(NamedTuple):
@@ -65,12 +66,12 @@ class PairFront(NamedTuple):
         pair: its number in `fronts`. moved: [m] what both bodies have moved in all.
     """
 
-    fronts: Fronts
+    fronts: Annotated[Fronts, LentTo]
     pair: int
     moved: float
 
 
-@shared
+@inline
 def no_fronts(n_pairs, pool):
     """Fronts of length 0; those of single queries have no pool."""
     return Fronts(

@@ -3,7 +3,9 @@
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inline
+import numpy as np
+
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
     first_of,
@@ -149,8 +151,10 @@ def opened(a, node_a, b, node_b):
     if is_leaf(a, node_a) or (
         not is_leaf(b, node_b) and _breadth(box_of(a, node_a)) < _breadth(box_of(b, node_b))
     ):
-        return NodeGroup(True, b.children[node_b, 0], node_a), b.children[node_b, 1]
-    return NodeGroup(False, a.children[node_a, 0], node_b), a.children[node_a, 1]
+        group, count = np.int64(b.children[node_b, 0]), np.int64(b.children[node_b, 1])
+        return NodeGroup(True, group, node_a), count
+    group, count = np.int64(a.children[node_a, 0]), np.int64(a.children[node_a, 1])
+    return NodeGroup(False, group, node_b), count
 
 
 @inline(force=True)

@@ -12,17 +12,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import OVERLAP, apart, at_address, borrow, table_like
+from clearance.compile.decorators import kernel
 from clearance.kernels.arithmetic.lanes import marks_within
 from clearance.kernels.arithmetic.vec3 import Vec3, inverse
 from clearance.kernels.features.bounds import lower_bound_boxes, margin_of
 from clearance.kernels.features.face_pair import Hit, nearest_of_faces, nothing_yet
-from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.features.posed_pair import parts, posed_pair_like
+from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting
+from clearance.kernels.features.posed_pair import PosedPair, parts
 from clearance.kernels.mesh.surface import is_leaf
 from clearance.kernels.search.node_pairs import boxes_of_group, opened, wait_for_near
-from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.scratch import Scratch
 
 
 class Overlap(NamedTuple):
@@ -44,8 +43,8 @@ NO_HIT = Hit(np.inf, 2**62, 2**62, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
 NO_OVERLAP = Overlap(NO_MEETING, NO_HIT, -1, -1, 0, 0)
 
 
-@apart(OVERLAP, lambda: (posed_pair_like(), 0.0, 0.0, new_scratch(), table_like()))
-def overlap(roots, slack, reach, scratch, table):
+@kernel
+def overlap(roots: PosedPair, slack: float, reach: float, scratch: Scratch) -> Overlap:
     """The first two faces found to have a point in common, exactly; all that can are looked at.
 
     Args:
@@ -53,7 +52,7 @@ def overlap(roots, slack, reach, scratch, table):
         slack: [m] of `rounding_slack`, by which nodes may seem to be apart.
         reach: [m] of the balls of both bodies together; 0 where neither is a cloud.
     """
-    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    a, b = roots.surface_a, roots.surface_b
     m = roots.frames.m
     back = inverse(m)
     margin = margin_of(slack)
@@ -75,7 +74,7 @@ def overlap(roots, slack, reach, scratch, table):
                 if near.best.face_a != 2**62:
                     return Overlap(NO_MEETING, near.best, face_a, face_b, n_nodes, n_faces)
                 continue
-            met = meeting_of(table, parts(roots, face_a, face_b), scratch.exact)
+            met = meeting(parts(roots, face_a, face_b), scratch.exact)
             if met.found:
                 return Overlap(met, NO_HIT, face_a, face_b, n_nodes, n_faces)
             continue
@@ -86,9 +85,3 @@ def overlap(roots, slack, reach, scratch, table):
         marks = ((1 << count) - 1) & marks_within(bounds, reach)
         n_waiting, _ = wait_for_near(scratch, n_waiting, nodes, bounds, marks, math.inf)
     return Overlap(NO_MEETING, NO_HIT, np.int64(-1), np.int64(-1), n_nodes, n_faces)
-
-
-@inline(one_caller=True)
-def overlap_of(table, roots, slack, reach, scratch):
-    """The same by address."""
-    return at_address(table, OVERLAP, NO_OVERLAP, (roots, slack, reach, scratch, table))

@@ -1,24 +1,25 @@
 """One body pair at many poses: what a search has found is held, and the next one goes on from there.
 
-The pair, its room to search in and what it knows lie in one structure on the heap, of which a call from Python
-hands over the address; two surfaces handed over array by array cost more than most searches: 50 µs against 0.8 µs
+The pair, its room to search in and what it knows are written down once, and a call from Python hands over the
+address; two surfaces handed over array by array cost more than most searches: 50 µs against 0.8 µs
 on a busy machine. Not for: many pairs at once (`sweep`).
 """
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from clearance.compile.heap import HeapHandle
-from clearance.compile.jit import DISABLED, inline, kernel, lie_on_heap
-from clearance.compile.kernel_table import lend
+from clearance.compile.calls import Written
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers, Integers2, LentTo
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.bounds import displacement, rounding_slack
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
+from clearance.kernels.mesh.surface import Surface, box_of
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, search
 from clearance.kernels.search.front import (
     KEPT_DOWN,
     LONGEST,
@@ -27,6 +28,7 @@ from clearance.kernels.search.front import (
     forget,
     no_fronts,
 )
+from clearance.kernels.search.scratch import Scratch
 
 ROOM = 2 * LONGEST + 16
 """Node pairs that the front of the pair has room for: as many as the longest front asks for."""
@@ -45,8 +47,6 @@ MOVED, LOWER_BOUND, STRIDE = 0, 1, 2
 POSES_ARE_RIGID, AFRESH = 1, 2
 """How `nearest_at_poses` is asked; numbers, since each argument that Python hands over takes time."""
 
-_FIELDS = ("a", "b", "scratch", "fronts", "poses", "witness_faces", "carried")
-
 
 class HeldPair(NamedTuple):
     """A body pair and what is known of it.
@@ -60,21 +60,13 @@ class HeldPair(NamedTuple):
             far they may move at once before a search from the roots is better.
     """
 
-    a: object
-    b: object
-    scratch: object
-    fronts: object
-    poses: np.ndarray
-    witness_faces: np.ndarray
-    carried: np.ndarray
-
-
-if not DISABLED:
-
-    class HeldPair(HeapHandle):
-        """The handle that Python has of a pair on the heap; fields as above."""
-
-    lie_on_heap(HeldPair, _FIELDS)
+    a: Surface
+    b: Surface
+    scratch: Scratch
+    fronts: Fronts
+    poses: Floats3
+    witness_faces: Integers
+    carried: Floats
 
 
 @inline
@@ -84,13 +76,13 @@ def _breadth(surface):
     return 2.0 * max(half.x, max(half.y, half.z))
 
 
-@kernel
-def hold_pair(a, b, room, scratch):
+def hold_pair(a: Surface, b: Surface, room: int, scratch: Scratch):
     """A pair of surfaces of which nothing is known yet, with room for a front of so many node pairs."""
-    return HeldPair(
+    held = HeldPair(
         a, b, scratch, no_fronts(1, room), np.zeros((2, 4, 4)), np.array([NO_FACE, NO_FACE]),
         np.array([0.0, -np.inf, FAR * min(_breadth(a), _breadth(b))]),
     )  # fmt: skip
+    return Written(held, HeldPair)
 
 
 @inline
@@ -114,10 +106,10 @@ def _is_surely_rigid(pose):
 class PairState(NamedTuple):
     """What is known of a pair: the fields of `HeldPair` that change from question to question."""
 
-    fronts: Fronts
-    poses: np.ndarray
-    witness_faces: np.ndarray
-    carried: np.ndarray
+    fronts: Annotated[Fronts, LentTo]
+    poses: Floats3
+    witness_faces: Integers
+    carried: Floats
 
 
 @inline
@@ -137,8 +129,8 @@ def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
 
 
 @inline
-def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
-    """The nearest points of a pair, as `measure_pair` gives them.
+def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b):
+    """The nearest points of a pair, as `search` gives them.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
     """
@@ -153,7 +145,7 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
         question = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
         forget(state.fronts, 0)
     bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
-    measured = measure_pair(table, bodies, question, PairFront(state.fronts, 0, moved), scratch)
+    measured = search(bodies, question, PairFront(state.fronts, 0, moved), scratch)
     state.carried[MOVED] = moved
     state.carried[LOWER_BOUND] = (measured.lower_bound + moved) * KEPT_DOWN
     state.witness_faces[0], state.witness_faces[1] = measured.face_a, measured.face_b
@@ -164,7 +156,15 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
 
 
 @kernel
-def nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts, table):
+def nearest_at_poses(
+    held: HeldPair,
+    poses_a: Floats3,
+    poses_b: Floats3,
+    how: int,
+    numbers: Floats2,
+    points: Floats3,
+    counts: Integers2,
+) -> int:
     """Fills a row for each pose and returns -1, or nothing and the first row with a pose that is in doubt.
 
     Args:
@@ -182,14 +182,12 @@ def nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts, table
         ):
             return i
     state = PairState(held.fronts, held.poses, held.witness_faces, held.carried)
-    _nearest(
-        held.a, held.b, state, held.scratch, poses_a, poses_b, how, numbers, points, counts, table
-    )
+    _nearest(held.a, held.b, state, held.scratch, poses_a, poses_b, how, numbers, points, counts)
     return -1
 
 
-@inline(reference_counts=False)
-def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts, table):
+@inline
+def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts):
     """Fills a row for each pose.
 
     Many arguments: what belongs together is in tuples already, which numba passes array by array.
@@ -200,7 +198,7 @@ def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, count
         if how & AFRESH:
             state.carried[LOWER_BOUND] = -np.inf
         pose_a, pose_b = poses_a[min(i, last_a)], poses_b[min(i, last_b)]
-        measured = _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table)
+        measured = _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error
         write_points(hit, points[i])

@@ -5,16 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import (
-    POLYGONS,
-    LentArgument,
-    apart,
-    at_address,
-    borrow,
-    lend,
-    table_like,
-)
+from clearance.compile.declared import Flags, Floats, Floats3
+from clearance.compile.decorators import inline, kernel
+from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, minus3, rounded
 from clearance.kernels.arithmetic.predicates import new_exact_scratch
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, row, sub
@@ -23,14 +16,14 @@ from clearance.kernels.features.bounds import (
     direction_between,
     lower_bound_faces_along_direction,
 )
-from clearance.kernels.features.common_point import common_point_of
+from clearance.kernels.features.common_point import common_point
 from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import limit_of, may_meet, nearest_of_faces, nothing_yet
-from clearance.kernels.features.meeting import meeting_of
+from clearance.kernels.features.meeting import meeting
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.features.refine import NOTHING_REFINED, error_of, refined_of
+from clearance.kernels.features.refine import NOTHING_REFINED, error_of, refine
 from clearance.kernels.mesh.face_planes import plane_of, unit
-from clearance.kernels.mesh.surface import ANYTHING, Surface, surface_like
+from clearance.kernels.mesh.surface import ANYTHING, Surface
 
 UNDERFLOWN = 2.0**-400
 """Distance at our scale below which squares underflow: 10^-180 of the polygons' size."""
@@ -47,11 +40,11 @@ class PolygonPairAnswers(NamedTuple):
         contact: (k,) bool. exact: (k,) True where the decision took exact arithmetic.
     """
 
-    distance: np.ndarray
-    error: np.ndarray
-    points: np.ndarray
-    contact: np.ndarray
-    exact: np.ndarray
+    distance: Floats
+    error: Floats
+    points: Floats3
+    contact: Flags
+    exact: Flags
 
 
 @inline
@@ -159,23 +152,23 @@ def _fill(surface, points, first, origin, scale):
     return reach
 
 
-@inline(one_caller=True)
-def _measure(faces, margin, exact, table):
+@inline
+def _measure(faces, margin, exact):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
-    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    a, b = faces.surface_a, faces.surface_b
     frames = faces.frames
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
     direction = direction_between(near.best.p, near.best.q, frames.m)
     if lower_bound_faces_along_direction(a, 0, b, 0, direction) <= margin and may_meet(
         a, 0, b, 0, frames.m, margin
     ):
-        found = meeting_of(table, faces, exact)
+        found = meeting(faces, exact)
         if found.found:
-            common = common_point_of(table, faces, found)
+            common = common_point(faces, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
     cutoff = FeatureCutoff(limit, margin)
-    refined = refined_of(table, faces, near.seen, cutoff, NOTHING_REFINED)
+    refined = refine(faces, near.seen, cutoff, NOTHING_REFINED)
     distance = refined.length.hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
@@ -189,17 +182,10 @@ def _measure(faces, margin, exact, table):
     return distance, error, rounded(refined.p), rounded(refined.q), False
 
 
-def _like():
-    polygons, flags = np.empty((0, 3, 3)), np.empty(0, dtype=np.bool_)
-    answers = PolygonPairAnswers(np.empty(0), np.empty(0), polygons, flags, flags)
-    room = LentArgument(surface_like()), LentArgument(surface_like()), new_exact_scratch()
-    return polygons, polygons, *room, answers, table_like()
-
-
-@apart(POLYGONS, _like)
-def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
+@inline
+def nearest_each(ps, qs, lent_p, lent_q, exact, answers):
     """Fills `answers`, with arrays for one polygon of each side."""
-    a_p, b_q = borrow(lent_p), borrow(lent_q)
+    a_p, b_q = lent_p, lent_q
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
         in_order = _comes_first(ps[k], first_p, qs[k], first_q)
@@ -213,7 +199,7 @@ def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
         if not in_order:
             a, b = lent_q, lent_p
         faces = PosedPair(a, 0, b, 0, FRAMES_AT_REST)
-        distance, error, p, q, contact = _measure(faces, margin, exact, table)
+        distance, error, p, q, contact = _measure(faces, margin, exact)
         if not in_order:
             p, q = q, p
         answers.distance[k] = distance * unscale
@@ -228,10 +214,8 @@ def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
 
 
 @kernel
-def nearest_polygons(ps, qs, answers, table):
+def nearest_polygons(ps: Floats3, qs: Floats3, answers: PolygonPairAnswers):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`; all arrays contiguous and writable."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    at_address(
-        table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), new_exact_scratch(), answers, table)
-    )
+    nearest_each(ps, qs, lend(a_p), lend(b_q), new_exact_scratch(), answers)
     a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline, shared
+from clearance.compile.declared import Floats, Shorts2
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.predicates import ExactScratch, new_exact_scratch
 from clearance.kernels.features.refine import RefineQueue, new_refine_queue
@@ -18,15 +19,15 @@ those of a million faces split at the mean are below 100 deep, and `descend` che
 class Scratch(NamedTuple):
     """Arrays for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
 
-    nodes: np.ndarray  # (STACK_DEPTH, 2) int32
-    bounds: np.ndarray  # (STACK_DEPTH,)
-    left: np.ndarray  # (LONGEST + 2, 3) int32, entries of a front that were left
-    lower_bounds: np.ndarray  # (LONGEST + 2,)
+    nodes: Shorts2  # (STACK_DEPTH, 2) int32
+    bounds: Floats  # (STACK_DEPTH,)
+    left: Shorts2  # (LONGEST + 2, 3) int32, entries of a front that were left
+    lower_bounds: Floats  # (LONGEST + 2,)
     waiting: RefineQueue
     exact: ExactScratch
 
 
-@shared
+@inline
 def new_scratch():
     """Scratch of one search at a time."""
     return Scratch(

@@ -17,14 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
-from clearance.compile.kernel_table import SEPARATING_PLANES, apart, at_address, borrow
+from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, row, sub
 from clearance.kernels.features.bounds import direction_between, margin_of
 from clearance.kernels.features.face_pair import Hit
-from clearance.kernels.features.posed_pair import posed_pair_like
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.features.segments import foot_inside
-from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.scratch import Scratch
 from clearance.kernels.search.support import TILT, SupportPoint, high_corner, top_of
 
 TURNS = 24
@@ -131,11 +130,6 @@ def _nearest_with(n, p, q, r, w):
     return near, n, p, q, r
 
 
-def _like():
-    hit = Hit(0.0, 0, 0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-    return posed_pair_like(), hit, 0.0, 0.0, new_scratch()
-
-
 @inline(force=True)
 def _let_wait(n_a, n_b, lower_bound, scratch):
     """Lets each pair of the leaves in both columns of `scratch.left` wait; how many they are."""
@@ -143,8 +137,8 @@ def _let_wait(n_a, n_b, lower_bound, scratch):
     for i in range(n_a):
         for k in range(n_b):
             scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = (
-                ~scratch.left[i, 0],
-                scratch.left[k, 1],
+                ~np.int64(scratch.left[i, 0]),
+                np.int64(scratch.left[k, 1]),
             )
             scratch.bounds[n_waiting] = lower_bound
             n_waiting += 1
@@ -205,8 +199,10 @@ def _with_corners(simplex, a, b, corner_a, corner_b, m):
     return HullSimplex(n, near, p, q, r)
 
 
-@apart(SEPARATING_PLANES, _like)
-def separate(roots, best, limit, slack, scratch):
+@kernel
+def separate(
+    roots: PosedPair, best: Hit, limit: float, slack: float, scratch: Scratch
+) -> SeparatingPlanes:
     """Seeks planes that separate the bodies by the distance of their nearest points, or by more than a limit [m].
 
     Pairs of leaves that touch the planes wait, as those do that a front has.
@@ -216,7 +212,7 @@ def separate(roots, best, limit, slack, scratch):
         best: a hit, whose points say where to begin.
         slack: [m] of `rounding_slack`.
     """
-    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    a, b = roots.surface_a, roots.surface_b
     m, margin = roots.frames.m, margin_of(slack)
     origin, near = Vec3(0.0, 0.0, 0.0), sub(best.p, best.q)
     simplex = HullSimplex(0, near, near, near, near)
@@ -266,9 +262,3 @@ def separate(roots, best, limit, slack, scratch):
         else:
             is_proof = True
     return SeparatingPlanes(-math.inf, -math.inf, 0, n_nodes, face_a, face_b)
-
-
-@inline(one_caller=True)
-def separating_planes_of(table, roots, best, limit, slack, scratch):
-    """The same by address."""
-    return at_address(table, SEPARATING_PLANES, NOT_SEPARATED, (roots, best, limit, slack, scratch))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, lanes_at, marks_within
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row
 from clearance.kernels.features.bounds import box_reach
@@ -74,7 +74,7 @@ def _turned_away(surface, group, u):
 @inline(force=True)
 def _open(surface, node, u, least, scratch, n_waiting):
     """Lets the children of a node wait that may reach so far [m], the highest last: (waiting, children)."""
-    group, count = surface.children[node, 0], surface.children[node, 1]
+    group, count = np.int64(surface.children[node, 0]), np.int64(surface.children[node, 1])
     depths = 0.0 - _heights(surface, group, u)
     near = marks_within(depths, -least) & ((1 << count) - 1) & ~_turned_away(surface, group, u)
     first = n_waiting

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from clearance.compile.jit import inline
+from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import lane
 from clearance.kernels.mesh.surface import is_leaf
 from clearance.kernels.search.node_pairs import between_centres, opened, pair_in_group
@@ -24,7 +24,7 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
     return wait(scratch, first + n_found, node_a, node_b, bound, first) - first
 
 
-@inline(one_caller=True)
+@inline
 def warm_start(a, b, roots, views, scratch):
     """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
 
@@ -58,5 +58,5 @@ def warm_start(a, b, roots, views, scratch):
             copy(scratch, after + i, 1 + i)
         n_found = n_next
     for i in range(1, 1 + n_found):
-        nodes[i, 0] = ~nodes[i, 0]
+        nodes[i, 0] = ~np.int64(nodes[i, 0])
     return 1 + n_found, n_nodes

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadTime
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.certify import CertificateGoal
@@ -231,7 +230,7 @@ class _Work:
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
             clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
             own = StepMinima(*(column[span] for column in found))
-            call(least_of_unsynchronised_steps, self.surface, clocks, least_only, own, counts)
+            least_of_unsynchronised_steps(self.surface, clocks, least_only, own, counts)
             return span.stop, counts
 
         tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), 0)
@@ -260,7 +259,7 @@ class _Work:
                 ends = slice(span.start, span.stop + 1)
                 known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
                 clocks = self._clocks(tree_a, tree_b)
-                call(certify_unsynchronised, surface, clocks, known, goal, own, counts)
+                certify_unsynchronised(surface, clocks, known, goal, own, counts)
                 return span.stop, counts
 
             tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), self.n_a)

@@ -1,0 +1,89 @@
+"""Kernels that are compiled in this process: all with `CLEARANCE_KERNELS=jit`, else those the library has not.
+
+They become the same objects as those of the library, linked by llvmlite, and take memory from the same stack.
+Not for: how an object is made (`compiler`), and which kernels are compiled here (`library`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+
+from clearance.compile import registered
+from clearance.compile.memory import OF_MEMORY
+from clearance.compile.registered import Declaration
+
+_lock = threading.RLock()
+_addresses: dict[Declaration, int] = {}
+_linked: list[object] = []
+
+
+def set_up_compiler() -> None:
+    """Settings of numba, before it is imported: LLVM's passes run once, in `objects`."""
+    os.environ |= {"NUMBA_OPT": "0", "NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
+    sys.setrecursionlimit(max(10_000, sys.getrecursionlimit()))
+
+
+def compiled_address(
+    kernel: Declaration,
+    level: str,
+    address_of: Callable[[Declaration], int],
+    address_of_memory: Callable[[str], int],
+) -> int:
+    """The address of a kernel that is compiled in this process, for this level of processor.
+
+    Args:
+        address_of, address_of_memory: of other kernels, and of what they call for memory.
+    """
+    with _lock:
+        if kernel not in _addresses:
+            _addresses[kernel] = _compiled(kernel, level, address_of, address_of_memory)
+        return _addresses[kernel]
+
+
+def _compiled(
+    kernel: Declaration,
+    level: str,
+    address_of: Callable[[Declaration], int],
+    address_of_memory: Callable[[str], int],
+) -> int:
+    set_up_compiler()
+    from clearance.compile.compiler import objects_of
+
+    (made,) = objects_of(kernel, [level])
+    imported = {symbol: address_of_memory(symbol) for symbol in OF_MEMORY}
+    for symbol in made.called:
+        called = next(each for each in reversed(registered.kernels) if each.symbol == symbol)
+        imported[symbol] = address_of(called)
+    return _link(made.content, [kernel.symbol], imported)[kernel.symbol]
+
+
+@functools.cache
+def memory(level: str) -> Mapping[str, int]:
+    """What kernels call for memory, where there is no library that has it."""
+    from clearance.compile.objects import memory_object
+
+    found = _link(memory_object(level), OF_MEMORY, {})
+    ctypes.CFUNCTYPE(None)(found["clearance_open_memory"])()
+    return found
+
+
+def _link(content: bytes, symbols: Sequence[str], imported: Mapping[str, int]) -> dict[str, int]:
+    """Where the symbols of an object lie, linked in this process for as long as it runs."""
+    import llvmlite.binding as llvm
+
+    machine = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(
+        reloc="pic", codemodel="small"
+    )
+    builder = llvm.JITLibraryBuilder().add_current_process().add_object_img(content)
+    for symbol, address in imported.items():
+        builder.import_symbol(symbol, address)
+    for symbol in symbols:
+        builder.export_symbol(symbol)
+    linked = builder.link(llvm.create_lljit_compiler(machine), "clearance")
+    _linked.append(linked)
+    return {symbol: linked[symbol] for symbol in symbols}

@@ -1,0 +1,114 @@
+"""In sources that may be edited, a library that does not fit is built before it is used, or nothing is called."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import pytest
+
+from tests.compile.small_package import SmallPackage
+
+pytestmark = [pytest.mark.cold, pytest.mark.slow]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory) -> SmallPackage:
+    """A small package whose library two processes have found missing at the same time."""
+    made = SmallPackage(tmp_path_factory.mktemp("sources"))
+    two = [made.start(), made.start()]
+    ends = [process.communicate(timeout=300) for process in two]
+    assert [said.strip() for said, _ in ends] == ["12.0 False"] * 2, ends
+    told = "".join(told for _, told in ends)
+    assert told.count("the kernels are not compiled yet") == 2
+    assert told.count("compiling 1 kernels") == 1
+    return made
+
+
+def test_a_library_that_fits_is_used_in_silence(built):
+    assert built.ask() == ("12.0 False", "")
+
+
+def test_an_edited_kernel_is_compiled_before_it_is_called(built):
+    before = {file: file.stat().st_ino for file in built.built.glob("kernels-*")}
+    with open(next(iter(before)), "rb") as loaded:
+        content = loaded.read()
+        built.edit("2.0 * x", "3.0 * x")
+        said, told = built.ask()
+        assert said == "18.0 False"
+        assert "have changed since they were compiled" in told and "compiling 1 kernels" in told
+        loaded.seek(0)
+        assert loaded.read() == content, "what a process has loaded was written over"
+    assert all(file.stat().st_ino != inode for file, inode in before.items())
+    assert built.ask() == ("18.0 False", "")
+    built.edit("3.0 * x", "2.0 * x")
+
+
+def test_a_kernel_that_no_longer_compiles_is_not_called(built):
+    built.ask()
+    built.edit("total = 0.0", "total = no_such_thing")
+    said, told = built.ask()
+    assert said == "" and "clearance_small_scaled_sum does not compile" in told
+    assert "the kernels cannot be compiled; the lines above say why" in told.splitlines()[-1]
+    built.edit("total = no_such_thing", "total = 0.0")
+
+
+def test_without_the_compiler_an_edited_kernel_is_not_called(built):
+    built.ask()
+    assert built.ask(without=("numba", "llvmlite")) == ("12.0 False", "")
+    built.edit("2.0 * x", "4.0 * x")
+    said, told = built.ask(without=("numba",))
+    assert said == "" and "pip install -e '.[jit]'" in told.splitlines()[-1]
+    built.edit("4.0 * x", "2.0 * x")
+
+
+def test_a_process_that_began_before_the_edit_is_to_be_started_again(built):
+    built.ask()
+    edits = f"""
+from pathlib import Path
+source = Path({str(built.kernel)!r})
+source.write_text(source.read_text().replace("2.0 * x", "5.0 * x"))
+"""
+    said, told = built.ask(meanwhile=edits)
+    assert said == "12.0 False", "the library fits what was imported"
+    built.edit("5.0 * x", "2.0 * x")
+    built.ask()
+    rebuilds = (
+        edits
+        + "import subprocess\nsubprocess.run([sys.executable, '-P', '-m', 'clearance.compile.build'])\n"
+    )
+    said, told = built.ask(meanwhile=rebuilds)
+    assert said == "" and "since this process began; start it again" in told.splitlines()[-1]
+    built.edit("5.0 * x", "2.0 * x")
+
+
+def test_without_a_linker_llvmlite_links_the_objects(built, tmp_path):
+    built.ask()
+    (built.built / "manifest.json").unlink()
+    said, told = built.ask(PATH=str(tmp_path))
+    assert said == "12.0 False" and "compiling" not in told
+    assert not json.loads((built.built / "manifest.json").read_text())["is_linked"]
+    assert built.ask(PATH=str(tmp_path)) == ("12.0 False", "")
+    (built.built / "manifest.json").unlink()
+    built.ask()
+
+
+@pytest.mark.parametrize(("kernels", "said"), [("jit", "12.0 True"), ("python", "12.0 False")])
+def test_kernels_that_are_not_built_need_no_library(built, kernels, said):
+    built.edit("2.0 * x", "1.0 * (x + x)")
+    before = (built.built / "manifest.json").read_bytes()
+    assert built.ask(CLEARANCE_KERNELS=kernels) == (said, "")
+    assert (built.built / "manifest.json").read_bytes() == before
+    built.edit("1.0 * (x + x)", "2.0 * x")
+
+
+def test_settings_of_the_compiler_change_no_library(built):
+    built.ask()
+    (built.built / "manifest.json").unlink()
+    files = sorted(built.built.glob("x86*/*.o")) + sorted(built.built.glob("aarch64/*.o"))
+    before = [file.read_bytes() for file in files]
+    for file in files:
+        file.unlink()
+    assert built.ask(NUMBA_DISABLE_JIT="1", NUMBA_OPT="3")[0] == "12.0 False"
+    assert [file.read_bytes() for file in files] == before
+    assert os.listdir(built.built).count("manifest.json") == 1

@@ -1,0 +1,74 @@
+"""A wheel holds the compiled kernels, serves any Python 3 of its platform, and needs no compiler to be used."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from packaging.tags import sys_tags
+from packaging.utils import parse_wheel_filename
+
+from clearance.compile.build import levels
+from clearance.compile.decorators import KERNELS
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = [
+    pytest.mark.cold,
+    pytest.mark.slow,
+    pytest.mark.skipif(KERNELS != "built", reason="the library is not used"),
+    pytest.mark.skipif(
+        importlib.util.find_spec("hatchling") is None, reason="hatchling is not installed"
+    ),
+]
+
+ASKS = """
+import sys
+sys.modules.update(dict.fromkeys(["numba", "llvmlite"]))
+import numpy as np
+import clearance as cl
+from clearance.compile.manifest import FOLDER
+box, pose = cl.box((1.0, 1.0, 1.0)), np.eye(4)
+pose[0, 3] = 3.0
+print(FOLDER, cl.distance(box, box, pose_b=pose).distance)
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("wheel")
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)],
+        cwd=ROOT, check=True, stdout=subprocess.DEVNULL,
+    )  # fmt: skip
+    (found,) = folder.iterdir()
+    return found
+
+
+def test_a_wheel_fits_every_python_of_its_platform(wheel):
+    _, _, _, tags = parse_wheel_filename(wheel.name)
+    (tag,) = tags
+    assert (tag.interpreter, tag.abi) == ("py3", "none") and tag.platform != "any"
+    assert not tag.platform.startswith("linux_"), "the version of the C library is told"
+    assert tag in set(sys_tags())
+
+
+def test_a_wheel_holds_the_libraries_and_nothing_else_of_the_build(wheel):
+    names = {Path(name).name for name in zipfile.ZipFile(wheel).namelist() if "/built/" in name}
+    libraries = {Path(name).stem for name in names - {"manifest.json"}}
+    assert libraries == {f"kernels-{level}" for level in levels()} and "manifest.json" in names
+
+
+def test_a_distance_is_measured_from_a_wheel_without_a_compiler(wheel, tmp_path):
+    zipfile.ZipFile(wheel).extractall(tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", ASKS], cwd=tmp_path, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [str(tmp_path / "clearance" / "compile" / "built"), "2.0"]
