@@ -51,10 +51,14 @@ def _compiled(
     address_of: Callable[[Declaration], int],
     address_of_memory: Callable[[str], int],
 ) -> int:
+    before = sys.getrecursionlimit()
     set_up_compiler()
     from clearance.compile.compiler import objects_of
 
-    (made,) = objects_of(kernel, [level])
+    try:
+        (made,) = objects_of(kernel, [level])
+    finally:
+        sys.setrecursionlimit(before)
     imported = {symbol: address_of_memory(symbol) for symbol in OF_MEMORY}
     for symbol in made.called:
         called = next(each for each in reversed(registered.kernels) if each.symbol == symbol)
