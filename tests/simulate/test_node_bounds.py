@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from fractions import Fraction
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.compile.declared import Floats, Floats2
-from clearance.compile.decorators import kernel
+from clearance.compile.decorators import inline, kernel
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import join, surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
@@ -47,11 +48,8 @@ from tests.oracle.rationals import posed
 from tests.strategies import rotations
 
 
-@kernel
-def bounds_of_nodes(
-    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, direction: Floats, boxes: Floats2, in_sight: Floats2,
-    alike: Floats2, faces: Floats2,
-) -> None:  # fmt: skip
+@inline
+def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, faces):
     """Fills the bounds of all node pairs and face pairs, with the slacks that the search takes off.
 
     `alike` takes how far the bounds of boxes in lanes are from those of one after another.
@@ -75,11 +73,8 @@ def bounds_of_nodes(
             faces[i, j] = max(faces[i, j], lower_bound_faces_across(a, i, b, j, frames.m) - slack)
 
 
-@kernel
-def bounds_of_groups(
-    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, direction: Floats, cut: float, groups_of_a: Floats2,
-    groups_of_b: Floats2,
-) -> None:  # fmt: skip
+@inline
+def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_of_b):
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
@@ -92,6 +87,36 @@ def bounds_of_groups(
             of_a = bounds_of_group(a, b, views, NodeGroup(False, i // WIDTH, j), ALL, slack, cut)
             of_b = bounds_of_group(a, b, views, NodeGroup(True, j // WIDTH, i), ALL, slack, cut)
             groups_of_a[i, j], groups_of_b[i, j] = lane(of_a, i % WIDTH), lane(of_b, j % WIDTH)
+
+
+class Bounds(NamedTuple):
+    """What `bounds_of_nodes` and `bounds_of_groups` fill."""
+
+    boxes: Floats2
+    in_sight: Floats2
+    alike: Floats2
+    faces: Floats2
+    of_a: Floats2
+    of_b: Floats2
+
+
+def fill_bounds(
+    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, direction: Floats, cut: float, found: Bounds
+) -> None:  # fmt: skip
+    """All bounds of two surfaces."""
+    bounds_of_nodes(
+        a, b, pose_a, pose_b, direction, found.boxes, found.in_sight, found.alike, found.faces
+    )
+    bounds_of_groups(a, b, pose_a, pose_b, direction, cut, found.of_a, found.of_b)
+
+
+compiled_bounds = kernel(fill_bounds)
+
+
+def new_bounds(a: Surface, b: Surface) -> Bounds:
+    """Room for all bounds of two surfaces."""
+    of_nodes = np.empty((5, len(a.children), len(b.children)))
+    return Bounds(*of_nodes[:3], np.empty((len(a.normals), len(b.normals))), *of_nodes[3:])
 
 
 def body_bound_of(surface, world, enough):
@@ -164,6 +189,7 @@ def is_at_most(bound, distance_sq):
     return bound <= 0.0 or (math.isfinite(bound) and Fraction(float(bound)) ** 2 <= distance_sq)
 
 
+@pytest.mark.slow
 @examples(60)
 @example(0, "far", "needles", 1e5, True)
 @example(1, "no area", "no area", 1.0, False)
@@ -174,31 +200,28 @@ def is_at_most(bound, distance_sq):
 def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(
     seed, kind_a, kind_b, reach, turned
 ):
+    """Compiled: there `Lanes` are in one register."""
     random = np.random.default_rng(seed)
     a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
     pose_a, pose_b = pose(random, reach, turned), pose(random, reach, turned)
     one, two = surface_of(a), surface_of(b)
-    boxes, in_sight, alike, of_a, of_b = np.empty((5, len(one.children), len(two.children)))
-    faces = np.empty((3, 3))
+    found = new_bounds(one, two)
     direction = random.normal(size=3) if turned else np.eye(3)[random.integers(3)]
-    bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, alike, faces)
-    bounds_of_groups(
-        one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), of_a, of_b
-    )
+    compiled_bounds(one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), found)
     truth = exact_distances_sq(a, b, pose_a, pose_b)
     for i, below_a in enumerate(faces_below(one)):
         for j, below_b in enumerate(faces_below(two)):
             if not (below_a and below_b):  # a lane without a node
                 continue
             least_sq = min(truth[f][g] for f in below_a for g in below_b)
-            assert is_at_most(boxes[i, j], least_sq)
-            assert is_at_most(in_sight[i, j], least_sq)
-            assert is_at_most(of_a[i, j], least_sq)
-            assert is_at_most(of_b[i, j], least_sq)
-            assert alike[i, j] == 0.0
+            assert is_at_most(found.boxes[i, j], least_sq)
+            assert is_at_most(found.in_sight[i, j], least_sq)
+            assert is_at_most(found.of_a[i, j], least_sq)
+            assert is_at_most(found.of_b[i, j], least_sq)
+            assert found.alike[i, j] == 0.0
     for f in range(3):
         for g in range(3):
-            assert is_at_most(faces[f, g], truth[f][g])
+            assert is_at_most(found.faces[f, g], truth[f][g])
 
 
 @examples(120)
@@ -243,12 +266,9 @@ def test_bounds_are_not_idle():
     above = np.eye(4)
     above[2, 3] = 5.0
     one, two = surface_of(a), surface_of(b)
-    boxes, in_sight, alike, of_a, of_b = np.empty((5, len(one.children), len(two.children)))
-    faces = np.empty((3, 3))
-    along = np.array([0.0, 0.0, 1.0])
-    bounds_of_nodes(one, two, np.eye(4), above, along, boxes, in_sight, alike, faces)
-    bounds_of_groups(one, two, np.eye(4), above, along, np.inf, of_a, of_b)
-    for bounds in (boxes, in_sight, of_a, of_b, faces):
+    found = new_bounds(one, two)
+    fill_bounds(one, two, np.eye(4), above, np.array([0.0, 0.0, 1.0]), np.inf, found)
+    for bounds in (found.boxes, found.in_sight, found.of_a, found.of_b, found.faces):
         assert bounds.min() == pytest.approx(5.0, rel=1e-5)
 
 
@@ -256,20 +276,10 @@ def test_edges_that_cross_are_told_apart_across_both():
     """Two upright triangles, point on point but for their edges that cross: no plane of either parts them."""
     a = Polyhedron([[-1, 0, 0], [1, 0, 0], [0, 0.1, -1]], [(0, 1, 2)])
     b = Polyhedron([[0, -1, 0.01], [0, 1, 0.01], [0.1, 0, 1]], [(0, 1, 2)])
-    boxes, in_sight, alike = np.empty((3, 4, 4))
-    faces = np.empty((1, 1))
-    bounds_of_nodes(
-        surface_of(a),
-        surface_of(b),
-        np.eye(4),
-        np.eye(4),
-        np.array([1.0, 0, 0]),
-        boxes,
-        in_sight,
-        alike,
-        faces,
-    )
-    assert faces[0, 0] == pytest.approx(0.01, abs=1e-12)
+    one, two = surface_of(a), surface_of(b)
+    found = new_bounds(one, two)
+    fill_bounds(one, two, np.eye(4), np.eye(4), np.array([1.0, 0, 0]), np.inf, found)
+    assert found.faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
 @examples(100)
