@@ -27,7 +27,7 @@ PEERS = {
     "trimesh",
     "yourdfpy",
 }
-COLD_NAMES = {"fork", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}
+COLD_NAMES = {"fork", "XDG_CACHE_HOME"}
 
 
 def marks_of(functions: Iterable[Callable]) -> set[str]:

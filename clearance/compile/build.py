@@ -47,6 +47,10 @@ class BuildFailed(Exception):
     """The kernels cannot be compiled; the text says why."""
 
 
+MEMORY_OF_A_WORKER = 3e9
+"""[bytes] that a process takes at most, since numba keeps all that it has compiled: 2.8e9 with two processes."""
+
+
 class Unit(NamedTuple):
     """A kernel to compile: its module, its name, its symbol, the hash of what it depends on."""
 
@@ -129,10 +133,12 @@ def _files(of: Sequence[Unit]) -> list[Path]:
 
 def _compile_all(missing: Sequence[Unit]) -> None:
     begun = time.monotonic()
-    n_workers = min(len(missing), _n_cores())
+    n_workers = min(len(missing), _n_workers())
     say(f"compiling {len(missing)} kernels, {n_workers} at a time; this takes minutes")
     with ProcessPoolExecutor(
-        n_workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
+        n_workers,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_begin,
     ) as pool:
         asked = {pool.submit(_compile, unit): unit for unit in missing}
         try:
@@ -144,10 +150,12 @@ def _compile_all(missing: Sequence[Unit]) -> None:
     say(f"compiled in {time.monotonic() - begun:.0f} s")
 
 
-def _n_cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+def _n_workers() -> int:
+    """As many as there are cores, and as the machine's memory has room for."""
+    if not hasattr(os, "sched_getaffinity"):
+        return os.cpu_count() or 1
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return max(1, min(len(os.sched_getaffinity(0)), int(memory / MEMORY_OF_A_WORKER)))
 
 
 def _begin() -> None:

@@ -2,7 +2,7 @@
 
     python scripts/bench/first_run.py [--cases FILE ...] [--warm N] [--fresh 0|1] [--csv FILE]
 
-Each run is a process of its own, `python -m clearance check CASE`, with its own empty folder for compiled code the
+Each run is a process of its own, `python -m clearance check CASE`, with its own empty cache the
 first time and the same folder after; then with `--out` as well, and one of a path that leads to no file. Seconds
 on the wall and of CPU with all children; the least of the warm runs. On a busy machine the wall says more about
 the others; CPU seconds are then what to compare.
@@ -42,7 +42,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as empty:
         cache = empty if asked.fresh else None
         for i, case in enumerate(asked.cases or case_files()):
-            first = "first, nothing compiled" if i == 0 and asked.fresh else "first of the case"
+            first = "first, empty cache" if i == 0 and asked.fresh else "first of the case"
             rows.append({"case": case.parent.name, "run": first, **ran(case, cache)})
             rows += warm_rows(case, cache, asked.warm)
         rows += least("no file", "refused", asked.warm, lambda: ran(Path("none.yaml"), cache, (2,)))
@@ -86,7 +86,7 @@ def ran(
         for name, value in os.environ.items()
         if not name.endswith("_NUM_THREADS") and name != "PYTHONDONTWRITEBYTECODE"
     }  # as a user has them: all threads, and modules that Python compiles once
-    environment = own if cache is None else {**own, "NUMBA_CACHE_DIR": cache}
+    environment = own if cache is None else {**own, "XDG_CACHE_HOME": cache}
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     command = [sys.executable, "-m", "clearance", "check", str(case), *options]
     done = subprocess.run(

@@ -77,14 +77,6 @@ def test_every_bad_input_ends_ten_times_in_the_same_way(tmp_path: Path) -> None:
         assert err.startswith("error: ") and BAD[fault][3] in err
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
-def test_nor_does_it_depend_on_what_compiles_ahead(tmp_path: Path) -> None:
-    """Each has a second process, as in the first run on a machine, and ends before that has done anything."""
-    ends = ends_of(tmp_path, ["unknown joint"], 5, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
-    ((code, out, err),) = ends["unknown joint"]
-    assert (code, out, err.count("\n")) == (2, "", 1)
-
-
 def test_only_the_thread_that_asks_reads_a_trajectory_through_python(tmp_path: Path) -> None:
     """pyarrow's own threads may be inside a Python file when the interpreter ends, and end it badly."""
     path = tmp_path / "path.csv"
