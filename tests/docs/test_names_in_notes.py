@@ -33,7 +33,6 @@ MADE = {
 
 FOREIGN = {
     "clearance/batch/NOTES.md": {"model.config"},
-    "clearance/load/NOTES.md": {"share/x", "alex_psyonic_hands", "index_q1"},
     "clearance/view/NOTES.md": {"zmq.py", "InterpolateDiscrete"},
     "scripts/docs/tutorials/python.md": {"run.steps", "run.events", "run.summary"},
     "scripts/docs/contributing.md": {"out/guide"},
