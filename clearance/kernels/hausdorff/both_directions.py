@@ -47,7 +47,7 @@ def _search_kept(pair, leaves, aim, drawn, sparing, kept, state, work, heap):
 
     `leaves` are those of the curve searched. Returns the queue's room, which may have grown.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     n_kept, n_met, hint, n_open = 0, 0, -1, 0
     for k in range(leaves.arcs.shape[0]):

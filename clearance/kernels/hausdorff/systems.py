@@ -98,7 +98,7 @@ def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
 
     The same cell twice stands for two feet in it.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     one, two = table.cells[level, k], table.cells[level, m]
     boxes_one, boxes_two, gap = table.boxes[k], table.boxes[m], boxes.room[4]
@@ -162,7 +162,7 @@ def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
 
     What the budget, the depth or the room leaves open is bounded.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     fits_first = begin_table(b_parts, systems.ends_b, table)
     stack = np.empty((2 * DEEPEST + 4, 3))  # of intervals: t0, t1, level

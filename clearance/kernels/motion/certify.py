@@ -177,7 +177,7 @@ def _pose_of(world, body, middle):
 def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally):
     """`hold` of a pair at the state in `middle`.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     frames = frames_of(_pose_of(world, body_a, middle), _pose_of(world, body_b, middle))
@@ -264,7 +264,7 @@ def _loosened_in(surface, world, body, state):
 def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally):
     """`hold` of a pair over the whole interval after `step`, halved until that is done.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     world, path = motion.world, motion.path
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]

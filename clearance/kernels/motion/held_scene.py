@@ -111,7 +111,7 @@ def nearest_at_positions(
 def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     look = at[LOOK]
     at[LOOK] = 0

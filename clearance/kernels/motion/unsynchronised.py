@@ -113,7 +113,7 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state):
 
     Those that are left are listed.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)

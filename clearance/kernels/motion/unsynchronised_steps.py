@@ -146,7 +146,7 @@ def _note(row, step_b, pair, hit, found):
 def _at_steps(lent, clocks, pair, row, step_b, state, found, tally):
     """Measures a pair at a step of either clock, if it can be the least there; True if it is.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     row_a, row_b = _rows_of(clocks, pair, row, step_b)
     within = found.clearance[row] * NOT_LESS
@@ -264,7 +264,7 @@ def _look_at_pair(surface, asked, seen_enough, state, tally):
 def _look(lent, surface, clocks, rectangle, count, state, found, tally):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns

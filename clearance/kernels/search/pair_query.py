@@ -132,7 +132,7 @@ def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
 def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b):
     """The nearest points of a pair, as `search` gives them.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
@@ -190,7 +190,7 @@ def nearest_at_poses(
 def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts):
     """Fills a row for each pose.
 
-    Many arguments: what belongs together is in tuples already, which numba passes array by array.
+    Many arguments: what belongs together is in tuples already.
     """
     lent_a, lent_b = lend(a), lend(b)
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1

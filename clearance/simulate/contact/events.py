@@ -17,7 +17,7 @@ MOST_RATED = 32
 """Steps of an event that are rated, evenly spread; as many again on both sides of the best."""
 
 MOST_DEEPER = 32
-"""Steps of an event that are worked out after its best rated one, as long as they may be deeper."""
+"""Steps of an event that are worked out at most, its best rated one first, as long as the next may be deeper."""
 
 MOST_NORMALS = 32
 """Normals of a body along which hulls are rated."""
