@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+from importlib import metadata
 
 import pytest
+from packaging.requirements import Requirement
 
 from clearance.batch import keys
 from clearance.package_digest import PACKAGE, digest_of_sources, package_digest
@@ -69,3 +71,12 @@ def test_what_other_sources_made_is_not_taken_for_ones_own(room, told, monkeypat
     assert told() == before
     monkeypatch.setattr(room, "package_digest", lambda: "0" * 64)
     assert told() != before
+
+
+def test_a_key_asks_for_no_library_that_an_installation_may_lack() -> None:
+    needed = {
+        Requirement(line).name
+        for line in metadata.requires("clearance") or ()
+        if Requirement(line).marker is None
+    }
+    assert {*keys.LIBRARIES, "pyarrow"} <= needed

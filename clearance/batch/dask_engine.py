@@ -102,7 +102,7 @@ def _deaf_to_interrupts() -> Iterator[None]:
 
 @contextmanager
 def cluster_at(address: str) -> Iterator[DaskEngine]:
-    """The workers of a scheduler that runs already; each machine compiles once.
+    """The workers of a scheduler that runs already.
 
     Raises:
         Unavailable: Dask is not installed. BadInput: nothing answers there.

@@ -26,7 +26,7 @@ FORMAT = 1
 DAY = "(day)"
 """Stands among the files of a case that has waivers, with the day in place of a hash."""
 
-LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
+LIBRARIES = ("numpy", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
 """Those that can change a row beside this package; pyarrow's numbers are exact."""
 
 READERS = ("xacro", "cascadio", "rosbags", "ezdxf", "mujoco")

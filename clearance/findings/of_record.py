@@ -1,4 +1,4 @@
-"""All findings of a record, the worst first. Not for: one rule's (`of_rule`), waiving them (`waivers`)."""
+"""All findings of a record, the worst first. Not for: one rule's (`of_rule`), waiving them (`judgement`)."""
 
 from __future__ import annotations
 

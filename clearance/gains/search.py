@@ -1,7 +1,7 @@
 """The search for the least change: linear programmes, each step measured anew, proven at the end.
 
 A step is taken where the linear rows have a least solution within the trust region, else to where they are missed
-by least. What is measured decides: a step that makes it worse halves the region. Not for: what may be changed.
+by least. What is measured decides: a step that makes it worse shrinks the region. Not for: what may be changed.
 """
 
 from __future__ import annotations

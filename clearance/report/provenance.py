@@ -17,7 +17,6 @@ from clearance.world.case import Case
 LIBRARIES = (
     "numpy",
     "scipy",
-    "numba",
     "trimesh",
     "lxml",
     "pybullet",
