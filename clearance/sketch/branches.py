@@ -13,7 +13,7 @@ import numpy as np
 from clearance.sketch.equations import Across, Lengths, Linear, LineCircle, MiddleOn, PointLine, are
 from clearance.sketch.execution import WRONG_SIDE, ExecutionResult, run
 from clearance.sketch.graph.graph import POINT, TURN
-from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
 from clearance.sketch.solve.execute import FAILED, Run, execute
 from clearance.sketch.start import Sides, sides_hold, started
@@ -21,6 +21,9 @@ from clearance.sketch.steps import limits_of, residual_of
 
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""
+
+TRIED = 40_000
+"""Steps of a plan, over all branches, up to which a closed circuit's branches are tried: a tenth of a second."""
 
 STRAIGHT = (Linear, PointLine, LineCircle, MiddleOn, Across)
 """Equations that keep a point on a straight line: two of them meet in one point."""
@@ -44,14 +47,30 @@ def choices(problem: Problem) -> list[int]:
 def run_with_sides(
     problem: Problem, before: np.ndarray, sides: Sides, effort: int = 2
 ) -> ExecutionResult:
-    """The outcome of a problem; where a `same_side` does not hold, the nearest one in which all do."""
+    """The outcome of a problem; where a `same_side` does not hold, the nearest one in which all do.
+
+    Where an equation that others imply by the count does not hold, the branch on which it does, if there is one.
+    """
     outcome = run(problem, before, sides, effort)
+    if effort and outcome.broken in problem.plan.dependent:
+        turned = _closing(problem, before, sides, _circuit_choices(problem, outcome.broken))
+        return run(problem, before, sides, effort, turned) if turned else outcome
     if outcome.broken != WRONG_SIDE or effort == 0:
         return outcome
     found = [o for o in _turned(problem, before, sides, outcome) if o.broken == -1]
     if not found:
         found = _by_roots(problem, sides, outcome)
     return min(found, key=lambda o: float(np.linalg.norm(o.x - before)), default=outcome)
+
+
+def _circuit_choices(problem: Problem, row: int) -> list[int]:
+    """The choices that place what the circuit around an implied equation names; none where it has too many."""
+    plan, ends = problem.plan, problem.system.ends
+    inside = {
+        int(v) for k in np.flatnonzero(plan.dependent == row) for v in ends[plan.circuits[k]].flat
+    }
+    steps = [k for k in choices(problem) if plan.steps[k].vertex in inside]
+    return steps if len(plan.steps) * 2 ** len(steps) <= TRIED else []
 
 
 def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
@@ -99,13 +118,17 @@ def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
     )
     if undecided or len(steps) > MOST or (are(problem.system.code, Lengths)).any():
         return False
-    return bool(problem.is_rigid.all()) and not _any_branch(problem, before, sides, steps)
+    return bool(problem.is_rigid.all()) and _closing(problem, before, sides, steps) is None
 
 
-def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: list[int]) -> bool:
+def _closing(
+    problem: Problem, before: np.ndarray, sides: Sides, steps: list[int]
+) -> frozenset[int] | None:
+    """The fewest steps to turn for a branch on which all holds; None where there is none."""
     start, _ = started(problem, before, ())
     every = bytes([1]) * problem.system.kind.size
-    for mask in range(2 ** len(steps)):
+    allowed = DEPENDENT if problem.plan.dependent.size else RESIDUAL
+    for mask in sorted(range(2 ** len(steps)), key=int.bit_count):
         problem.limit.require_left()
         turned = frozenset(k for bit, k in enumerate(steps) if mask >> bit & 1)
         x = start.copy()
@@ -115,7 +138,7 @@ def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: list[
         if (fates == FAILED).any():
             continue
         x = x[problem.alias]
-        holds = residual_of(problem, x)[0] <= RESIDUAL * problem.size
+        holds = residual_of(problem, x)[0] <= allowed * problem.size
         if holds and sides_hold(x, sides, problem.size):
-            return True
-    return False
+            return turned
+    return None

@@ -1,9 +1,12 @@
 """Sides, other roots, the nearest root, degenerate outcomes by name."""
 
+import math
+
 import numpy as np
 import pytest
 
 from clearance.sketch import DegenerateSketch, Sketch
+from tests.sketch.patterns import distances
 
 
 def base():
@@ -133,3 +136,40 @@ def test_a_line_that_shrinks_to_nothing_is_named():
     with pytest.raises(DegenerateSketch, match="edge"):
         s.solve()
     assert s._lists.numbers == drawn
+
+
+def crossed(between_tips):
+    """Two triangles on one base, both drawn above it, and how far their tips are apart."""
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (1, 0), (0.5, 0.9), (0.5, 0.8))]
+    for i, j in ((0, 1), (0, 2), (1, 2), (0, 3), (1, 3)):
+        s.distance(p[i], p[j], 1.0)
+    s.distance(p[2], p[3], between_tips)
+    return s, p
+
+
+def test_a_dimension_too_many_that_holds_on_another_branch_only_takes_that_branch():
+    s, p = crossed(math.sqrt(3.0))
+    result = s.solve()
+    assert (result.status, result.redundant) == ("over", ["distance6"])
+    base = p[0].position[1]
+    assert (p[2].position[1] - base) * (p[3].position[1] - base) == pytest.approx(-0.75)
+    solved = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == solved
+
+
+def test_a_dimension_too_many_that_holds_on_no_branch_is_inconsistent():
+    assert crossed(1.5)[0].solve().status == "inconsistent"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_strip_with_two_dimensions_too_many_and_one_point_drawn_across_is_solved(seed):
+    random = np.random.default_rng(seed)
+    truth = random.uniform(0.0, 3.0, (7, 2))
+    drawn, k = truth + random.normal(0.0, 0.1, truth.shape), int(random.integers(2, 7))
+    along = (truth[k - 2] - truth[k - 1]) / np.linalg.norm(truth[k - 2] - truth[k - 1])
+    away = drawn[k] - truth[k - 1]
+    drawn[k] = truth[k - 1] + 2.0 * (away @ along) * along - away
+    edges = {(0, 1), (0, 6), (1, 6), *((i - t, i) for i in range(2, 7) for t in (1, 2))}
+    result = distances(truth, drawn, sorted(edges))[0].solve()
+    assert result.solved and result.residual <= 1e-11
