@@ -7,12 +7,23 @@ solution (`mobility`), so that dependencies which no count can see (theorems of 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from clearance.sketch.effort import OutOfTime
 from clearance.sketch.execution import at_unit
 from clearance.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.sketch.mobility import SINGULAR, Equations, implied, motions_of, rank_of
-from clearance.sketch.problem import Problem
+from clearance.sketch.mobility import (
+    SINGULAR,
+    Equations,
+    Motions,
+    are_independent,
+    implied,
+    motions_of,
+    rank_of,
+)
+from clearance.sketch.problem import Problem, entities_of
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.rank import singular_steps
 
@@ -56,10 +67,15 @@ def rigid_motions(problem: Problem, x: np.ndarray, columns: Columns) -> np.ndarr
 
 def freedom_of(problem: Problem, x: np.ndarray) -> int:
     """Degrees of freedom left beyond placing the whole."""
-    problem, x = at_unit(problem, x)
+    problem, x = _begun(problem, x)
     suspicious = suspicious_parts(problem, x)
     total = sum(_part_freedom(problem, x, p, suspicious[p]) for p in range(problem.n_parts))
     return max(total - whole_placement(problem, x), 0)
+
+
+def _begun(problem: Problem, x: np.ndarray) -> tuple[Problem, np.ndarray]:
+    """The problem and numbers at a size near 1; what is asked may take as long as the solve."""
+    return at_unit(replace(problem, limit=problem.limit.again()), x)
 
 
 def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
@@ -79,7 +95,15 @@ def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) 
     equations = equations_of(problem, part, x)
     if equations.n > FACTORED:
         return int(problem.free[part])
-    return motions_of(equations, walk=equations.n <= WALKED).basis.shape[1]
+    return _motions(equations).basis.shape[1]
+
+
+def _motions(equations: Equations) -> Motions:
+    """The motions of a part; those of the first order where it is large, or the time is not enough for more."""
+    try:
+        return motions_of(equations, walk=equations.n <= WALKED)
+    except OutOfTime:
+        return motions_of(equations, walk=False)
 
 
 def whole_placement(problem: Problem, x: np.ndarray) -> int:
@@ -114,7 +138,7 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
     Of constraints that follow from one another those are named that have one equation only and are no part
     of how an entity is drawn, as far as there are such; then the last.
     """
-    problem, x = at_unit(problem, x)
+    problem, x = _begun(problem, x)
     owner = problem.tables.owner
     rows: list[int] = np.flatnonzero(problem.fate >= 2).tolist()
     if solved:
@@ -131,19 +155,29 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
 
 
 def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
-    """The equations of a part that follow from its others."""
+    """The equations of a part that follow from its others; those of the count where more takes too long.
+
+    None where the regular ones are independent: they say the same, so that each takes a freedom.
+    """
+    counted = [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
     equations = equations_of(problem, part, x, regular=False)
     if equations.rows.size > FACTORED or not equations.n:
-        return [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
-    return implied(equations, walk=equations.n <= WALKED)
+        return counted
+    if not counted and are_independent(equations_of(problem, part, x)):
+        return []
+    try:
+        return implied(equations, walk=equations.n <= WALKED)
+    except OutOfTime:
+        return counted
 
 
 def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
     """Degrees of freedom of every entity while the initial cluster of its part is held."""
     out = {}
-    problem, x = at_unit(problem, x)
-    motions = {p: _loose_motions(problem, x, p) for p in range(problem.n_parts)}
-    for name, entity in sketch.entities.items():
+    problem, x = _begun(problem, x)
+    moving = ~problem.is_rigid | suspicious_parts(problem, x)
+    motions = {p: _loose_motions(problem, x, p) for p in np.flatnonzero(moving).tolist()}
+    for name, entity in entities_of(sketch, problem).items():
         count = {"point": 2, "line": 2, "segment": 2}.get(entity.what, 1)
         variables = [problem.alias[entity.variable + k] for k in range(count)]
         if entity.what in ("circle", "arc"):
@@ -155,8 +189,9 @@ def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
 def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
     s = problem.system
     for v in variables:
-        if s.vertex_of[v] > 0:
-            basis, first = motions[int(problem.part[s.vertex_of[v]])]
+        part = int(problem.part[s.vertex_of[v]]) if s.vertex_of[v] > 0 else -1
+        if part in motions:
+            basis, first = motions[part]
             break
     else:
         return 0
@@ -172,7 +207,7 @@ def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
 def _loose_motions(problem: Problem, x: np.ndarray, part: int):
     """(basis of the motions left (n, k), first columns) with the part's initial cluster held."""
     equations = equations_of(problem, part, x)
-    motions = motions_of(equations, walk=equations.n <= WALKED)
+    motions = _motions(equations)
     held = motions.basis[_gauge(problem, part, equations, motions.place)]
     _, values, vt = np.linalg.svd(held)
     rank = int(np.sum(values > CLEAR)) if values.size else 0

@@ -96,6 +96,7 @@ class Equations:
         found."""
         way, place = step.copy(), self.moved(x, step)
         for _ in range(40):
+            self.problem.limit.require_left()
             f, matrix = self.at(place)
             if np.abs(f).max(initial=0.0) <= 2e-16:
                 break
@@ -133,6 +134,9 @@ def motions_of(equations: Equations, x: np.ndarray | None = None, *, walk: bool 
 
     Where the equations are dependent they are those at a generic solution nearby; without a walk, those of
     the kernel.
+
+    Raises:
+        OutOfTime: the problem's limit has passed.
     """
     x = equations.solution if x is None else x
     kernel, left = split(equations.at(x)[1])
@@ -185,12 +189,17 @@ def _surviving(equations: Equations, x: np.ndarray, motions: np.ndarray, random)
     return motions @ u[:, : int(np.sum(values > SURVIVES))]
 
 
+def are_independent(equations: Equations) -> bool:
+    """Whether no equation follows from the others in the first order."""
+    return rank_of(equations.at(equations.solution)[1]) == equations.rows.size
+
+
 def implied(equations: Equations, *, walk: bool = True) -> list[int]:
     """The equations (rows) that follow from the others: without them the solutions near x are as many.
 
     Of equations that follow from one another the last are named.
     """
-    if rank_of(equations.at(equations.solution)[1]) == equations.rows.size:
+    if are_independent(equations):
         return []
     motions = motions_of(equations, walk=walk)
     kernel, left = split(equations.at(motions.place)[1])
@@ -198,6 +207,7 @@ def implied(equations: Equations, *, walk: bool = True) -> list[int]:
         return [int(equations.rows[k]) for k in dependent(equations.at(motions.place)[1])]
     out = []
     for row in equations.rows[np.abs(left).max(axis=1, initial=0.0) > STRAIGHT][::-1]:
+        equations.problem.limit.require_left()
         fewer = equations.without(row)
         if motions_of(fewer, motions.place).basis.shape[1] == motions.basis.shape[1]:
             equations = fewer

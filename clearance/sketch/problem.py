@@ -14,6 +14,7 @@ import numpy as np
 
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
+from clearance.sketch.entities import Entity
 from clearance.sketch.equations import OF_LENGTH, CircleCircle, Linear, are
 from clearance.sketch.graph.graph import (
     DIRECTION,
@@ -137,6 +138,12 @@ class Problem:
     def is_rigid(self) -> np.ndarray:
         """(parts,) whether nothing is free in a part beyond placing it as a whole."""
         return self.free == np.array([3, 2, 0])[self.hold]
+
+
+def entities_of(sketch, problem: Problem) -> dict[str, Entity]:
+    """The entities by name that a sketch had when the problem was made of it."""
+    n = problem.tables.role.size
+    return {name: e for name, e in sketch.entities.items() if e.variable < n}
 
 
 def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
