@@ -113,7 +113,8 @@ def _thinned(trial: Trials, suspects: list[int] | None, broken: int) -> Diagnosi
         if trial.is_minimal(conflict):
             break
     trial.effort = 1
-    return Diagnosis(trial, conflict, _proof(trial, conflict) if conflict else "")
+    proof = _proof(trial, conflict) if conflict else ""
+    return Diagnosis(trial, conflict, proof, conflict or trial.everything(broken))
 
 
 def _proof(trial: Trials, conflict: list[int]) -> str:

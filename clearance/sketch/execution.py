@@ -104,7 +104,7 @@ def at_unit(problem: Problem, x: np.ndarray) -> tuple[Problem, np.ndarray]:
 
 def _units(problem: Problem) -> tuple[float, np.ndarray]:
     """A power of two near the size, and what every number is divided by to be in it."""
-    unit = 2.0 ** math.frexp(problem.size)[1]
+    unit = 2.0 ** min(math.frexp(problem.size)[1], 1023)
     return unit, np.where(problem.tables.role == DIRECTION, 1.0, unit)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.sketch.graph.graph import POINT, SLIDE
 from clearance.sketch.graph.steps import IN_BODY, PlanStep
+from clearance.sketch.problem import entities_of
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,7 @@ class _Names:
         self.ordered = sketch._lists.constraints
         self.owner = problem.tables.owner
         s = problem.system
-        for entity in sketch.entities.values():
-            v = s.vertex_of[problem.alias[entity.variable]]
+        for entity in entities_of(sketch, problem).values():
             slot = entity.variable + (1 if entity.what in ("line", "segment") else 0)
             v = s.vertex_of[problem.alias[slot]]
             self.of.setdefault(int(v), []).append(entity.name)
@@ -110,10 +110,11 @@ class _ClosedStepReading:
         self.problem = problem
         self.plan = problem.plan
         self.base = {int(b) for b in np.flatnonzero(self.plan.held)}
+        inside = np.isin(self.plan.body_of, list(self.base))
+        self.based = set(problem.part[inside].tolist())
         self.placed = {v for step in problem.plan.steps for v in step.vertices}
         self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
-        for v in np.flatnonzero(np.isin(self.plan.body_of, list(self.base))):
-            self.spare[int(problem.part[v])] = 0  # its base places the part
+        self.spare.update(dict.fromkeys(self.based, 0))  # its base places the part
         self.spare_of_body: dict[int, int] = {}
         self.size: dict[int, int] = {}
 
@@ -141,15 +142,11 @@ class _ClosedStepReading:
             self.spare_of_body[body] -= granted
         else:
             self.spare[part] -= granted
-        fresh = inside or (self.problem.hold[part] < 2 and not self._has_base(part))
+        fresh = inside or (self.problem.hold[part] < 2 and part not in self.based)
         self.size[key] = self.size.get(key, 0) + 1
         if granted:
             return "initial", missing - granted
         return ("a" if fresh and self.size[key] == 3 else "b"), missing
-
-    def _has_base(self, part: int) -> bool:
-        mine = self.plan.body_of[self.problem.part == part]
-        return any(int(b) in self.base for b in mine)
 
 
 def _preprocessing(names: _Names, problem) -> list[Step]:

@@ -14,7 +14,7 @@ import numpy as np
 from clearance.sketch.effort import OutOfTime
 from clearance.sketch.graph.graph import POINT, SIZE, TURN
 from clearance.sketch.graph.steps import PlanStep
-from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.problem import RESIDUAL, Problem, entities_of
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.execute import DONE
 from clearance.sketch.solve.newton import descended
@@ -152,7 +152,7 @@ def alternatives_of(
 def by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:
     """The numbers of every entity by name: coordinates, direction and offset, or radius."""
     out = {}
-    for name, e in sketch.entities.items():
+    for name, e in entities_of(sketch, problem).items():
         count = 1 if e.what in ("circle", "arc") else 2
         i = problem.alias[e.variable]
         numbers = x[i : i + count].copy()

@@ -5,6 +5,7 @@ Not for: how a problem is solved (`execution`).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,7 +37,9 @@ class Solver:
         self.stale = False
 
     def changed(self, constraint: Constraint) -> None:
-        """Takes over a changed dimension."""
+        """Takes over a changed dimension; what was found before keeps the old one."""
+        if not self.stale:
+            self.tables = replace(self.tables, numbers=self.tables.numbers.copy())
         self.tables.numbers[constraint.index] = constraint.number
         self.stale = True
 

@@ -143,3 +143,40 @@ def test_sides_that_no_branch_satisfies_are_a_conflict():
     s.same_side(p, q, line, name="side")
     result = s.solve()
     assert not result.solved and "side" in result.conflicts
+
+
+def long_sided_triangle(length):
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (1, 0.1), (0.4, 0.8))]
+    s.distance(p[0], p[1], length, name="long")
+    s.distance(p[1], p[2], 1.0, name="one"), s.distance(p[2], p[0], 1.0, name="other")
+    return s, p
+
+
+def test_a_result_tells_of_the_dimensions_that_it_was_solved_with():
+    s, _ = long_sided_triangle(3.0)
+    result = s.solve()
+    s.set("long", 1.0)
+    assert (result.status, result.conflicts) == ("inconsistent", ["long", "one", "other"])
+    assert s.solve().status == "well"
+
+
+@pytest.mark.parametrize("length", [1.0, 3.0])
+def test_a_result_tells_of_the_entities_that_there_were(length):
+    s, p = long_sided_triangle(length)
+    result, drawn = s.solve(), set(s.entities)
+    s.distance(p[0], s.point(9.0, 9.0), 3.0)
+    assert set(result.best) == set(result.freedom_of) == drawn
+    assert set(result.errors) == {"long", "one", "other"} and result.plan
+    assert result.status == ("well" if length == 1.0 else "inconsistent")
+
+
+def test_what_no_trial_tells_apart_is_named_as_a_whole():
+    """A line's own ends are mirror images in it only where they are one."""
+    s = Sketch()
+    line = s.segment((0.0, 0.0), (0.0, 1.0), name="axis")
+    s.symmetric(*line.ends, line, name="mirrored")
+    result = s.solve()
+    assert result.status == "unsolved"
+    assert set(result.searched) == {"axis.start", "axis.end", "mirrored"}
+    assert "mirrored" in result.reason

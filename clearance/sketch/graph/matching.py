@@ -78,7 +78,7 @@ def strong_parts(nodes: Iterable[int], near: Mapping[int, list[int]]) -> list[li
             if calls:
                 low[calls[-1]] = min(low[calls[-1]], low[u])
             if low[u] == index[u]:
-                at = stack.index(u)
+                at = next(k for k in reversed(range(len(stack))) if stack[k] == u)
                 parts.append(stack[at:])
                 done.update(stack[at:])
                 del stack[at:]
