@@ -80,7 +80,7 @@ def not_holding(problem: Problem, x: np.ndarray) -> list[int]:
 def _diagnosed(trial: Trials, problem: Problem, outcome) -> Diagnosis:
     for row in _first_broken(problem, outcome):
         chain = _too_short(problem, row)
-        if chain and trial.is_minimal(chain):
+        if chain and (_is_polygon(problem, chain) or trial.is_minimal(chain)):
             return Diagnosis(trial, chain, CHAIN)
     suspects = _suspects(problem, outcome.broken) if _rest_holds(problem, outcome.x) else None
     if suspects is None:
@@ -182,6 +182,19 @@ def _too_short(problem: Problem, broken: int) -> list[int]:
         if chain and sum(value[r] for r in chain) < value[longest]:
             return sorted({int(o) for o in tables.owner[[longest, *chain]]})
     return []
+
+
+def _is_polygon(problem: Problem, chosen: list[int]) -> bool:
+    """Whether constraints are the sides of a polygon, one clearly longer than the others together: without any one
+    of them the others are an open chain, which lies anywhere."""
+    tables = problem.tables
+    rows = np.isin(tables.owner, chosen)
+    if not are(tables.code[rows], PointPoint).all():
+        return False
+    corners, sides = tables.var[rows][:, [0, 2]], tables.value[rows]
+    over = 2.0 * sides.max() - sides.sum()
+    twice = (np.unique(corners, return_counts=True)[1] == 2).all()
+    return bool(twice and over > DEPENDENT * problem.size)
 
 
 def _heaviest(near: dict, broken: int, var: np.ndarray) -> list[int]:

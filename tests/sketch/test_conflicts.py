@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
+from clearance.sketch.trials import Trials
 from tests.sketch.patterns import distances, irreducible, truth
 
 
@@ -180,3 +181,14 @@ def test_what_no_trial_tells_apart_is_named_as_a_whole():
     assert result.status == "unsolved"
     assert set(result.searched) == {"axis.start", "axis.end", "mirrored"}
     assert "mirrored" in result.reason
+
+
+def test_a_side_longer_than_a_hundred_others_together_is_told_without_a_trial(monkeypatch):
+    """What is left without any one side is an open chain."""
+    turn = 2.0 * np.pi * np.arange(101) / 101
+    corners = 101.0 / (2.0 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn)])
+    s, p = distances(corners, corners, [(k, k + 1) for k in range(100)])
+    s.distance(p[0], p[100], 300.0, name="long")
+    result = s.solve()
+    monkeypatch.setattr(Trials, "solvable", None)
+    assert result.status == "inconsistent" and set(result.conflicts) == set(s.constraints)
