@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.sketch.effort import OutOfTime
+from clearance.sketch.entities import Circle
 from clearance.sketch.execution import at_unit
 from clearance.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.sketch.mobility import (
@@ -180,7 +181,7 @@ def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
     for name, entity in entities_of(sketch, problem).items():
         count = {"point": 2, "line": 2, "segment": 2}.get(entity.what, 1)
         variables = [problem.alias[entity.variable + k] for k in range(count)]
-        if entity.what in ("circle", "arc"):
+        if isinstance(entity, Circle):  # an arc, too
             variables += [problem.alias[entity.center.variable + k] for k in (0, 1)]
         out[name] = _freedom_at(problem, motions, variables)
     return out
