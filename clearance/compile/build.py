@@ -210,6 +210,7 @@ def _finish(everything: Sequence[Unit], sources: str) -> None:
     from clearance.compile.objects import memory_object
 
     is_linked = linker() is not None
+    sizes = {}
     for level in levels():
         memory = FOLDER / level / "memory.o"
         memory.write_bytes(memory_object(level))
@@ -217,8 +218,11 @@ def _finish(everything: Sequence[Unit], sources: str) -> None:
             link if is_linked else pack,
             [memory, *(FOLDER / level / unit.file for unit in everything)],
         )
-        _replace(library_file(level, is_linked), make)
-    manifest = json.dumps(Manifest(sources, is_linked)._asdict(), indent=1) + "\n"
+        library = library_file(level, is_linked)
+        _replace(library, make)
+        sizes[library.name] = library.stat().st_size
+    told = Manifest(sources, is_linked, sizes)
+    manifest = json.dumps(told._asdict(), indent=1) + "\n"
     _replace(FOLDER / "manifest.json", lambda draft: draft.write_text(manifest))
 
 

@@ -15,11 +15,12 @@ import sys
 import threading
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
-from clearance.compile.manifest import FOLDER, is_current, read_manifest, say
+from clearance.compile.manifest import FOLDER, Manifest, is_current, read_manifest, say
 from clearance.compile.registered import KERNELS, Declaration
 from clearance.compile.sources import digest_of_imported
-from clearance.errors import Unavailable
+from clearance.errors import BadInput, Unavailable
 
 INSTALL_COMPILER = "pip install -e '.[jit]' in the folder of the sources installs it"
 
@@ -93,20 +94,36 @@ def opened() -> Any:
 
 @functools.cache
 def _opened() -> Any:
+    if KERNELS not in ("built", "jit", "python"):
+        raise BadInput(f"CLEARANCE_KERNELS is {KERNELS!r}", valid="built, jit or python is needed")
     if not is_current(digest_of_imported):
         _rebuild()
     manifest = read_manifest()
     assert manifest is not None
-    file = library_file(processor_level(), manifest.is_linked)
-    library: Any
-    if manifest.is_linked:
-        library = _Shared(file)
-    else:
-        from clearance.compile.linking import PackedObjects
-
-        library = PackedObjects(file)
+    library = _loaded(library_file(processor_level(), manifest.is_linked), manifest)
     ctypes.CFUNCTYPE(None)(library.address_of("clearance_open_memory"))()
     return library
+
+
+def _loaded(file: Path, manifest: Manifest) -> Any:
+    """The library in a file.
+
+    Raises:
+        Unavailable: it is damaged.
+    """
+    try:
+        if not manifest.has_whole(file.name):
+            raise OSError(f"{file} is missing or cut off")
+        if manifest.is_linked:
+            return _Shared(file)
+        from clearance.compile.linking import PackedObjects
+
+        return PackedObjects(file)
+    except (OSError, BadZipFile, ImportError, RuntimeError) as error:
+        raise Unavailable(
+            f"the compiled kernels cannot be loaded: {error}",
+            valid=f"remove {file.name}, if it is there, and install clearance again",
+        ) from None
 
 
 def library_file(level: str, is_linked: bool) -> Path:
@@ -118,8 +135,11 @@ def _rebuild() -> None:
     """Builds the library in a process of its own, which says how far it is."""
     import subprocess
 
-    if read_manifest() is None:
+    manifest = read_manifest()
+    if manifest is None:
         fault = "the kernels are not compiled yet"
+    elif not manifest.is_whole():
+        fault = "a file of the compiled kernels is missing or cut off"
     else:
         fault = "the kernels have changed since they were compiled"
     _require_compiler(fault)
@@ -172,8 +192,9 @@ def processor() -> tuple[str, str]:
 def _flags() -> set[str]:
     if not sys.platform.startswith("linux"):
         return set()
-    with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-        for line in file:
-            if line.startswith("flags"):
-                return set(line.split(":", 1)[1].split())
-    return set()
+    try:
+        told = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace")
+    except OSError:  # no /proc: the lowest level runs everywhere
+        return set()
+    flags = (line for line in told.splitlines() if line.startswith("flags"))
+    return set(next(flags, ":").split(":", 1)[1].split())

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,19 +21,30 @@ class Manifest(NamedTuple):
     Attributes:
         sources: hash of all that it was made of.
         is_linked: True for a shared library, False for objects that llvmlite links.
+        sizes: [bytes] of each file of the library, by its name.
         is_checked: True where the sources may be edited: each start compares the hash.
     """
 
     sources: str
     is_linked: bool
+    sizes: Mapping[str, int]
     is_checked: bool = True
+
+    def is_whole(self) -> bool:
+        """True if no file of the library is missing or cut off: to load such a one can stop the process."""
+        return all(map(self.has_whole, self.sizes))
+
+    def has_whole(self, name: str) -> bool:
+        """True if this file is there with all its bytes."""
+        file = FOLDER / name
+        return file.is_file() and file.stat().st_size == self.sizes.get(name)
 
 
 def read_manifest() -> Manifest | None:
-    """What is said of the library; None where there is none."""
+    """What is said of the library; None where nothing is said that can be read."""
     try:
         return Manifest(**json.loads((FOLDER / "manifest.json").read_text()))
-    except FileNotFoundError:
+    except (FileNotFoundError, ValueError, TypeError):
         return None
 
 
@@ -42,7 +53,7 @@ def is_current(sources: Callable[[], str]) -> bool:
     manifest = read_manifest()
     if manifest is None or not manifest.is_checked:
         return manifest is not None
-    return manifest.sources == sources()
+    return manifest.sources == sources() and manifest.is_whole()
 
 
 def say(text: str) -> None:

@@ -10,6 +10,7 @@ import pytest
 from clearance.compile import build, library, manifest
 from clearance.compile.decorators import KERNELS
 from clearance.compile.manifest import Manifest, is_current, read_manifest
+from clearance.errors import BadInput
 
 
 @pytest.fixture
@@ -20,7 +21,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def write(folder, **changes) -> None:
-    found = Manifest("abc", is_linked=True)._replace(**changes)
+    found = Manifest("abc", is_linked=True, sizes={})._replace(**changes)
     (folder / "manifest.json").write_text(json.dumps(found._asdict()))
 
 
@@ -38,8 +39,48 @@ def test_in_a_wheel_no_source_is_read(folder):
     assert is_current(lambda: pytest.fail("the sources are read"))
 
 
+@pytest.mark.parametrize("text", ["", '{"sources": "a', "[]", '{"sources": "abc"}', "\xff"])
+def test_a_manifest_that_is_damaged_says_nothing(folder, text):
+    (folder / "manifest.json").write_text(text, encoding="latin-1")
+    assert read_manifest() is None and not is_current(lambda: "abc")
+
+
+def test_a_library_of_which_a_file_is_cut_off_or_missing_is_not_current(folder):
+    file = folder / "kernels-x86-64-v2.so"
+    write(folder, sizes={file.name: 3})
+    assert not is_current(lambda: "abc")
+    file.write_bytes(b"ab")
+    assert not is_current(lambda: "abc")
+    file.write_bytes(b"abc")
+    assert is_current(lambda: "abc")
+
+
+@pytest.mark.parametrize(("is_linked", "suffix"), [(True, "so"), (False, "zip")])
+@pytest.mark.parametrize("n_bytes", [None, 0, 2, 3])
+def test_a_damaged_library_is_refused_in_one_line(folder, monkeypatch, is_linked, suffix, n_bytes):
+    monkeypatch.setattr(library, "KERNELS", "built")
+    file = folder / f"kernels-{library.processor_level()}.{suffix}"
+    if n_bytes is not None:
+        file.write_bytes(b"abc"[:n_bytes])
+    write(folder, sizes={file.name: 3}, is_linked=is_linked, is_checked=False)
+    with pytest.raises(library.Unavailable) as refused:
+        library._opened.__wrapped__()
+    assert str(refused.value).startswith("the compiled kernels cannot be loaded: ")
+    assert str(refused.value).endswith("install clearance again")
+    assert ("missing or cut off" in str(refused.value)) == (n_bytes != 3)
+
+
+def test_a_setting_that_does_not_exist_is_refused(monkeypatch):
+    monkeypatch.setattr(library, "KERNELS", "nonsense")
+    with pytest.raises(BadInput) as refused:
+        library._opened.__wrapped__()
+    said = "CLEARANCE_KERNELS is 'nonsense'; built, jit or python is needed"
+    assert str(refused.value) == said
+
+
 def test_without_the_compiler_a_missing_library_is_one_line(folder, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr(library, "KERNELS", "built")
     with pytest.raises(library.Unavailable) as refused:
         library._opened.__wrapped__()
     assert str(refused.value) == (
