@@ -97,6 +97,7 @@ class Polytope:
         A merged face stays as flat as rounding of the corners leaves it.
         """
         made = object.__new__(type(self))
+        pose = np.asarray(pose, dtype=np.float64)
         corners = np.ascontiguousarray(self.vertices @ pose[:3, :3].T + pose[:3, 3])
         corners.setflags(write=False)
         for name, value in (

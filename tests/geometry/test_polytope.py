@@ -109,3 +109,13 @@ def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n
         cell, bound = cell_of(body.packed, *point)
         assert exit_in(body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
         assert bound >= gauge * (1.0 - rounding)
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.longdouble, object])
+def test_a_pose_of_other_numbers_moves_a_body_as_one_of_doubles_does(kind):
+    pose = np.eye(4)
+    pose[:3, 3] = 0.5, 0.25, 2.0
+    cube = Polytope(CUBE)
+    moved = cube.moved(pose.astype(kind))
+    assert np.array_equal(moved.vertices, cube.moved(pose).vertices)
+    assert (moved.volume, moved.vertices.dtype) == (1.0, np.float64)
