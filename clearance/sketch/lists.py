@@ -1,6 +1,6 @@
 """The flat lists behind a sketch: numbers of entities, rows of equations, ends of lines.
 
-Typed arrays, so that a solve starts without walking over objects. Not for: names and checks.
+The tables that a solve works on are made of them (`problem`). Not for: names and checks.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Set
 import numpy as np
 
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.equations import CODES
 from clearance.sketch.rows import Row
 
 DRAWN, TOGETHER, ALONE, AGAIN = 0, 1, 2, 3
@@ -27,8 +26,7 @@ class FlatLists:
         numbers: the value of every variable, counted from the origin.
         roles: the role of every variable (`clearance.sketch.graph.graph`).
         line_ends: three numbers a line: its variable and those of its two points (-1: none).
-        codes, variables, coefficients, scales, offsets, grounds: the equations, row by row; a row has eight
-            variables and four coefficients.
+        rows: the equations.
         owners, ranks: the constraint (by index) and the rank of every row.
         constraints: every constraint by its index.
         together: (constraint, row) of every pair of points that coincide.
@@ -42,12 +40,7 @@ class FlatLists:
         self.numbers: list[float] = []
         self.roles = array("q")
         self.line_ends = array("q")
-        self.codes = array("q")
-        self.variables = array("q")
-        self.coefficients = array("d")
-        self.scales = array("d")
-        self.offsets = array("d")
-        self.grounds = array("q")
+        self.rows: list[Row] = []
         self.owners = array("q")
         self.ranks = array("q")
         self.constraints: list[Constraint] = []
@@ -77,18 +70,13 @@ class FlatLists:
 
     def append_rows(self, constraint: Constraint, rows: Iterable[Row]) -> None:
         """Appends a constraint's equations; coincident points are listed apart."""
-        first, rows = len(self.codes), list(rows)
+        first, rows = len(self.rows), list(rows)
+        self.rows += rows
         for row in rows:
-            self.codes.append(CODES[type(row.equation)])
-            self.variables.extend(row.equation + (-1,) * (8 - len(row.equation)))
-            self.coefficients.extend(row.coef + (0.0,) * (4 - len(row.coef)))
-            self.scales.append(row.scale)
-            self.offsets.append(row.offset)
-            self.grounds.append(row.ground)
             self.owners.append(constraint.index)
             rank = ALONE if len(rows) == 1 else TOGETHER
             self.ranks.append(DRAWN if constraint.built_in else (AGAIN if row.again else rank))
-        constraint.n_rows = len(self.codes) - first
+        constraint.n_rows = len(rows)
         points = constraint.kind == "coincident" and constraint.entities[0].what == "point"
         if constraint.n_rows and (points or constraint.kind == "concentric"):
             self.together.append((constraint.index, first))

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
 from clearance.sketch.entities import Entity
-from clearance.sketch.equations import OF_LENGTH, CircleCircle, Linear, are
+from clearance.sketch.equations import CODES, OF_LENGTH, CircleCircle, Linear, are
 from clearance.sketch.graph.graph import (
     DIRECTION,
     FREEDOMS,
@@ -87,14 +87,16 @@ def tables_of(sketch) -> Tables:
     """
     lists = sketch._lists
     order = np.argsort(np.array(lists.ranks, np.int64), kind="stable")
+    rows = [lists.rows[i] for i in order]
+    places = [row.equation + (-1,) * (8 - len(row.equation)) for row in rows]
     return Tables(
         np.array(lists.roles, np.int64),
-        np.array(lists.codes, np.int64)[order],
-        np.array(lists.variables, np.int64).reshape(-1, 8)[order],
-        np.array(lists.coefficients, float).reshape(-1, 4)[order],
-        np.array(lists.scales, float)[order],
-        np.array(lists.offsets, float)[order],
-        np.array(lists.grounds, np.int64)[order],
+        np.array([CODES[type(row.equation)] for row in rows], np.int64),
+        np.array(places, np.int64).reshape(-1, 8),
+        np.array([row.coef + (0.0,) * (4 - len(row.coef)) for row in rows]).reshape(-1, 4),
+        np.array([row.scale for row in rows], float),
+        np.array([row.offset for row in rows], float),
+        np.array([row.ground for row in rows], np.int64),
         np.array(lists.owners, np.int64)[order],
         np.array(lists.line_ends, np.int64).reshape(-1, 3),
         list(lists.together),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
-from clearance.sketch.equations import CODES, Lengths, Linear
+from clearance.sketch.equations import Lengths, Linear
 from clearance.sketch.graph.graph import DIRECTION
 from scripts.bench.sketches.lattices import flipped, patch
 from tests.examples import some_slow
@@ -30,9 +30,10 @@ def scaled(s, factor):
     for c in s._lists.constraints:
         if c.given is not None and c.kind not in ("angle", "ratio"):
             c.given = c.number = c.number * factor
-    for k, (code, var) in enumerate(zip(s._lists.codes, s._lists.variables[::8], strict=True)):
-        if not (code == CODES[Linear] and s._lists.roles[var] == DIRECTION):
-            s._lists.offsets[k] *= 1.0 if code == CODES[Lengths] else factor
+    for k, row in enumerate(s._lists.rows):
+        is_turn = isinstance(row.equation, Linear) and s._lists.roles[row.equation.a] == DIRECTION
+        if not is_turn and not isinstance(row.equation, Lengths):
+            s._lists.rows[k] = row._replace(offset=row.offset * factor)
     s._solver = None
     return s
 
