@@ -19,7 +19,8 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,7 +30,7 @@ from clearance.compile.in_process import set_up_compiler
 from clearance.compile.library import library_file
 from clearance.compile.linking import NotLinked, link, linker, pack
 from clearance.compile.manifest import FOLDER, Manifest, is_current, say
-from clearance.compile.sources import digest_of, digest_of_sources, modules
+from clearance.compile.sources import PACKAGE, digest_of, digest_of_sources, modules
 
 LARGEST_FIRST = (
     "budget_intervals", "budget_moments", "search", "sweep", "certify_unsynchronised",
@@ -103,6 +104,7 @@ def build() -> None:
         if is_current(digest_of_sources):
             return
         sources = digest_of_sources()
+        _forget_bytecode()
         everything = units()
         for level in levels():
             (FOLDER / level).mkdir(exist_ok=True)
@@ -111,6 +113,13 @@ def build() -> None:
             _compile_all(missing)
         _drop_others(everything)
         _finish(everything, sources)
+
+
+def _forget_bytecode() -> None:
+    """Removes what Python has kept of the kernels' sources: after two edits within a second it is of the first."""
+    for file in (PACKAGE / "kernels").rglob("*.py"):
+        with suppress(OSError):
+            Path(cache_from_source(str(file))).unlink()
 
 
 def _alone() -> AbstractContextManager:

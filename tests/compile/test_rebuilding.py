@@ -44,6 +44,18 @@ def test_an_edited_kernel_is_compiled_before_it_is_called(built):
     built.edit("3.0 * x", "2.0 * x")
 
 
+def test_what_python_has_kept_of_another_text_is_not_compiled(built):
+    """A text of the same length and the same second as the one before is taken for it."""
+    kept = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": ""}
+    built.edit("2.0 * x", "6.0 * x")
+    assert built.ask(**kept)[0] == "36.0 False"
+    then = built.kernel.stat()
+    built.edit("6.0 * x", "7.0 * x")
+    os.utime(built.kernel, ns=(then.st_atime_ns, then.st_mtime_ns))
+    assert built.ask(**kept)[0] == "42.0 False"
+    built.edit("7.0 * x", "2.0 * x")
+
+
 def test_a_kernel_that_no_longer_compiles_is_not_called(built):
     built.ask()
     built.edit("total = 0.0", "total = no_such_thing")
