@@ -1,5 +1,7 @@
 """Builds the library of kernels: `python -m clearance.compile.build`, or the package's build (`build_hook`).
 
+It is built for this machine's level of processor, or for those that are named; `all` names all.
+
 One object file for each kernel and level of processor, named by the hash of what it depends on: only what has
 changed is compiled, in as many processes as there are cores. The objects become one shared library for each level;
 without a linker they are packed, and llvmlite links them when they are loaded. One process builds at a time; each
@@ -27,7 +29,7 @@ from typing import NamedTuple
 from filelock import FileLock, Timeout
 
 from clearance.compile.in_process import set_up_compiler
-from clearance.compile.library import library_file
+from clearance.compile.library import library_file, processor_level
 from clearance.compile.linking import NotLinked, link, linker, pack
 from clearance.compile.manifest import FOLDER, Manifest, is_current, say
 from clearance.compile.sources import PACKAGE, digest_of, digest_of_sources, modules
@@ -66,8 +68,8 @@ class Unit(NamedTuple):
         return f"{self.symbol}-{self.digest[:16]}.o"
 
 
-def levels() -> tuple[str, ...]:
-    """The processors that are built for."""
+def all_levels() -> tuple[str, ...]:
+    """The processors that a wheel is for."""
     if platform.machine() in ("x86_64", "AMD64"):
         return "x86-64-v3", "x86-64-v2"
     return (platform.machine(),)
@@ -93,26 +95,26 @@ def units() -> list[Unit]:
     return sorted(found, key=lambda unit: (order.get(unit.name, len(order)), unit))
 
 
-def build() -> None:
-    """Brings the library up to date, if it is not.
+def build(levels: Sequence[str]) -> None:
+    """Brings the library of these levels up to date, if it is not.
 
     Raises:
         BuildFailed: a kernel does not compile, or the sources change meanwhile.
     """
     FOLDER.mkdir(exist_ok=True)
     with _alone():
-        if is_current(digest_of_sources):
+        if is_current(digest_of_sources, levels):
             return
         sources = digest_of_sources()
         _forget_bytecode()
         everything = units()
-        for level in levels():
+        for level in levels:
             (FOLDER / level).mkdir(exist_ok=True)
-        missing = [unit for unit in everything if not all(map(Path.exists, _files([unit])))]
+        missing = [unit for unit in everything if not all(map(Path.exists, _files(unit, levels)))]
         if missing:
-            _compile_all(missing)
+            _compile_all(missing, levels)
         _drop_others(everything)
-        _finish(everything, sources)
+        _finish(everything, sources, levels)
 
 
 def _forget_bytecode() -> None:
@@ -136,11 +138,11 @@ def _alone() -> AbstractContextManager:
         raise BuildFailed(held) from None
 
 
-def _files(of: Sequence[Unit]) -> list[Path]:
-    return [FOLDER / level / unit.file for level in levels() for unit in of]
+def _files(unit: Unit, levels: Sequence[str]) -> list[Path]:
+    return [FOLDER / level / unit.file for level in levels]
 
 
-def _compile_all(missing: Sequence[Unit]) -> None:
+def _compile_all(missing: Sequence[Unit], levels: Sequence[str]) -> None:
     begun = time.monotonic()
     n_workers = min(len(missing), _n_workers())
     say(f"compiling {len(missing)} kernels, {n_workers} at a time; this takes minutes")
@@ -149,7 +151,7 @@ def _compile_all(missing: Sequence[Unit]) -> None:
         mp_context=multiprocessing.get_context("spawn"),
         initializer=_begin,
     ) as pool:
-        asked = {pool.submit(_compile, unit): unit for unit in missing}
+        asked = {pool.submit(_compile, unit, levels): unit for unit in missing}
         try:
             for n_done, done in enumerate(as_completed(asked), 1):
                 say(f"{n_done:3} of {len(missing)}: {asked[done].symbol} ({done.result():.1f} s)")
@@ -182,7 +184,7 @@ def _end_with_parent() -> None:
     os._exit(1)
 
 
-def _compile(unit: Unit) -> float:
+def _compile(unit: Unit, levels: Sequence[str]) -> float:
     """Seconds of processor time that it took."""
     begun = time.process_time()
     from clearance.compile import registered
@@ -190,12 +192,12 @@ def _compile(unit: Unit) -> float:
 
     (kernel,) = (each for each in registered.kernels if each.symbol == unit.symbol)
     try:
-        made = objects_of(kernel, levels())
+        made = objects_of(kernel, levels)
     except Exception as error:
         raise BuildFailed(f"{unit.symbol} does not compile: {error}") from None
     if digest_of(unit.module) != unit.digest:  # read again: as it was when this process imported it
         raise BuildFailed("the sources have changed while they were compiled; start again")
-    for file, one in zip(_files([unit]), made, strict=True):
+    for file, one in zip(_files(unit, levels), made, strict=True):
         _replace(file, lambda draft, one=one: draft.write_bytes(one.content))
     return time.process_time() - begun
 
@@ -208,19 +210,20 @@ def _replace(file: Path, write: Callable[[Path], object]) -> None:
 
 
 def _drop_others(everything: Sequence[Unit]) -> None:
-    kept = set(_files(everything))
-    for level in levels():
-        for file in set((FOLDER / level).iterdir()) - kept:
-            file.unlink()
+    wanted = {unit.file for unit in everything}
+    for level in all_levels():
+        for file in (FOLDER / level).glob("*"):
+            if file.name not in wanted:
+                file.unlink()
 
 
-def _finish(everything: Sequence[Unit], sources: str) -> None:
+def _finish(everything: Sequence[Unit], sources: str, levels: Sequence[str]) -> None:
     """Makes the libraries of the objects; the manifest, which says so, comes last."""
     from clearance.compile.objects import memory_object
 
     is_linked = linker() is not None
     sizes = {}
-    for level in levels():
+    for level in levels:
         memory = FOLDER / level / "memory.o"
         memory.write_bytes(memory_object(level))
         make = functools.partial(
@@ -235,13 +238,18 @@ def _finish(everything: Sequence[Unit], sources: str) -> None:
     _replace(FOLDER / "manifest.json", lambda draft: draft.write_text(manifest))
 
 
-def main() -> None:
-    """Builds, and says in one line why that cannot be."""
+def main(named: Sequence[str]) -> None:
+    """Builds for the named levels, and says in one line why that cannot be."""
+    unknown = set(named) - {"all", *all_levels()}
+    if unknown:
+        valid = ", ".join(all_levels())
+        sys.exit(f"error: no level of processor is called {min(unknown)!r}; all, {valid} are")
+    levels = all_levels() if "all" in named else named or [processor_level()]
     try:
-        build()
+        build(levels)
     except (BuildFailed, NotLinked, OSError) as error:
         sys.exit(f"error: {error}")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

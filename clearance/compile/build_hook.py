@@ -1,7 +1,9 @@
 """What hatchling calls when it makes the package: kernels are compiled in the source tree and go into the wheel.
 
 It runs where the package is not installed, so it asks another process to build (`build`). One wheel serves every
-Python on a platform; its tag says how old the system's C library may be. Not for: anything at run time.
+Python on a platform; its tag says how old the system's C library may be. `CLEARANCE_LEVELS` names the levels of
+processor that a wheel is for, all by default. An editable installation is for this machine alone.
+Not for: anything at run time.
 """
 
 from __future__ import annotations
@@ -26,16 +28,17 @@ class KernelBuild(BuildHookInterface):
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Builds, and says what of it belongs into the wheel."""
-        self._build()
+        is_editable = version == "editable"
+        self._build([] if is_editable else os.environ.get("CLEARANCE_LEVELS", "all").split())
         folder = Path(self.root, BUILT)
         manifest = json.loads((folder / "manifest.json").read_text())
         if not manifest["is_linked"]:
             build_data["dependencies"].append("llvmlite")
-        if version == "editable":
+        if is_editable:
             return
         build_data["pure_python"] = False
         build_data["tag"] = f"py3-none-{_platform()}"
-        files = {file: file.name for file in folder.glob("kernels-*") if _is_whole(file, manifest)}
+        files = {folder / name: name for name in manifest["sizes"]}
         told = folder / "manifest-of-wheel.json"
         told.write_text(json.dumps({**manifest, "is_checked": False}))
         files[told] = "manifest.json"
@@ -43,14 +46,14 @@ class KernelBuild(BuildHookInterface):
             str(file): f"{BUILT}/{name}" for file, name in files.items()
         }
 
-    def _build(self) -> None:
+    def _build(self, levels: list[str]) -> None:
         paths = [self.root, *filter(None, [os.environ.get("PYTHONPATH")])]
         ours = ("NUMBA_", "CLEARANCE_KERNELS")
         environment = {
             name: value for name, value in os.environ.items() if not name.startswith(ours)
         }
         done = subprocess.run(
-            [sys.executable, "-P", "-m", "clearance.compile.build"],
+            [sys.executable, "-P", "-m", "clearance.compile.build", *levels],
             cwd=Path(self.root, BUILT).parent,
             env={**environment, "PYTHONPATH": os.pathsep.join(paths)},
             stdout=sys.stderr,
@@ -64,7 +67,3 @@ def _platform() -> str:
     """This platform, with the version of its C library: a linked library may need one as new."""
     tags = list(platform_tags())
     return next((tag for tag in tags if not tag.startswith("linux_")), tags[0])
-
-
-def _is_whole(file: Path, manifest: dict[str, Any]) -> bool:
-    return file.suffix == (".so" if manifest["is_linked"] else ".zip")

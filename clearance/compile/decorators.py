@@ -43,8 +43,8 @@ class Kernel(Declaration):
 
 
 if KERNELS == "built":
-    # before any kernel is imported: what is called later must fit it
-    is_current(digest_of_imported)
+    # the hash is taken before any kernel is imported: what is called later must fit it
+    is_current(digest_of_imported, [])
 
 
 def kernel(function: Callable) -> Any:

@@ -96,7 +96,7 @@ def opened() -> Any:
 def _opened() -> Any:
     if KERNELS not in ("built", "jit", "python"):
         raise BadInput(f"CLEARANCE_KERNELS is {KERNELS!r}", valid="built, jit or python is needed")
-    if not is_current(digest_of_imported):
+    if not is_current(digest_of_imported, [processor_level()]):
         _rebuild()
     manifest = read_manifest()
     assert manifest is not None
@@ -154,7 +154,7 @@ def _rebuild() -> None:
     )
     if done.returncode != 0:
         raise Unavailable("the kernels cannot be compiled", valid="the lines above say why")
-    if not is_current(digest_of_imported):
+    if not is_current(digest_of_imported, [processor_level()]):
         raise Unavailable(
             "the kernels have changed since this process began", valid="start it again"
         )

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -48,12 +48,14 @@ def read_manifest() -> Manifest | None:
         return None
 
 
-def is_current(sources: Callable[[], str]) -> bool:
-    """True if there is a library that fits the sources of this hash; that of a wheel does."""
+def is_current(sources: Callable[[], str], levels: Sequence[str]) -> bool:
+    """True if there is a library of these levels that fits the sources of this hash; that of a wheel does."""
     manifest = read_manifest()
     if manifest is None or not manifest.is_checked:
         return manifest is not None
-    return manifest.sources == sources() and manifest.is_whole()
+    built = {Path(name).stem for name in manifest.sizes}
+    is_of_levels = built >= {f"kernels-{level}" for level in levels}
+    return is_of_levels and manifest.sources == sources() and manifest.is_whole()
 
 
 def say(text: str) -> None:

@@ -19,8 +19,14 @@ _OPEN = (
     """
 declare i32 @TlsAlloc()
 define void @clearance_open_memory() {
+  %was_open = load i1, ptr @is_open
+  br i1 %was_open, label %done, label %open
+open:
   %key = call i32 @TlsAlloc()
   store i32 %key, ptr @key
+  store i1 true, ptr @is_open
+  br label %done
+done:
   ret void
 }
 """
@@ -28,7 +34,13 @@ define void @clearance_open_memory() {
     else """
 declare i32 @pthread_key_create(ptr, ptr)
 define void @clearance_open_memory() {
+  %was_open = load i1, ptr @is_open
+  br i1 %was_open, label %done, label %open
+open:
   %created = call i32 @pthread_key_create(ptr @key, ptr @free_all)
+  store i1 true, ptr @is_open
+  br label %done
+done:
   ret void
 }
 """
@@ -44,6 +56,7 @@ SOURCE = f"""
 %chunk = type {{ ptr, i64 }}
 
 @key = internal global i32 0
+@is_open = internal global i1 false
 declare ptr @{_GET}(i32)
 declare i32 @{_SET}(i32, ptr)
 declare ptr @malloc(i64)

@@ -26,33 +26,48 @@ def write(folder, **changes) -> None:
 
 
 def test_without_a_manifest_nothing_is_current(folder):
-    assert read_manifest() is None and not is_current(lambda: "abc")
+    assert read_manifest() is None and not is_current(lambda: "abc", [])
 
 
 def test_in_sources_the_hash_decides(folder):
     write(folder)
-    assert is_current(lambda: "abc") and not is_current(lambda: "abd")
+    assert is_current(lambda: "abc", []) and not is_current(lambda: "abd", [])
 
 
 def test_in_a_wheel_no_source_is_read(folder):
     write(folder, is_checked=False)
-    assert is_current(lambda: pytest.fail("the sources are read"))
+    assert is_current(lambda: pytest.fail("the sources are read"), ["x86-64-v2"])
 
 
 @pytest.mark.parametrize("text", ["", '{"sources": "a', "[]", '{"sources": "abc"}', "\xff"])
 def test_a_manifest_that_is_damaged_says_nothing(folder, text):
     (folder / "manifest.json").write_text(text, encoding="latin-1")
-    assert read_manifest() is None and not is_current(lambda: "abc")
+    assert read_manifest() is None and not is_current(lambda: "abc", [])
 
 
 def test_a_library_of_which_a_file_is_cut_off_or_missing_is_not_current(folder):
     file = folder / "kernels-x86-64-v2.so"
     write(folder, sizes={file.name: 3})
-    assert not is_current(lambda: "abc")
+    assert not is_current(lambda: "abc", [])
     file.write_bytes(b"ab")
-    assert not is_current(lambda: "abc")
+    assert not is_current(lambda: "abc", [])
     file.write_bytes(b"abc")
-    assert is_current(lambda: "abc")
+    assert is_current(lambda: "abc", [])
+
+
+def test_a_library_for_other_processors_is_not_current(folder):
+    file = folder / "kernels-x86-64-v2.so"
+    file.write_bytes(b"abc")
+    write(folder, sizes={file.name: 3})
+    assert is_current(lambda: "abc", ["x86-64-v2"])
+    assert not is_current(lambda: "abc", ["x86-64-v3"])
+
+
+def test_a_level_that_does_not_exist_is_refused_in_one_line():
+    with pytest.raises(SystemExit) as refused:
+        build.main(["x86-64-v9"])
+    said = "error: no level of processor is called 'x86-64-v9'; all, "
+    assert str(refused.value).startswith(said)
 
 
 @pytest.mark.parametrize(("is_linked", "suffix"), [(True, "so"), (False, "zip")])
@@ -104,7 +119,7 @@ def test_a_processor_takes_the_best_that_is_built_for_it(monkeypatch, machine, f
     monkeypatch.setattr(platform, "machine", lambda: machine)
     monkeypatch.setattr(library, "_flags", lambda: set(flags.split()))
     assert library.processor_level() == level
-    assert level in build.levels()
+    assert level in build.all_levels()
 
 
 @pytest.mark.skipif(KERNELS != "built", reason="the library is not used")
