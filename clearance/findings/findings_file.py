@@ -1,6 +1,6 @@
 """`findings.json`: the findings of a run, and what is needed to compare them with another run's.
 
-Not for: what a finding is (`finding`), nor comparing (`comparison`). The keys are in `NOTES.md`.
+Not for: what a finding is (`finding`), nor comparing (`comparison`). The keys are in `scripts/docs/results.md`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from clearance.simulate.record import Record
 FILE_NAME = "findings.json"
 
 FORMAT = 2
-"""Which keys there are: `NOTES.md`."""
+"""Which keys there are: `scripts/docs/results.md`."""
 
 MOST_LISTED = 10_000
 """Most findings in a file, the worst; how many more there are is said."""

@@ -28,7 +28,7 @@ FIGURES, PAGE = "gain.json", "gain.html"
 REPORTS = ("before", "after")
 
 FORMAT = 1
-"""Of `gain.json`: `NOTES.md`."""
+"""Of `gain.json`: `scripts/docs/results.md` has the keys."""
 
 
 def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:

@@ -1,7 +1,7 @@
 """The summary of a record as plain data: what `summary.json` holds and what the page prints.
 
 Lengths are in metres, times in seconds, angles in radians, all under names that say so in the
-README of the format (`NOTES.md`). Not for: wording and rounding, which belong to the page.
+guide (`scripts/docs/results.md`). Not for: wording and rounding, which belong to the page.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from clearance.world.motion import Motion
 from clearance.world.plausible_recordings import not_measured
 
 FORMAT = 3
-"""Which keys there are: `NOTES.md`."""
+"""Which keys there are: `scripts/docs/results.md`."""
 
 
 def summary_of(record: Record) -> dict[str, Any]:
