@@ -14,26 +14,26 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from clearance.errors import BadInput, BadTime
-from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.certify import CertificateGoal
-from clearance.kernels.motion.clock_rectangles import Band
-from clearance.kernels.motion.clock_tree import (
+from clearance.kernels.clocks.clock_rectangles import Band
+from clearance.kernels.clocks.clock_tree import (
     ClockTree,
     fill_intervals_tree,
     fill_steps_tree,
     new_clock_tree,
 )
-from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.two_clocks import TwoClocks
-from clearance.kernels.motion.unsynchronised import (
+from clearance.kernels.clocks.two_clocks import TwoClocks
+from clearance.kernels.clocks.unsynchronised import (
     StepsOfClock,
     TwoClockBounds,
     certify_unsynchronised,
 )
-from clearance.kernels.motion.unsynchronised_steps import (
+from clearance.kernels.clocks.unsynchronised_steps import (
     StepMinima,
     least_of_unsynchronised_steps,
 )
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.certify import CertificateGoal
+from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.ordered import ascending
 from clearance.query.distance import distance

@@ -12,13 +12,14 @@ import numpy as np
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.clocks.clock_rectangles import RectangleStack, is_whole
+from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, motion_of_node, row_in_middle
+from clearance.kernels.clocks.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import bound_between
 from clearance.kernels.motion.certify import CertificateGoal
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, hold
-from clearance.kernels.motion.clock_rectangles import RectangleStack, is_whole
-from clearance.kernels.motion.clock_tree import is_leaf_of_clock, motion_of_node, row_in_middle
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
     begin_arcs,
@@ -26,7 +27,6 @@ from clearance.kernels.motion.interval_middle import (
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
-from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.search.scratch import Scratch
 
 OUTWARD = 1.0 + 1e-12

@@ -15,12 +15,7 @@ from clearance.compile.decorators import inline, kernel
 from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.features.face_pair import write_points
-from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.body_boxes import bound_between
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK
-from clearance.kernels.motion.clock_rectangles import (
+from clearance.kernels.clocks.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
     RectangleStack,
@@ -32,9 +27,14 @@ from clearance.kernels.motion.clock_rectangles import (
     put_rectangle,
     take_rectangle,
 )
-from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.clocks.two_clocks import TwoClocks, apart_by_planes, corners_apart
+from clearance.kernels.features.face_pair import write_points
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.body_boxes import bound_between
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.sweep_state import NOT_LESS
-from clearance.kernels.motion.two_clocks import TwoClocks, apart_by_planes, corners_apart
 from clearance.kernels.search.body_pair import (
     NO_FACE,
     NOTHING_MEASURED,

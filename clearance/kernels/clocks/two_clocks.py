@@ -11,13 +11,13 @@ import numpy as np
 from clearance.compile.declared import Integers
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import dot, move, row, sub
+from clearance.kernels.clocks.clock_rectangles import Band
+from clearance.kernels.clocks.clock_tree import ClockTree
 from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK
-from clearance.kernels.motion.clock_rectangles import Band
-from clearance.kernels.motion.clock_tree import ClockTree
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of

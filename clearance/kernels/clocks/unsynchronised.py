@@ -15,10 +15,7 @@ import numpy as np
 from clearance.compile.declared import Floats, Integers
 from clearance.compile.decorators import inline, kernel
 from clearance.compile.lending import lend
-from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER, CertificateGoal
-from clearance.kernels.motion.certify_pair import allowed_gap
-from clearance.kernels.motion.clock_rectangles import (
+from clearance.kernels.clocks.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
     clipped,
@@ -31,10 +28,13 @@ from clearance.kernels.motion.clock_rectangles import (
     put_rectangle,
     take_rectangle,
 )
-from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.clocks.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
+from clearance.kernels.clocks.two_clocks import TwoClocks
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER, CertificateGoal
+from clearance.kernels.motion.certify_pair import allowed_gap
 from clearance.kernels.motion.interval_middle import begin_arcs, go_to_middle, new_middle
-from clearance.kernels.motion.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
-from clearance.kernels.motion.two_clocks import TwoClocks
 from clearance.kernels.search.scratch import new_scratch
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.decorators import inline
-from clearance.kernels.motion.clock_tree import is_leaf_of_clock
+from clearance.kernels.clocks.clock_tree import is_leaf_of_clock
 
 DEPTH = 256
 """Rectangles that can wait, one a halving: two clocks of 2^50 leaves, each interval halved 52 times."""
