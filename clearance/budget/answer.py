@@ -125,11 +125,3 @@ def _of_rule(
     limits = rule_limits(case, rule, [one.section for one in sections])
     worst = WorstMoments(name, limits, sections)
     return RuleBudget(name, limits, proven, expected, between, worst, there)
-
-
-def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) [m] proven and expected of each step, of the rule whose limit what is proven comes nearest to."""
-    margins = np.array([one.proven - one.limits.fail for one in budgets])
-    which, steps = np.argmin(margins, axis=0), np.arange(margins.shape[1])
-    proven = np.array([one.proven for one in budgets])[which, steps]
-    return proven, np.array([one.expected for one in budgets])[which, steps]

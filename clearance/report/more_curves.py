@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.simulate.budget_columns import least_between, least_expected, least_proven
+from clearance.budget.columns import least_between, least_expected, least_proven
 from clearance.simulate.record import Record
 
 MOST_PARTS = 2000

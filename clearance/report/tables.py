@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from clearance.simulate.budget_columns import with_proven_between
+from clearance.budget.columns import with_proven_between
 from clearance.simulate.contact.columns import with_contact_columns
 from clearance.simulate.contact.sequence import StepContact
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES

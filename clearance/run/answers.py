@@ -237,7 +237,7 @@ def _samples(
     simulated = plan.question.motion == "simulated"
     left = None
     if budget is not None:
-        from clearance.budget.answer import columns_of
+        from clearance.budget.columns import columns_of
 
         left = columns_of(budget)
 

@@ -6,6 +6,7 @@ Not for: finding it (`answers`), nor how a report looks (room `report`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,10 +41,19 @@ class Run:
     rows: MeasuredRows = IN_MEMORY
     question: Question | None = None
 
-    @property
+    @cached_property
     def steps(self) -> pa.Table:
-        """One row a step; columns as in `Record.steps_with_contacts`."""
-        return self.record.steps_with_contacts
+        """One row a step, as `Record.steps`, with penetration [m] and volume [m3] of contacts.
+
+        Both are null at steps with pairs in contact that are not worked out, and upper bounds where not exact.
+        With tolerances, `proven_between` [m] is the bound of the motion from the step to the next.
+        """
+        from clearance.budget.columns import with_proven_between
+        from clearance.simulate.contact.columns import with_contact_columns
+
+        record = self.record
+        with_contacts = with_contact_columns(record.steps, record.contacts)
+        return with_proven_between(with_contacts, record.budget)
 
     @property
     def pairs(self) -> pa.Table | None:

@@ -195,8 +195,8 @@ class Record(Samples):
             in contact); when certified, lower_bound and upper_bound of the motion from the step to the next, and
             `between`: the motion is worse there than at both of its ends, and the status is that of the motion,
             not of the step; else lower_bound of the step where `need` leaves clearances unknown (null);
-            penetration [m] of the deepest pair in contact and volume [m3] of all, both null here and filled in
-            by `steps_with_contacts`.
+            penetration [m] of the deepest pair in contact and volume [m3] of all, both null here:
+            `Run.steps` fills them in.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
@@ -270,15 +270,6 @@ class Record(Samples):
     def deepest(self) -> StepContact | None:
         """The first of the contacts worked out of greatest penetration; None without any."""
         return max(self.worked_out, key=lambda row: row.numbers.penetration, default=None)
-
-    @cached_property
-    def steps_with_contacts(self) -> pa.Table:
-        """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
-        not exact, null at all others; with tolerances that of the motion too, as `with_proven_between` adds it."""
-        from clearance.simulate.budget_columns import with_proven_between
-        from clearance.simulate.contact.columns import with_contact_columns
-
-        return with_proven_between(with_contact_columns(self.steps, self.contacts), self.budget)
 
     @property
     def worst_step(self) -> int:

@@ -1,4 +1,4 @@
-"""What tolerances leave of all rules, step by step. Not for: working it out (`clearance.budget`)."""
+"""What tolerances leave of all rules, step by step, as columns. Not for: working it out (`answer`)."""
 
 from __future__ import annotations
 
@@ -25,6 +25,14 @@ def least_expected(budget: Sequence[RuleBudget]) -> np.ndarray:
     """(n,) [m] what is expected from each step to the next, of all rules; NaN where it is not worked out."""
     between = [one.expected_between for one in budget if one.expected_between is not None]
     return np.fmin.reduce([*(one.expected for one in budget), *between])
+
+
+def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) [m] proven and expected of each step, of the rule whose limit what is proven comes nearest to."""
+    margins = np.array([one.proven - one.limits.fail for one in budgets])
+    which, steps = np.argmin(margins, axis=0), np.arange(margins.shape[1])
+    proven = np.array([one.proven for one in budgets])[which, steps]
+    return proven, np.array([one.expected for one in budgets])[which, steps]
 
 
 def with_proven_between(
