@@ -14,6 +14,7 @@ from .load.robot.formats import load_robot
 from .load.robot.urdf.robot import load_urdf
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
+from .planar.curve_file import read_curve
 from .planar.deviation import deviation
 from .planar.hausdorff import Undecided, hausdorff, within
 from .planar.minimum import minimum_distance
@@ -118,6 +119,7 @@ __all__ = [
     "pipe",
     "polygon_distance",
     "polygon_distances",
+    "read_curve",
     "read_mesh",
     "read_points",
     "shared_workspace",

@@ -26,8 +26,6 @@ LISTED = next(
     if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
 )
 
-TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
-
 
 def test_the_stub_lists_what_it_imports_and_the_package_offers_the_same():
     assert sorted(LISTED) == LISTED == sorted([*ROOM_OF, "__version__"])
@@ -51,11 +49,6 @@ def test_importing_the_package_imports_no_large_library():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
     assert done.stdout == "[]\n"
-
-
-def test_a_mesh_file_is_read_by_the_room_that_the_package_attaches(tmp_path):
-    (tmp_path / "corner.off").write_text(TETRAHEDRON)
-    assert cl.Polyhedron.from_file(tmp_path / "corner.off", scale=2.0).vertices.max() == 2.0
 
 
 def public_functions():

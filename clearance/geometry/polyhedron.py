@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike
 from typing import Any, Self
 
 import numpy as np
@@ -25,7 +24,6 @@ from clearance.geometry.faces import (
     checked_vertices,
     flat_faces,
 )
-from clearance.geometry.file_reader import file_reader
 from clearance.geometry.nesting import inside_out_components
 from clearance.geometry.planes import Planes, planes_of
 from clearance.geometry.pose import validated_pose
@@ -165,15 +163,6 @@ class Polyhedron:
                 f"a {type(mesh).__name__} has no vertices and faces", valid="a trimesh.Trimesh"
             )
         return cls.from_triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces))
-
-    @staticmethod
-    def from_file(path: str | PathLike[str], scale: float = 1.0) -> Polyhedron:
-        """The surface in a mesh file (STL, OBJ, PLY, DAE, …), its coordinates times `scale` in metres.
-
-        Raises:
-            MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `load.mesh.mesh_file.read_mesh`.
-        """
-        return file_reader()(path, scale)
 
     @property
     def ball_radius(self) -> float:

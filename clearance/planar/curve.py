@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -108,15 +107,6 @@ class Curve(CurveFacts):
     def contours(cls, parts: Sequence[Curve]) -> Curve:
         """The set of several contours as one curve, e.g. an outline with its holes."""
         return cls(*joined(parts, together=False))
-
-    @classmethod
-    def from_dxf(cls, path: str) -> Curve:
-        """The lines, arcs, circles, polylines and splines of a DXF file's model space, joined where they meet.
-
-        Raises: MissingFile, BadSyntax, BadCurve; see `clearance.planar.dxf`.
-        """
-        # By name: the reader builds on this module, which must not import it in turn.
-        return import_module("clearance.planar.dxf").read_dxf(path)
 
     def transformed(self, matrix: ArrayLike) -> Curve:
         """The curve under the affine map `matrix` (2, 3) or (3, 3): x -> matrix[:2, :2] x + matrix[:2, 2].

@@ -13,6 +13,7 @@ Angles in radians. Not for: writing curves.
 from __future__ import annotations
 
 from collections.abc import Callable
+from os import PathLike
 from pathlib import Path
 
 from clearance.errors import (
@@ -27,6 +28,7 @@ from clearance.errors import (
 )
 from clearance.plain_yaml import plain_data
 from clearance.planar.curve import Curve
+from clearance.planar.dxf import read_dxf
 
 _FORMS: dict[str, tuple[Callable[..., Curve], tuple[str, ...], tuple[str, ...]]] = {
     "line": (Curve.line, ("start", "end"), ()),
@@ -38,14 +40,14 @@ _FORMS: dict[str, tuple[Callable[..., Curve], tuple[str, ...], tuple[str, ...]]]
 }
 
 
-def read_curve(path: str) -> Curve:
+def read_curve(path: str | PathLike[str]) -> Curve:
     """The curve of a `.dxf`, `.yaml` or `.yml` file; several curves become its contours.
 
     Raises: MissingFile, BadSyntax, UnknownKey, MissingKey and what the constructors raise, with file and field.
     """
     suffix = Path(path).suffix.lower()
     if suffix == ".dxf":
-        return Curve.from_dxf(path)
+        return read_dxf(path)
     if suffix not in (".yaml", ".yml"):
         raise BadSyntax(
             f"a file {suffix or 'without suffix'}", where=str(path), valid=".dxf, .yaml or .yml"
@@ -54,7 +56,7 @@ def read_curve(path: str) -> Curve:
         return _from_document(_load(path))
 
 
-def _load(path: str) -> object:
+def _load(path: str | PathLike[str]) -> object:
     file = Path(path)
     if not file.is_file():
         raise MissingFile("no such file", valid="a DXF or YAML file of curves")

@@ -8,6 +8,7 @@ Not for: blocks, layers, writing.
 from __future__ import annotations
 
 import math
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,7 @@ _MOST_DEGREES = 36_000.0
 """An angle of an arc beyond a hundred turns has few digits left, and is damage."""
 
 
-def read_dxf(path: str) -> Curve:
+def read_dxf(path: str | PathLike[str]) -> Curve:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
     Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an

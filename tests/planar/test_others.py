@@ -12,6 +12,7 @@ from clearance.planar.biarcs import biarcs
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve
 from clearance.planar.deviation import deviation
+from clearance.planar.dxf import read_dxf
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import minimum_distance
 
@@ -120,7 +121,7 @@ def test_dxf_entities_become_one_curve(tmp_path):
     space.add_lwpolyline([(0, 5, 1.0), (2, 5, 0.0)], format="xyb")
     space.add_open_spline([(0, 9), (1, 11), (2, 8), (3, 9)])
     drawing.saveas(tmp_path / "part.dxf")
-    curve = Curve.from_dxf(str(tmp_path / "part.dxf"))
+    curve = read_dxf(str(tmp_path / "part.dxf"))
     known = Curve.contours(
         [
             Curve.chain([Curve.line([0, 0], [2, 0]), Curve.arc([2, 1], 1, -math.pi / 2, 0)]),
@@ -134,10 +135,10 @@ def test_dxf_entities_become_one_curve(tmp_path):
     space.add_text("no curve")
     drawing.saveas(tmp_path / "text.dxf")
     with pytest.raises(ClearanceError, match="an entity TEXT"):
-        Curve.from_dxf(str(tmp_path / "text.dxf"))
+        read_dxf(str(tmp_path / "text.dxf"))
     (tmp_path / "bad.dxf").write_text("hello")
     with pytest.raises(ClearanceError, match=r"bad\.dxf: not a DXF"):
-        Curve.from_dxf(str(tmp_path / "bad.dxf"))
+        read_dxf(str(tmp_path / "bad.dxf"))
 
 
 def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
@@ -151,7 +152,7 @@ def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
     space.add_arc((10, 0), 2, 350, 20)  # through the angle 0
     space.add_rational_spline([(0, 9), (1, 11), (2, 8), (3, 9)], [1, 2, 0.5, 1])
     drawing.saveas(tmp_path / "part.dxf")
-    curve = Curve.from_dxf(str(tmp_path / "part.dxf"))
+    curve = read_dxf(str(tmp_path / "part.dxf"))
     assert curve.contour.max() == 3 and curve.is_closed is False
     half = Curve.arc(
         [1, 0], 1, math.pi, 2 * math.pi
@@ -177,7 +178,7 @@ def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
         entity = add()
         drawing.saveas(tmp_path / "bad.dxf")
         with pytest.raises(ClearanceError) as caught:
-            Curve.from_dxf(str(tmp_path / "bad.dxf"))
+            read_dxf(str(tmp_path / "bad.dxf"))
         assert said in str(caught.value) and "bad.dxf" in str(caught.value)
         assert "\n" not in str(caught.value)
         space.delete_entity(entity)

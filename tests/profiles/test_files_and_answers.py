@@ -46,7 +46,7 @@ def test_dxf_keeps_the_curve_and_opens_elsewhere(profile, tmp_path):
     one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]))
     path = tmp_path / "p.dxf"
     write_profile(one, path)
-    found = cl.hausdorff(cl.Curve.from_dxf(str(path)), one.curve)
+    found = cl.hausdorff(cl.read_curve(str(path)), one.curve)
     assert found.distance + found.error_bound <= 1e-12
     other = trimesh.load_path(str(path))  # its own reader of the format
     assert len(other.entities) >= 2
