@@ -99,10 +99,9 @@ def hausdorff(
 
     Args:
         a, b: curves of any number of contours.
-        method: "trimmed" (the default: map, trimming and certificates), "untrimmed" (the systems (11) to (13)
-            solved on the whole curves, slow) or "paper" (as Kim, Oh, Kim publish it: trimming by a page of
-            pixels, the same systems on what is left, the greatest distance of *all* roots, which can be above
-            the true one: `planar/PAPER.md`).
+        method: "trimmed" (the default: map, trimming and certificates) or "paper" (as Kim, Oh, Kim publish it:
+            trimming by a page of pixels, the systems (11) to (13) on what is left, the greatest distance of *all*
+            roots, which can be above the true one: `planar/PAPER.md`).
         tolerance: the error to reach, relative to the size of both curves together.
 
     Exactness: `error_bound` holds whatever happened, for every method; by default it is above `tolerance`
@@ -116,12 +115,11 @@ def hausdorff(
     a, b = steady(a), steady(b)
     if method == "trimmed":
         return greater_of(*_trimmed(a, b, tolerance))
-    if method not in ("paper", "untrimmed"):
-        valid = "'trimmed', 'untrimmed' or 'paper'"
-        raise UnknownMethod(f"{method!r}", where="method", valid=valid)
-    from clearance.planar.systems import paper, untrimmed
+    if method != "paper":
+        raise UnknownMethod(f"{method!r}", where="method", valid="'trimmed' or 'paper'")
+    from clearance.planar.systems import paper
 
-    return greater_of(*(paper(a, b) if method == "paper" else untrimmed(a, b)))
+    return greater_of(*paper(a, b))
 
 
 def within(a: Curve, b: Curve, distance: float) -> bool:

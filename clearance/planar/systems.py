@@ -1,6 +1,6 @@
-"""The Hausdorff distance from the systems (11) to (13): on whole curves, and on what the paper's trimming leaves.
+"""The Hausdorff distance from the systems (11) to (13), on parts of curves: the paper's method.
 
-Kept to check the default method by another one and to measure what trimming gains. Not for: the default method.
+Its answers are compared with those of the default method. Not for: that method (`hausdorff`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PAGE = 64
 """Pixels along the longer side of the paper's page, which names no number; of 32 to 256 the fastest."""
 
 
-class _Direction(NamedTuple):
+class Direction(NamedTuple):
     """One direction: the curve searched, the other, the step between their frames, and whether it is a to b."""
 
     one: Curve
@@ -36,24 +36,11 @@ class _Direction(NamedTuple):
     forward: bool
 
 
-def _directions(a: Curve, b: Curve) -> tuple[_Direction, _Direction]:
+def directions(a: Curve, b: Curve) -> tuple[Direction, Direction]:
+    """From a to b, and from b to a."""
     shift, size = placed(a, b)
     margin = a.rounding + b.rounding + LAST_BITS * size
-    return _Direction(a, b, shift, margin, True), _Direction(b, a, -shift, margin, False)
-
-
-def untrimmed(a: Curve, b: Curve) -> tuple[DirectedDistance, DirectedDistance]:
-    """Both directed distances of `a` and `b`, each the greatest distance over all roots of the systems.
-
-    On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds show it.
-    """
-    forth, back = (_untrimmed(direction) for direction in _directions(a, b))
-    return forth, back
-
-
-def _untrimmed(direction: _Direction) -> DirectedDistance:
-    state = _solved(direction, _whole(direction.one), _whole(direction.two), _empty())
-    return _directed(direction, state)
+    return Direction(a, b, shift, margin, True), Direction(b, a, -shift, margin, False)
 
 
 def paper(
@@ -65,17 +52,16 @@ def paper(
     the true one. `literal`: the systems have only the trimmed parts of the other curve as well, as the paper's
     4.3 can be read; its answers can then be too small.
     """
-    directions = _directions(a, b)
-    trimmed = [_trimmed(direction) for direction in directions]
+    both = directions(a, b)
+    trimmed = [_trimmed(direction) for direction in both]
     parts = [
-        _parts(direction.one, kept)
-        for direction, (_, kept) in zip(directions, trimmed, strict=True)
+        _parts(direction.one, kept) for direction, (_, kept) in zip(both, trimmed, strict=True)
     ]
     found = []
-    for k, direction in enumerate(directions):
-        other = parts[1 - k] if literal else _whole(direction.two)
+    for k, direction in enumerate(both):
+        other = parts[1 - k] if literal else whole(direction.two)
         state, kept = trimmed[k]
-        state = _solved(direction, parts[k], other, state)
+        state = solved(direction, parts[k], other, state)
         if (
             not kept.all()
         ):  # what is trimmed is within the reach of (8) to (10) and both biarc errors
@@ -85,14 +71,15 @@ def paper(
     return found[0], found[1]
 
 
-def _empty() -> np.ndarray:
-    """A state of nothing found, (1,)."""
+def empty_state() -> np.ndarray:
+    """A SEARCH_STATE of nothing found, (1,)."""
     state = np.zeros(1, SEARCH_STATE)
     state["piece_a"], state["root"] = -1, -1.0
     return state
 
 
-def _whole(curve: Curve) -> np.ndarray:
+def whole(curve: Curve) -> np.ndarray:
+    """All of a curve as parts (n, 3) piece, start, end."""
     n = np.arange(curve.n_pieces)
     return np.stack([n, np.zeros(len(n)), np.ones(len(n))], axis=1)
 
@@ -107,7 +94,7 @@ def _parts(curve: Curve, kept: np.ndarray) -> np.ndarray:
     return np.stack([owner[new], arcs[new, 0], arcs[last, 1]], axis=1)
 
 
-def _trimmed(direction: _Direction) -> tuple[np.ndarray, np.ndarray]:
+def _trimmed(direction: Direction) -> tuple[np.ndarray, np.ndarray]:
     """A state with the bound (2), and which arcs of the curve searched are kept (n,)."""
     one, two, (shift_x, shift_y) = direction.one, direction.two, direction.shift
     low = np.minimum(one.box[0], two.box[0]) - two.origin
@@ -119,15 +106,19 @@ def _trimmed(direction: _Direction) -> tuple[np.ndarray, np.ndarray]:
     deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, page)
     bound = max(0.0, deepest - two.leaves.arcs[:, EPS].max() - np.sqrt(2.0) * pixel)
     kept = paper_kept(one.leaves, two.leaves, shift_x, shift_y, page, bound)
-    state = _empty()
+    state = empty_state()
     state["n_arcs"], state["n_kept"] = len(kept), kept.sum()
     state["n_pixels"], state["map_bound"] = page.depth.size, bound
     return state, kept
 
 
-def _solved(
-    direction: _Direction, parts: np.ndarray, other: np.ndarray, state: np.ndarray
+def solved(
+    direction: Direction, parts: np.ndarray, other: np.ndarray, state: np.ndarray
 ) -> np.ndarray:
+    """`state` with the systems solved on parts (n, 3) of the curve searched and of the other.
+
+    On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds show it.
+    """
     solve_directed(
         arrays_of(direction.one),
         parts,
@@ -141,7 +132,8 @@ def _solved(
     return state
 
 
-def _directed(direction: _Direction, state: np.ndarray) -> DirectedDistance:
+def directed(direction: Direction, state: np.ndarray) -> DirectedDistance:
+    """The distance of one direction, from what was found."""
     one, two = direction.one, direction.two
     points = witness_of(
         arrays_of(one), arrays_of(two), direction.shift[0], direction.shift[1], state
@@ -149,7 +141,7 @@ def _directed(direction: _Direction, state: np.ndarray) -> DirectedDistance:
     return directed_of(one, two, state[0], points, direction.margin, direction.forward)
 
 
-def _published(direction: _Direction, state: np.ndarray) -> DirectedDistance:
+def _published(direction: Direction, state: np.ndarray) -> DirectedDistance:
     """The greatest root as the answer, with what is proven of the true distance."""
     lower = float(state["lower"][0])
     upper = float(np.maximum(state["upper"], state["distance"])[0])
@@ -157,5 +149,5 @@ def _published(direction: _Direction, state: np.ndarray) -> DirectedDistance:
         state["distance"] = state["root"]
         for place in ("piece_a", "at_a", "piece_b", "at_b"):
             state[place] = state[f"root_{place}"]
-    found = _directed(direction, state)
+    found = directed(direction, state)
     return replace(found, lower=max(0.0, lower - direction.margin), upper=upper + direction.margin)

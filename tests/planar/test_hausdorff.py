@@ -350,10 +350,7 @@ def test_trimming_is_safe(one, two):
 def test_refusals():
     a = Curve.line([0, 0], [1, 0])
     for call, said in [
-        (
-            lambda: hausdorff(a, a, method="best"),
-            "method: 'best'; 'trimmed', 'untrimmed' or 'paper'",
-        ),
+        (lambda: hausdorff(a, a, method="best"), "method: 'best'; 'trimmed' or 'paper'"),
         (lambda: hausdorff(a, [[0, 0]]), "b: a list; a clearance Curve"),
         (lambda: hausdorff(a, a, tolerance=math.nan), "tolerance: nan"),
         (lambda: within(a, a, -1.0), "distance: -1"),

@@ -1,7 +1,4 @@
-"""Trimming takes nothing that matters: both methods give the same distances on families of pairs.
-
-The untrimmed method shares no bound with the trimmed one: it solves every system on the whole curves.
-"""
+"""Trimming takes nothing that matters: without it the distances are the same, on families of pairs."""
 
 import numpy as np
 import pytest
@@ -9,6 +6,7 @@ import pytest
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
 from tests.examples import some_slow
+from tests.planar.untrimmed import untrimmed
 
 
 def walk(random, n):
@@ -77,7 +75,7 @@ FAMILIES = [
 def test_trimmed_agrees_with_untrimmed(family, n):
     for seed in range(n):
         a, b = family(np.random.default_rng(seed))
-        one, two = hausdorff(a, b), hausdorff(a, b, method="untrimmed")
+        one, two = hausdorff(a, b), untrimmed(a, b)
         size = max(a.size, b.size)
         for direction in ("a_to_b", "b_to_a"):
             p, q = one.directed[direction], two.directed[direction]
@@ -100,7 +98,7 @@ HARD = {
 def test_systems_without_end_stop_with_a_true_bound(name):
     """Infinitely many roots, or too many to tell apart: the budget ends it, and the bound says what is left."""
     a, b = HARD[name]
-    one, two = hausdorff(a, b), hausdorff(a, b, method="untrimmed")
+    one, two = hausdorff(a, b), untrimmed(a, b)
     assert two.lower <= one.upper and one.lower <= two.upper
     assert two.error_bound <= 0.05 * a.size and two.tally.given_up > 0
     assert two.tally.systems <= 40_000 and two.tally.intervals <= 900_000
@@ -111,7 +109,7 @@ def test_settled_systems_are_not_solved_again():
     random = np.random.default_rng(102)
     c = np.stack([np.arange(10) * 1.0, np.cumsum(random.normal(size=10))], axis=1)
     a, b = Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * random.normal(size=(10, 2)))
-    one, two = hausdorff(a, b), hausdorff(a, b, method="untrimmed")
+    one, two = hausdorff(a, b), untrimmed(a, b)
     assert two.tally.systems <= 2 * two.tally.intervals and two.tally.given_up == 0
     assert abs(one.distance - two.distance) <= 1e-14 * a.size
 
@@ -120,8 +118,6 @@ def test_two_feet_in_one_cell_are_found():
     """A chord far off a shallow arch: both feet start in one cell of B, and no normal is near."""
     arch = Curve.bezier([[-1, 0], [-1, 4], [1, 4], [1, 0]])
     across = Curve.bezier([[-0.3, 0.5], [-0.1, 0.6], [0.1, 0.4], [0.3, 0.45]])
-    one, two = (
-        hausdorff(across, arch, method=m).directed["a_to_b"] for m in ("trimmed", "untrimmed")
-    )
+    one, two = (find(across, arch).directed["a_to_b"] for find in (hausdorff, untrimmed))
     assert two.kind == one.kind == "self_bisector"
     assert abs(one.distance - two.distance) <= 1e-14 * arch.size
