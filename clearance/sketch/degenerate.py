@@ -21,15 +21,13 @@ def check_degenerate(sketch, problem: Problem, x: np.ndarray) -> None:
     if small.size:
         name = _name_at(sketch, int(small[0]))
         raise DegenerateSketch(f"{name} would have the radius 0", valid="a radius above 0")
-    drawn = tables.line_ends[tables.line_ends[:, 1] >= 0]
-    if drawn.size:
-        _, a, b = drawn.T
-        short = np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= least
-        for line in drawn[short, 0][:1]:
-            raise DegenerateSketch(
-                f"the two points of {_name_at(sketch, int(line))} would coincide",
-                valid="a line of some length",
-            )
+    line, a, b = tables.line_ends.T
+    short = line[(a >= 0) & (np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= least)]
+    if short.size:
+        raise DegenerateSketch(
+            f"the two points of {_name_at(sketch, int(short[0]))} would coincide",
+            valid="a line of some length",
+        )
 
 
 def _name_at(sketch, variable: int) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.sketch.branches import exhausted
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import PointPoint, are
+from clearance.sketch.equations import Linear, PointPoint, are, places
 from clearance.sketch.graph.graph import CONTRADICTED, MERGED
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
@@ -155,7 +155,9 @@ def _suspects(problem: Problem, broken: int) -> list[int] | None:
         touched = np.unique(var[rows][var[rows] >= 0])
         merged = np.flatnonzero(problem.fate == MERGED)
         near = merged[np.isin(var[merged], touched).any(axis=1)]
-        together = {i for i, row in problem.tables.together if var[row, 0] in touched}
+        together = {
+            i for i, row in problem.tables.together if places(Linear, var[row]).a in touched
+        }
         return sorted({int(o) for o in owner[rows]} | {int(o) for o in owner[near]} | together)
     return None
 
@@ -165,7 +167,7 @@ def _too_short(problem: Problem, broken: int) -> list[int]:
 
     The shortest chain between the broken distance's ends, by Dijkstra's method.
     """
-    tables, var = problem.tables, problem.system.var
+    tables, ends = problem.tables, places(PointPoint, problem.system.var)
     if not are(tables.code[broken], PointPoint):
         return []
     value = tables.value
@@ -174,11 +176,11 @@ def _too_short(problem: Problem, broken: int) -> list[int]:
     )
     near: dict[int, list[tuple[int, float, int]]] = {}
     for row in rows:
-        a, b = int(var[row, 0]), int(var[row, 2])
+        a, b = int(ends.px[row]), int(ends.qx[row])
         near.setdefault(a, []).append((b, float(value[row]), int(row)))
         near.setdefault(b, []).append((a, float(value[row]), int(row)))
-    for longest in (broken, *_heaviest(near, broken, var)):
-        chain = _spanned(near, longest, int(var[longest, 0]), int(var[longest, 2]))
+    for longest in (broken, *_heaviest(near, broken, ends)):
+        chain = _spanned(near, longest, int(ends.px[longest]), int(ends.qx[longest]))
         if chain and sum(value[r] for r in chain) < value[longest]:
             return sorted({int(o) for o in tables.owner[[longest, *chain]]})
     return []
@@ -191,15 +193,15 @@ def _is_polygon(problem: Problem, chosen: list[int]) -> bool:
     rows = np.isin(tables.owner, chosen)
     if not are(tables.code[rows], PointPoint).all():
         return False
-    corners, sides = tables.var[rows][:, [0, 2]], tables.value[rows]
+    ends, sides = places(PointPoint, tables.var[rows]), tables.value[rows]
     over = 2.0 * sides.max() - sides.sum()
-    twice = (np.unique(corners, return_counts=True)[1] == 2).all()
+    twice = (np.unique([ends.px, ends.qx], return_counts=True)[1] == 2).all()
     return bool(twice and over > DEPENDENT * problem.size)
 
 
-def _heaviest(near: dict, broken: int, var: np.ndarray) -> list[int]:
+def _heaviest(near: dict, broken: int, ends: PointPoint) -> list[int]:
     """The other distances at the broken one's ends, the longest first: one of them may be too long."""
-    at = [e for end in (int(var[broken, 0]), int(var[broken, 2])) for e in near[end]]
+    at = [e for end in (int(ends.px[broken]), int(ends.qx[broken])) for e in near[end]]
     return [row for _, _, row in sorted(at, key=lambda e: -e[1]) if row != broken][:4]
 
 

@@ -240,6 +240,11 @@ def are(code: np.ndarray, *kinds: type) -> np.ndarray:
     return np.isin(code, [CODES[kind] for kind in kinds])
 
 
+def places(kind: Any, var: np.ndarray) -> Any:
+    """The numbers' places of equations of one kind, by name: columns (m,) of `var` (m, 8), or those of one row."""
+    return kind(*var[..., : len(kind._fields)].T)
+
+
 class Rows:
     """Some equations, block by block of one kind, each evaluated at once. They may be asked at several places.
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.sketch.descent import CORRECTIONS, Iterate, ProblemPart, descend
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.equations import PointPoint, are
+from clearance.sketch.equations import PointPoint, are, places
 from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.problem import Problem
 
@@ -99,9 +99,8 @@ def _joined(work: ProblemPart, place: Iterate):
     distances now (k,)."""
     s = work.system
     mine = are(s.code[work.rows], PointPoint)
-    ends, error = s.var[work.rows[mine]][:, [0, 2]], place.error[mine]
-    point = np.concatenate([ends[:, 0], ends[:, 1]])
-    other = np.concatenate([ends[:, 1], ends[:, 0]])
+    ends, error = places(PointPoint, s.var[work.rows[mine]]), place.error[mine]
+    point, other = np.concatenate([ends.px, ends.qx]), np.concatenate([ends.qx, ends.px])
     error = np.concatenate([error, error])
     order = np.argsort(point, kind="stable")
     bounds = np.flatnonzero(np.diff(point[order], prepend=-1, append=-1))

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.sketch.contacts import Contacts, contacts_of
 from clearance.sketch.effort import UNLIMITED, TimeLimit
 from clearance.sketch.entities import Entity
-from clearance.sketch.equations import CODES, OF_LENGTH, CircleCircle, Linear, are
+from clearance.sketch.equations import CODES, OF_LENGTH, CircleCircle, Linear, are, places
 from clearance.sketch.graph.graph import (
     DIRECTION,
     FREEDOMS,
@@ -88,11 +88,11 @@ def tables_of(sketch) -> Tables:
     lists = sketch._lists
     order = np.argsort(np.array(lists.ranks, np.int64), kind="stable")
     rows = [lists.rows[i] for i in order]
-    places = [row.equation + (-1,) * (8 - len(row.equation)) for row in rows]
+    var = [row.equation + (-1,) * (8 - len(row.equation)) for row in rows]
     return Tables(
         np.array(lists.roles, np.int64),
         np.array([CODES[type(row.equation)] for row in rows], np.int64),
-        np.array(places, np.int64).reshape(-1, 8),
+        np.array(var, np.int64).reshape(-1, 8),
         np.array([row.coef + (0.0,) * (4 - len(row.coef)) for row in rows]).reshape(-1, 4),
         np.array([row.scale for row in rows], float),
         np.array([row.offset for row in rows], float),
@@ -165,7 +165,8 @@ def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
 
     for index, _ in tables.together:
         row = row_at[index]
-        a, b = find(int(tables.var[row, 0])), find(int(tables.var[row, 1]))
+        same = places(Linear, tables.var[row])
+        a, b = find(int(same.a)), find(int(same.b))
         if a == b:
             repeated.append(row)
         group[max(a, b)] = min(a, b)
@@ -182,7 +183,7 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     if like is None:
         alias, weight, repeated = joined(tables)
         var = np.where(tables.var >= 0, alias[tables.var], -1)
-        turning = tables.role[np.maximum(var[:, 0], 0)] == DIRECTION
+        turning = tables.role[np.maximum(places(Linear, var).a, 0)] == DIRECTION
         angular = are(tables.code, Linear) & turning
     else:
         alias, weight, repeated, var = like.alias, like.weight, like.repeated, like.system.var
@@ -202,10 +203,8 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
         )
         return replace(like, tables=tables, system=system, size=size, length_scale=length_scale)
     if tables.together:
-        rows = np.flatnonzero(
-            (var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & are(tables.code, Linear)
-        )
-        merged.fate[rows] = MERGED
+        of = places(Linear, var)
+        merged.fate[are(tables.code, Linear) & (of.a == of.b) & (of.a >= 0)] = MERGED
     same = _NumberAliases(alias, weight, repeated)
     return _fresh(tables, same, merged, var, coef, value, size, length_scale)
 
@@ -217,7 +216,8 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     """
     coef, n = tables.coef, tables.role.size
     inside = are(tables.code, CircleCircle) & (coef[:, 0] * coef[:, 1] < 0.0)
-    first, second = var[:, 4], var[:, 5]
+    circles = places(CircleCircle, var)
+    first, second = circles.r, circles.s
     inside &= (parent[first] == n) & (parent[second] == n) & (shift[first] != shift[second])
     if not inside.any():
         return coef

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from clearance.sketch.equations import CODES, Linear, Ratio, are
+from clearance.sketch.equations import CODES, Linear, Ratio, are, places
 
 X, Y, DIRECTION, OFFSET, RADIUS = 0, 1, 2, 3, 4
 """Roles of variables."""
@@ -124,14 +124,16 @@ class _Forest:
 def merge(code, var, coef, value, role, length_scale, tolerance: float) -> Merged:
     """The merged numbers of some equations: of every one that relates at most two directions, offsets or radii."""
     forest, fate = _Forest(role.size), np.zeros(code.size, np.int64)
-    named = var[:, :4] >= 0
-    plain = (named & (role[var[:, :4]] < DIRECTION)).any(axis=1) if role.size else named.any(axis=1)
+    of = places(Linear, var)
+    numbers = np.column_stack(of)
+    named = numbers >= 0
+    plain = (named & (role[numbers] < DIRECTION)).any(axis=1) if role.size else named.any(axis=1)
     linear = are(code, Linear, Ratio) & ~plain & (named.sum(axis=1) <= 2)
     for row in np.flatnonzero(linear).tolist():
         ratio = code[row] == CODES[Ratio]
         c0, c1 = ((1.0, -value[row]) if ratio else coef[row, :2]) * named[row, :2]
         wanted = 0.0 if ratio else value[row]
-        error = forest.relate(int(var[row, 0]), int(var[row, 1]), float(c0), float(c1), wanted)
+        error = forest.relate(int(of.a[row]), int(of.b[row]), float(c0), float(c1), wanted)
         known = (
             CONTRADICTED
             if error is not None and error * length_scale[row] > tolerance
