@@ -2,7 +2,7 @@
 
 Every measured pair takes part in every step; a pair is skipped only where a lower bound made of
 numpy boxes, or of FCL's own last answer less the motion since then, shows that it cannot be the
-nearest.
+nearest. None of this shares code with our own pruning.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxes, world_boxes
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
 from clearance.simulate.record import Samples
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 
+_CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 _STEPS_AT_ONCE = 512
 _CELL = 2.0 / 3.0**0.5 * (1.0 - 1e-6)  # [-] edge of a cell whose diagonal is just below 2
 _ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
@@ -208,3 +208,32 @@ def holds_a_point(
             if is_inside(body.soup, points).any():
                 return True
     return False
+
+
+def box_corners(bounds: np.ndarray) -> np.ndarray:
+    """(8, 3) corners [m] of a box given as (2, 3)."""
+    return bounds[_CORNERS, np.arange(3)]
+
+
+def world_boxes(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """(n, 2, 3) [m] boxes along the world axes that hold a body box (2, 3) at poses (n, 4, 4)."""
+    corners = box_corners(bounds) @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
+    return np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1)
+
+
+def lower_bound_boxes(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(n,) [m] the distance of boxes (n, 2, 3) from as many others, or from one (2, 3), along the world axes."""
+    gap = np.maximum(others[..., 0, :] - boxes[:, 1], boxes[:, 0] - others[..., 1, :]).clip(min=0.0)
+    return np.sqrt((gap * gap).sum(axis=1))
+
+
+def greatest_displacements(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """(n - 1,) [m] upper bounds on how far any point of a body box (2, 3) moves from one pose to
+    the next.
+
+    The displacement |(B - A) x| is convex in x, so its greatest value in a box is at a corner.
+    """
+    corners = box_corners(bounds)
+    change = np.diff(poses, axis=0)
+    moved = corners @ change[:, :3, :3].transpose(0, 2, 1) + change[:, None, :3, 3]
+    return np.sqrt((moved * moved).sum(axis=2).max(axis=1))

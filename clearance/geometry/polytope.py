@@ -15,7 +15,6 @@ import numpy as np
 from clearance.errors import BadPolygon
 from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.polytope_exits import packed
 from clearance.geometry.polytope_graph import (
     TrivalentPolytope,
     trivalent_form,
@@ -28,8 +27,11 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
-from clearance.kernels.polytope.body import PackedBody
+from clearance.kernels.polytope.body import HEAD, LEAD, ROW, PackedBody
+from clearance.kernels.polytope.exits import bound_cells, exit_cells
 from clearance.kernels.polytope.faces import face_areas, ring_moments
+
+FACES_PER_CELL = 0.5
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -240,3 +242,45 @@ class Polytope:
         _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.packed_at)
         _ = self.box
         return self
+
+
+def packed(
+    vertices: np.ndarray,
+    rings: tuple[np.ndarray, np.ndarray],
+    centroid: np.ndarray,
+    planes: tuple[np.ndarray, np.ndarray, np.ndarray],
+    neighbours: np.ndarray,
+) -> PackedBody:
+    """The arrays of a body with faces `rings` (starts, corners), planes (normals, a corner of each, distance
+    from the centroid) and `neighbours`, the face over each edge, as the edges stand in `rings`.
+
+    The layout is described in `kernels.polytope.body`."""
+    normals, anchors, widths = planes
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
+    f = len(normals)
+    k = int(np.clip(np.ceil(np.sqrt(f / FACES_PER_CELL / 6.0)), 1, 128))
+    round_from_body, body_from_round, pad = _rounding_map(vertices - centroid)
+    cells, faces = exit_cells((vertices - centroid) @ round_from_body.T, *rings, k, pad)
+    order = np.argsort(cells, kind="stable")
+    lead = LEAD + 6 * k * k + 1
+    starts = lead + np.searchsorted(cells[order], np.arange(6 * k * k + 1))
+    begin = lead + len(faces)
+    first, n_edges = begin + f + 1, len(neighbours)
+    lead_numbers = [f, k, begin, n_edges, HEAD + ROW * f + 6 * k * k, 0, 0, 0]
+    parts = lead_numbers, starts, faces[order], rings[0] + first, rings[1], neighbours
+    indices = np.concatenate(parts).astype(np.int32)
+    head = np.concatenate([centroid, round_from_body.ravel(), [widths.max(), size, 0.0, 0.0]])
+    rows = np.column_stack([normals, 1.0 / widths, anchors, widths])
+    numbers = np.concatenate([head, rows.ravel(), np.zeros(6 * k * k), vertices.ravel()])
+    body = PackedBody(numbers, indices)
+    bound_cells(body, body_from_round)
+    return body
+
+
+def _rounding_map(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """(3, 3) to a frame in which the corners spread alike in all directions, back, and the cells' margin."""
+    values, axes = np.linalg.eigh(corners.T @ corners / len(corners))
+    spread = np.sqrt(np.maximum(values, values.max() * 1e-24))
+    there = (axes / spread) @ axes.T
+    back = (axes * spread) @ axes.T
+    return there, back, 1e-9 + 1e-14 * float(spread.max() / spread.min())

@@ -12,9 +12,10 @@ import numpy as np
 
 from clearance.errors import BadInput, Unwritable
 from clearance.extras import importing
+from clearance.kernels.hausdorff.trim import field, kept_arcs
 from clearance.planar.curve import Curve
+from clearance.planar.directed import placed
 from clearance.planar.hausdorff import Hausdorff
-from clearance.planar.trimming import distance_field, kept_parts
 
 COLOR_A, COLOR_B, COLOR_LINE = "#c99700", "#1f5fbf", "#d62728"
 
@@ -127,3 +128,25 @@ def _points(curve: Curve, piece: np.ndarray, local: np.ndarray) -> np.ndarray:
     points = curve._jets(np.repeat(piece, count), inner.ravel())[:, :2] + curve.origin
     points = points.reshape(len(piece), count, 2)
     return np.pad(points, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
+
+
+def kept_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray, np.ndarray]:
+    """The arcs of `a` that may be farther from `b` than a bound: piece (n,) and local parameters (n, 2).
+
+    Every point of a outside them is proven to be nearer. Equations (3) to (10) of Kim, Oh, Kim (2010).
+    """
+    shift, _ = placed(a, b)
+    rows, owner = a.leaves.arcs, a.leaves.piece
+    pixel = a.length / max(64, 2 * len(rows))
+    kept = kept_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
+    return owner[kept], rows[kept, :2]
+
+
+def distance_field(curve: Curve, xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distance to the arcs of `curve` and the nearest arc's index, (len(ys), len(xs)) each: a page of the map."""
+    depth = np.empty((len(ys), len(xs)))
+    which = np.empty(depth.shape, np.int64)
+    x = np.ascontiguousarray(xs - curve.origin[0])
+    y = np.ascontiguousarray(ys - curve.origin[1])
+    field(curve.leaves, x, y, depth, which)
+    return depth, which

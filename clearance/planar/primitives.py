@@ -1,6 +1,6 @@
 """Polylines, splines, Bézier curves and arcs as the pieces of a curve, their input checked.
 
-Not for: curves made of curves (`joining`).
+Not for: curves made of curves (`curve`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The search for the least sketch around an outline, or the largest clear of it, from one start.
 
 Linear programs in a trust region, each answer certified; what is certified too small is asked for with more
-margin. Not for: choosing starts (`fit_starts`), or the nearest sketch (`fit_nearest`).
+margin. Not for: choosing starts (`fit`), or the nearest sketch (`fit_nearest`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The search for the sketch nearest to an outline, from one start: Gauss and Newton, then linear programs.
 
-Not for: choosing starts (`fit_starts`), or outlines to be contained (`fit_bounded`).
+Not for: choosing starts (`fit`), or outlines to be contained (`fit_bounded`).
 """
 
 from __future__ import annotations

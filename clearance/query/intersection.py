@@ -21,7 +21,6 @@ from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query.common_point import CommonPoint, checked_bodies, common_point
 from clearance.query.cutting import BrokenRim, Cutting, CuttingTask, cut_down, cut_whole
-from clearance.query.duals import dual_region
 from clearance.query.region import Region
 from clearance.query.thin import is_thin, refined
 from clearance.query.touching import touching_set
@@ -188,3 +187,42 @@ def _part(task: CuttingTask, side: float = 0.0) -> tuple[Cutting, np.ndarray] | 
     """What is left on one side, and its moments."""
     made = cut_down(task, side)
     return None if made is None else (made, made.moments())
+
+
+def dual_region(task: CuttingTask) -> Region:
+    """The region by one hull over all planes' dual points about the common point, by Qhull.
+
+    Source: Tereshchenko (2013), section 2.3.
+    """
+    from scipy.spatial import ConvexHull
+
+    normals = np.concatenate([body.normals for body in task.bodies])
+    offsets = np.concatenate([body.offsets_about(task.origin) for body in task.bodies])
+    points = normals / offsets[:, None]
+    hull = ConvexHull(points)
+    places = hull.equations[:, :3] / -hull.equations[:, 3:]
+    corner = points[hull.simplices]
+    turned = np.einsum("ij,ij->i", np.cross(corner[:, 0], corner[:, 1]), corner[:, 2])
+    planes = np.where(turned[:, None] < 0.0, hull.simplices[:, ::-1], hull.simplices)
+    return _rings_of_dual(task, places, planes)
+
+
+def _rings_of_dual(task: CuttingTask, places: np.ndarray, planes: np.ndarray) -> Region:
+    """Around each plane its dual triangles follow each other: (plane, b, c) after (plane, a, b)."""
+    after = {
+        (t[k], t[(k + 1) % 3]): (t[(k + 2) % 3], i)
+        for i, t in enumerate(planes.tolist())
+        for k in range(3)
+    }
+    begin = {name: second for name, second in after}
+    names, starts, corners = [], [0], []
+    for name in sorted(begin):
+        second = first = begin[name]
+        while True:
+            second, i = after[(name, second)]
+            corners.append(i)
+            if second == first:
+                break
+        names.append(name)
+        starts.append(len(corners))
+    return Region(task, places, np.array(names), np.array(starts), np.array(corners))

@@ -1,6 +1,6 @@
 """The surface of a common region: its moments at once, its corners, faces and their origin when asked for.
 
-A region cut in two halves is sewn together here. Not for: finding the region (`cutting`, `duals`).
+A region cut in two halves is sewn together here. Not for: finding the region (`cutting`, `intersection`).
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ import numpy as np
 from inputs import Scene
 from peers import Coal, CoalShapes, Fcl, FclShapes, Klampt, PairPeer, available, silenced
 
-from clearance.crosscheck.bounds import greatest_displacements
+from clearance.crosscheck.peer_run import greatest_displacements
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from clearance.crosscheck.bounds import (
+from clearance.crosscheck.containment import is_inside, winding_number
+from clearance.crosscheck.peer_run import (
+    PeerRun,
     greatest_displacements,
     lower_bound_boxes,
     world_boxes,
 )
-from clearance.crosscheck.containment import is_inside, winding_number
-from clearance.crosscheck.peer_run import PeerRun
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.crosscheck.witness import point_triangle_distances
 from clearance.geometry.polyhedron import Polyhedron

@@ -5,8 +5,8 @@ import pytest
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
+from clearance.planar.picture import distance_field
 from clearance.planar.systems import paper
-from clearance.planar.trimming import distance_field
 from tests.planar.untrimmed import untrimmed
 
 

@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.profiles.chain import chain_of
+from clearance.profiles.chain import chain_of, positions_at
 from clearance.profiles.chords import knots_of
-from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
-from clearance.profiles.course import positions_at
+from clearance.profiles.chain import positions_at
 from clearance.profiles.plane import Plane
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
