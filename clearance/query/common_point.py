@@ -16,10 +16,12 @@ from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.depth import (
     COLD,
+    FACES,
     N_ROWS,
-    POINT,
-    SHARE,
+    SHARES,
+    SOLUTION,
     WARM,
+    T,
     deepen_all,
 )
 
@@ -132,15 +134,15 @@ def common_point(
         bodies[0].centroid if poses is None else frames[0][:3] @ np.append(bodies[0].centroid, 1.0)
     )
     known = len(bodies) < 3 and len(warm) == 4 and all(_names_a_face(bodies, name) for name in warm)
-    basis, names = np.empty((N_ROWS, 4)), np.array(warm if known else (-4, -3, -2, -1))
+    block, names = np.empty((N_ROWS, 4)), np.array(warm if known else (-4, -3, -2, -1))
     begin = WARM if known else COLD
     rows = np.array([body.packed_at for body in bodies])
     settled, n_faces, passes = deepen_all(
-        rows, frames, origin, basis, names, MARGIN, begin, MAX_PASSES
+        rows, frames, origin, block, names, MARGIN, begin, MAX_PASSES
     )
-    if not settled and basis[POINT, 3] > 0.0:
-        _keep_what_is_sure(bodies, frames, origin, basis)
-    return _judged(bodies, origin, basis, names.tolist(), n_faces, passes)
+    if not settled and block[SOLUTION, T] > 0.0:
+        _keep_what_is_sure(bodies, frames, origin, block[SOLUTION])
+    return _judged(bodies, origin, block, names, n_faces, passes)
 
 
 def _names_a_face(bodies: list[Polytope], name: int) -> bool:
@@ -148,48 +150,47 @@ def _names_a_face(bodies: list[Polytope], name: int) -> bool:
 
 
 def _keep_what_is_sure(
-    bodies: list[Polytope], frames: np.ndarray, origin: np.ndarray, basis: np.ndarray
+    bodies: list[Polytope], frames: np.ndarray, origin: np.ndarray, solution: np.ndarray
 ) -> None:
     """Sets t to what the point really keeps of every face, where the simplex method came to no end."""
-    point = basis[POINT, :3] + origin
+    point = solution[:T] + origin
     for i, body in enumerate(bodies):
         frame = frames[min(i, len(frames) - 1)]
         there = frame[:3, :3].T @ (point - frame[:3, 3])
-        basis[POINT, 3] = min(basis[POINT, 3], (body.offsets_about(there) / body.face_widths).min())
+        solution[T] = min(solution[T], (body.offsets_about(there) / body.face_widths).min())
 
 
 def _judged(
     bodies: list[Polytope],
     origin: np.ndarray,
-    basis: np.ndarray,
-    names: list[int],
+    block: np.ndarray,
+    face_names: np.ndarray,
     n_faces: int,
     passes: int,
 ) -> CommonPoint:
-    shares, depth = basis[SHARE].tolist(), float(basis[POINT, 3])
+    shares, names, depth = block[SHARES].tolist(), face_names.tolist(), float(block[SOLUTION, T])
+    point, warm = block[SOLUTION, :T] + origin, tuple(names) if min(names) >= 0 else ()
     if depth > PLAINLY * sum(shares) * sum([body.size for body in bodies]):
-        warm = tuple(names) if min(names) >= 0 else ()
-        return CommonPoint("overlap", basis[POINT, :3] + origin, depth, None, n_faces, passes, warm)
+        return CommonPoint("overlap", point, depth, None, n_faces, passes, warm)
     most = 1e-9 * max(shares)
     real = [j for j in range(4) if names[j] >= 0 and shares[j] > most]
     limit = ROUNDING * max((bodies[names[j] >> 32].size for j in real), default=0.0) * sum(shares)
-    point, warm = basis[POINT, :3] + origin, tuple(names) if min(names) >= 0 else ()
     if depth > limit:
         return CommonPoint("overlap", point, depth, None, n_faces, passes, warm)
-    proof = _certificate(len(bodies), basis, np.array(names), real)
+    proof = _certificate(len(bodies), block, face_names, real)
     if depth >= -limit:
         return CommonPoint("touch", point, depth, proof, n_faces, passes, warm)
     return CommonPoint("apart", None, depth, proof, n_faces, passes, warm)
 
 
 def _certificate(
-    n_bodies: int, basis: np.ndarray, names: np.ndarray, real: list[int]
+    n_bodies: int, block: np.ndarray, names: np.ndarray, real: list[int]
 ) -> SeparationCertificate:
     parts, faces = names >> 32, names & 0xFFFFFFFF
     normal = None
     if n_bodies == 2:
         own = [j for j in real if parts[j] == 0]
-        total = basis[SHARE, own] @ basis[own, :3]
+        total = block[SHARES, own] @ block[FACES][own, :T]
         length = np.linalg.norm(total)
         normal = total / length if length > 0.0 else None
-    return SeparationCertificate(parts[real], faces[real], basis[SHARE, real].copy(), normal)
+    return SeparationCertificate(parts[real], faces[real], block[SHARES, real], normal)
