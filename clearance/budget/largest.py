@@ -17,7 +17,7 @@ import numpy as np
 from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
-from clearance.kernels.motion.certify_pair import FINEST
+from clearance.kernels.search.proof import FINEST_GAP
 from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget
 from clearance.world.case import Case
@@ -169,7 +169,7 @@ class _Trial:
 
     def _limit(self, section: SectionBudget) -> float:
         certificate = section.answer.certificate
-        spare = SPARE if certificate is None else 2.0 * FINEST * certificate.gap
+        spare = SPARE if certificate is None else 2.0 * FINEST_GAP * certificate.gap
         return self.asked.fail + section.section.padding + spare
 
     def _open(self, i: int, number: float, *, between: bool) -> np.ndarray:

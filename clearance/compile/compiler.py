@@ -25,7 +25,7 @@ from clearance.compile.registered import Declaration
 
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 _INNER = {**_OPTIONS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_registered = {"inlined": 0, "kernels": 0, "hooks": 0}
+_registered = {"inlined": 0, "by_types": 0, "kernels": 0, "hooks": 0}
 
 
 def register_all() -> None:
@@ -37,9 +37,21 @@ def register_all() -> None:
         options = {"forceinline": True} if force else {}
         register_jitable(**_INNER, **options)(function)
     _registered["inlined"] = len(registered.inlined)
+    for function in registered.by_types[_registered["by_types"] :]:
+        _register_by_type(function)
+    _registered["by_types"] = len(registered.by_types)
     for kernel in registered.kernels[_registered["kernels"] :]:
         _register(kernel)
     _registered["kernels"] = len(registered.kernels)
+
+
+def _register_by_type(function: Any) -> None:
+    """Lets kernels call what the type of the first argument has for itself."""
+
+    @overload(function, jit_options={**_INNER, "forceinline": True}, strict=False)
+    def call(first, *others):
+        kind = first.kind if isinstance(first, Lent) else first
+        return function.dispatch(kind.instance_class)
 
 
 def _register(kernel: Declaration) -> None:

@@ -17,6 +17,7 @@ from clearance.compile.registered import CHECKS_BOUNDS as CHECKS_BOUNDS
 from clearance.compile.registered import DISABLED as DISABLED
 from clearance.compile.registered import KERNELS as KERNELS
 from clearance.compile.registered import Declaration, kernels
+from clearance.compile.registered import by_type as by_type
 from clearance.compile.registered import inline as inline
 from clearance.compile.registered import when_compiling as when_compiling
 from clearance.compile.sources import digest_of_imported

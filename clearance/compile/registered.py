@@ -47,6 +47,20 @@ def inline(function: Callable | None = None, *, force: bool = False) -> Any:
     return function
 
 
+by_types: list[Any] = []
+"""All that `by_type` has seen, for the compiler."""
+
+
+def by_type(function: Callable) -> Any:
+    """A function that each type of its first argument has for itself: `register` gives it one, as of `functools`.
+
+    Kernels compile in that of the type they have, which costs nothing.
+    """
+    made = functools.singledispatch(function)
+    by_types.append(made)
+    return made
+
+
 class Declaration:
     """What a kernel declares.
 

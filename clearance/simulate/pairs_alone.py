@@ -13,8 +13,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from clearance.kernels.motion.certify import CertificateGoal, CertifiedSteps, IntervalBounds
+from clearance.kernels.motion.certify import CertifiedSteps, IntervalBounds
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.twist import CertificateGoal
 from clearance.simulate.certify import BEYOND, MOST_PARTS, certify_motion, path_of, prove_path
 from clearance.simulate.measurement import Measurement
 from clearance.simulate.moment import Moment, MomentQuery

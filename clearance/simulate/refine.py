@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.kernels.motion.certify import CertificateGoal, IntervalBounds
+from clearance.kernels.motion.certify import IntervalBounds
+from clearance.kernels.motion.twist import CertificateGoal
 from clearance.tolerance import SEEN_AT_LEVEL
 
 FINER = 2.0**-10

@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.motion.certify import CertificateGoal, CertifiedSteps, IntervalBounds
-from clearance.kernels.motion.certify_pair import FINEST
+from clearance.kernels.motion.certify import CertifiedSteps, IntervalBounds
+from clearance.kernels.motion.twist import CertificateGoal
+from clearance.kernels.search.proof import FINEST_GAP
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import finer_path, prove_path
 from clearance.simulate.measure import nearest_at
@@ -300,7 +301,7 @@ class _Intervals:
         what = self.answer.section.in_motion
         path = finer_path(what, step, n_parts)
         level = self.threshold.distance
-        asked = np.full(n_parts + 1, level + 2.0 * FINEST * PART_GAP)
+        asked = np.full(n_parts + 1, level + 2.0 * FINEST_GAP * PART_GAP)
         first = max(self.certificate.pair[step], self.answer.found.pair[step], 0)
         order = np.full(n_parts, first)
         aim = CertificateGoal(PART_GAP, level, MOST_PARTS)

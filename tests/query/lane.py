@@ -61,7 +61,7 @@ def body_answers(n):
 
 def answers_without_rules(n):
     """For each rule, the answers without it, and how many pairs of faces more were looked at."""
-    from clearance.kernels.search import body_pair, descent, face_search, node_pairs
+    from clearance.kernels.search import body_pair, descent, nearest, node_pairs
 
     def nothing_known(p, q, *_):
         """Of boxes alone or in lanes."""
@@ -76,14 +76,14 @@ def answers_without_rules(n):
     }
     found = {}
     for name, never in rules.items():
-        users = [module for module in (descent, face_search, node_pairs) if hasattr(module, name)]
+        users = [module for module in (descent, nearest, node_pairs) if hasattr(module, name)]
         rule = getattr(users[0], name)
         for module in users:
             setattr(module, name, never)
         found[name] = body_answers(n)
         for module in users:
             setattr(module, name, rule)
-    assert body_pair.descend is descent.descend
+    assert body_pair.nearest_faces is nearest.nearest_faces
     return found
 
 

@@ -22,11 +22,13 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
 from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.joint_motion_bound import AT_REST
+from clearance.kernels.motion.twist import Twist
+from clearance.kernels.search.displacement import Still, Turn
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     bounds_of_group,
     turned_away,
-    turned_away_while,
     views_along,
 )
 from clearance.kernels.search.pair_query import POSES_ARE_RIGID, ROOM, hold_pair, nearest_at_poses
@@ -53,18 +55,18 @@ def all_turned_away(
 ) -> None:
     """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
-    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    still = Still(rounding_slack(a, a.roots[0], b, b.roots[0], frames))
     views = views_along(
         direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
     for i in range(len(a.children)):
         for j in range(len(b.children)):
             group_a, group_b = NodeGroup(False, i // WIDTH, j), NodeGroup(True, j // WIDTH, i)
-            bounds = bounds_of_group(a, b, views, group_a, ALL, slack, np.inf)
-            away = turned_away(a, b, views, group_a, slack)
+            bounds = bounds_of_group(a, b, views, group_a, ALL, still, np.inf)
+            away = turned_away(a, b, views, group_a, ALL, bounds, still)
             of_a[i, j] = lane(bounds, i % WIDTH) > 0.0 and away >> i % WIDTH & 1
-            bounds = bounds_of_group(a, b, views, group_b, ALL, slack, np.inf)
-            away = turned_away(a, b, views, group_b, slack)
+            bounds = bounds_of_group(a, b, views, group_b, ALL, still, np.inf)
+            away = turned_away(a, b, views, group_b, ALL, bounds, still)
             of_b[i, j] = lane(bounds, j % WIDTH) > 0.0 and away >> j % WIDTH & 1
 
 
@@ -204,12 +206,15 @@ def all_turned_away_while(
     views = views_along(
         direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
-    motion = np.cos(turn), np.sin(turn), way
+    twist = Twist(slack, AT_REST, AT_REST, True, Turn(turn, np.cos(turn), np.sin(turn), way))
     for i in range(len(a.children)):
         for j in range(len(b.children)):
-            away = turned_away_while(a, b, views, NodeGroup(False, i // WIDTH, j), slack, *motion)
+            group_a, group_b = NodeGroup(False, i // WIDTH, j), NodeGroup(True, j // WIDTH, i)
+            bounds = bounds_of_group(a, b, views, group_a, ALL, twist, np.inf)
+            away = turned_away(a, b, views, group_a, ALL, bounds, twist)
             of_a[i, j] = away >> i % WIDTH & 1
-            away = turned_away_while(a, b, views, NodeGroup(True, j // WIDTH, i), slack, *motion)
+            bounds = bounds_of_group(a, b, views, group_b, ALL, twist, np.inf)
+            away = turned_away(a, b, views, group_b, ALL, bounds, twist)
             of_b[i, j] = away >> j % WIDTH & 1
 
 
@@ -252,7 +257,7 @@ def test_much_is_turned_away_while_moving_a_little():
     at_rest, moving, farther = np.zeros((3, 2, len(a.children), len(a.children)), dtype=bool)
     all_turned_away_while(a, a, here, there, 0.0, 0.0, *at_rest)
     all_turned_away_while(a, a, here, there, 0.05, 0.05, *moving)
-    all_turned_away_while(a, a, here, there, 0.25, 1.0, *farther)
+    all_turned_away_while(a, a, here, there, 0.24, 1.0, *farther)
     assert 0 < farther.sum() < moving.sum() < at_rest.sum()
     assert moving.sum() > 0.8 * at_rest.sum()
 

@@ -34,6 +34,7 @@ from clearance.kernels.motion.body_boxes import new_body_boxes
 from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.placed import new_placed_bodies, put_all
 from clearance.kernels.motion.world import World, box_bound
+from clearance.kernels.search.displacement import Still
 from clearance.kernels.search.node_pairs import NodeGroup, bounds_of_group, views_along
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
@@ -77,15 +78,15 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
 def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_of_b):
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
-    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    still = Still(rounding_slack(a, a.roots[0], b, b.roots[0], frames))
     along = direction_between(
         Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m
     )
     views = views_along(along, frames.m)
     for i in range(len(a.children)):
         for j in range(len(b.children)):
-            of_a = bounds_of_group(a, b, views, NodeGroup(False, i // WIDTH, j), ALL, slack, cut)
-            of_b = bounds_of_group(a, b, views, NodeGroup(True, j // WIDTH, i), ALL, slack, cut)
+            of_a = bounds_of_group(a, b, views, NodeGroup(False, i // WIDTH, j), ALL, still, cut)
+            of_b = bounds_of_group(a, b, views, NodeGroup(True, j // WIDTH, i), ALL, still, cut)
             groups_of_a[i, j], groups_of_b[i, j] = lane(of_a, i % WIDTH), lane(of_b, j % WIDTH)
 
 

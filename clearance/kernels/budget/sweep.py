@@ -1,6 +1,6 @@
 """The least that errors leave of all pairs, at steps and in the motion between them.
 
-Not for: one pair in one state (`left`).
+Not for: one pair in one state (`pair_proof`).
 """
 
 import math
@@ -12,10 +12,9 @@ from clearance.compile.declared import Floats, Floats3, Integers
 from clearance.compile.decorators import inline, kernel
 from clearance.compile.lending import lend
 from clearance.kernels.budget.errors import REACH
-from clearance.kernels.budget.face_left import REFINED, REFINED_OF_MANY, Aim
 from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
-from clearance.kernels.budget.pair_left import Look, pair_left
+from clearance.kernels.budget.pair_proof import Look, prove_pair
 from clearance.kernels.budget.sweep_state import (
     MOVES,
     BudgetScene,
@@ -34,14 +33,20 @@ from clearance.kernels.budget.sweep_state import (
     thin_of,
 )
 from clearance.kernels.motion.certify import DEPTH, WIDER
-from clearance.kernels.motion.certify_pair import allowed_gap
 from clearance.kernels.motion.interval_middle import begin_arcs
+from clearance.kernels.search.proof import Goal, allowed_gap
 
 FEW = 16
 """Moments that are looked at as exactly as can be."""
 
 EXACT_LOOKS = 400
-"""As in `Aim`, where moments are few."""
+"""Visits before what is nearly the least is enough, where moments are few."""
+
+REFINED = 0.05
+"""The share of what errors take at the nearest points that a bound at a step may stay below what occurs there."""
+
+REFINED_OF_MANY = 0.1
+"""The same where moments are many: those that decide are looked at once more."""
 
 ROUGH_LOOKS = -1
 """The same where they are many."""
@@ -54,7 +59,7 @@ class BudgetMoments(NamedTuple):
         intervals: (n,) the step before each. shares: (n,) how much of the interval from there has passed, 0 to 1.
         order: (n,) the pair to look at first, or -1. known: (n,) [m] the nominal clearance, or NaN.
         points: (n, 2, 3) [m] its nearest points where the links are at, or NaN.
-        enough: [m] what is proven beyond it is not looked into. exact_looks: as in `Aim`.
+        enough: [m] what is proven beyond it is not looked into. exact_looks: visits, as in `Goal`.
     """
 
     intervals: Integers
@@ -105,7 +110,7 @@ def _most_taken(lent, pair, look):
     for side in range(2):
         body = scene.world.pairs[pair, side]
         fill_body(lent, body, 0.0, look)
-        taken += scene.state.work.found.sums[body, REACH]
+        taken += scene.state.seen.found.sums[body, REACH]
     return taken
 
 
@@ -127,8 +132,9 @@ def _at_moment(lent, look, start, target, exact_looks, tally):
         tally[0] += 1
     else:
         refined = REFINED_OF_MANY if exact_looks < EXACT_LOOKS else REFINED
-        aim = Aim(target, math.inf, 0.0, 0.0, True, exact_looks, refined)
-        left = pair_left(lent, look, start, aim, tally)
+        thin = thin_of(lent, look.pair)
+        goal = Goal(target, math.inf, 0.0, 0.0, thin, True, False, exact_looks, refined)
+        left = prove_pair(lent, look, start, goal, tally)
         note_answer(lent, look.pair, target, left)
         note_bound(lent, look.pair, left.lower_bound)
     return left
@@ -231,12 +237,13 @@ def _hold(lent, step, pair, look, least, asked, tally):
             go_to_part(scene.world.links, path, scene.errors, step, low, high, state.middle)
         half = half_of(path, step, low, high)
         target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-        aim = Aim(target, least, gap, asked.fail, False, 0, REFINED)
+        thin = thin_of(lent, pair)
+        goal = Goal(target, least, gap, asked.fail, thin, False, False, 0, REFINED)
         start = start_before(lent, pair)
-        left = pair_left(lent, Look(pair, half, look, n_parts == 1), start, aim, tally)
+        left = prove_pair(lent, Look(pair, half, look, n_parts == 1), start, goal, tally)
         if left.least < least:
             least, share = left.least, 0.5 * (low + high)
-        if left.completed:
+        if left.is_complete:
             lower_bound = min(lower_bound, left.lower_bound)
         elif n_waiting + 2 > DEPTH:
             lower_bound = -math.inf

@@ -1,6 +1,6 @@
 """What is carried from one moment of a sweep to the next, and where a search begins there.
 
-Not for: what is left of one pair (`pair_left`), and which moments and intervals are asked (`sweep`).
+Not for: one pair (`pair_proof`), and which moments and intervals are asked (`sweep`).
 """
 
 import math
@@ -10,10 +10,17 @@ import numpy as np
 
 from clearance.compile.declared import Floats, Floats2, Floats3, Integers
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.vec3 import Vec3, move, move_back, rigid, row, turn_back
+from clearance.kernels.arithmetic.vec3 import (
+    Vec3,
+    gap_sq,
+    move,
+    move_back,
+    rigid,
+    row,
+    turn_back,
+)
+from clearance.kernels.budget.error_rows import SeenErrors
 from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
-from clearance.kernels.budget.face_left import LeftScratch
-from clearance.kernels.budget.left import KEPT, PairRemainder, Start
 from clearance.kernels.budget.levers import (
     STANDS,
     Levers,
@@ -24,7 +31,6 @@ from clearance.kernels.budget.levers import (
     new_levers,
 )
 from clearance.kernels.budget.middle import WANTED, Middle, begin_middle, new_middle_of
-from clearance.kernels.budget.pieces import TrianglePairs, new_pieces
 from clearance.kernels.budget.rows import fill_rows, fill_rows_of_standing
 from clearance.kernels.budget.view import new_along_rows
 from clearance.kernels.features.bounds import displacement
@@ -36,12 +42,12 @@ from clearance.kernels.motion.body_boxes import (
     place_box,
 )
 from clearance.kernels.motion.certify import DEPTH
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.joint_motion_bound import orientation_rounding
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.front import POOL, Fronts, no_fronts
+from clearance.kernels.search.front import POOL, Fronts, carried_down, no_fronts
+from clearance.kernels.search.proof import CHAIN_SLACK, Proof, Start
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 
@@ -58,8 +64,9 @@ class BudgetSweepState(NamedTuple):
         lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
         answers: (p, 6) what came of the last search of each pair where all stands, by `MOVES` how often its bodies
             had moved by then, or -1; `TARGET` [m] how far it was looked into; `LOWER_BOUND`, `LEAST`, `ENOUGH` [m]
-            as in `PairRemainder`; `TWICE` 1 if the search before was the same.
+            as in `Proof`; `TWICE` 1 if the search before was the same.
         waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
+        seen: the rows of all bodies. scratch: of a search.
     """
 
     middle: Middle
@@ -76,7 +83,8 @@ class BudgetSweepState(NamedTuple):
     answers: Floats2
     waiting: Floats2
     fronts: Fronts
-    work: LeftScratch
+    seen: SeenErrors
+    scratch: Scratch
 
 
 class BudgetScene(NamedTuple):
@@ -107,12 +115,11 @@ class SearchRoom(NamedTuple):
     """Room for the searches of a sweep, the same for all scenes.
 
     Attributes:
-        entries, lower_bounds: the pool of `Fronts`. pieces, scratch: as in `LeftScratch`.
+        entries, lower_bounds: the pool of `Fronts`. scratch: of a search.
     """
 
     entries: np.ndarray
     lower_bounds: np.ndarray
-    pieces: TrianglePairs
     scratch: Scratch
 
 
@@ -120,14 +127,14 @@ class SearchRoom(NamedTuple):
 def new_room():
     """Room for one sweep at a time."""
     pool = no_fronts(0, POOL)
-    return SearchRoom(pool.entries, pool.lower_bounds, new_pieces(), new_scratch())
+    return SearchRoom(pool.entries, pool.lower_bounds, new_scratch())
 
 
 def in_room(state, room):
     """A state that searches in some room, of which nothing is taken over."""
     return state._replace(
         fronts=state.fronts._replace(entries=room.entries, lower_bounds=room.lower_bounds),
-        work=state.work._replace(pieces=room.pieces, scratch=room.scratch),
+        scratch=room.scratch,
     )
 
 
@@ -135,9 +142,9 @@ def in_room(state, room):
 def new_state(world, errors, room):
     """A state that has seen nothing."""
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
-    work = LeftScratch(
+    seen = SeenErrors(
         new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
-        new_along_rows(errors.most_rows), room.pieces, room.scratch,
+        new_along_rows(errors.most_rows),
     )  # fmt: skip
     spans, used = np.zeros((n_pairs, 6), dtype=np.int64), np.zeros(1, dtype=np.int64)
     return BudgetSweepState(
@@ -146,7 +153,7 @@ def new_state(world, errors, room):
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)),
         np.zeros(n_bodies), np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, -np.inf),
         np.full((n_pairs, 6), -1.0), np.empty((DEPTH, 2)),
-        Fronts(room.entries, room.lower_bounds, spans, used), work,
+        Fronts(room.entries, room.lower_bounds, spans, used), seen, room.scratch,
     )  # fmt: skip
 
 
@@ -187,7 +194,7 @@ def fill_body(lent, body, half, look):
     if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
         return
     state.filled[body] = look
-    found, middle = state.work.found, state.middle.state
+    found, middle = state.seen.found, state.middle.state
     if frame < 0:
         fill_rows_of_standing(surface, world, body, errors, found)
         return
@@ -229,7 +236,7 @@ def _reach(lent, body, half, look):
     state = asked.state
     if state.late:
         fill_body(lent, body, half, look)
-        return state.work.found.sums[body, REACH]
+        return state.seen.found.sums[body, REACH]
     moved = 0.0
     if half > 0.0:
         middle = state.middle
@@ -258,7 +265,8 @@ def start_at(lent, pair, points):
     """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
     asked = lent
     pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state)
-    return Start(move_back(pose, row(points, 0)), move_back(pose, row(points, 1)), True)
+    p, q = row(points, 0), row(points, 1)
+    return Start(move_back(pose, p), move_back(pose, q), math.sqrt(gap_sq(p, q)), -1, -1)
 
 
 @inline
@@ -271,10 +279,10 @@ def start_before(lent, pair):
     pose_a, pose_b = pose_of(world, body_a, state), pose_of(world, body_b, state)
     here = Vec3(0.0, 0.0, 0.0)
     if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
-        return Start(here, turn_back(pose_a, seen), False)
+        return Start(here, turn_back(pose_a, seen), math.inf, -1, -1)
     p = box_of(surface, surface.roots[world.solids[body_a]]).centre
     q = box_of(surface, surface.roots[world.solids[body_b]]).centre
-    return Start(p, move_back(pose_a, move(pose_b, q)), False)
+    return Start(p, move_back(pose_a, move(pose_b, q)), math.inf, -1, -1)
 
 
 @inline
@@ -346,13 +354,14 @@ def _moves_of_pair(asked, pair):
 
 
 @inline(force=True)
-def note_answer(lent, pair, target, left):
+def note_answer(lent, pair, target, proof):
     """Keeps what came of a search of a pair that looked as far as a target [m]."""
     asked = lent
     answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
     again = answer[MOVES] == moves and answer[TARGET] == target
     answer[MOVES], answer[TARGET], answer[TWICE] = moves, target, 1.0 if again else 0.0
-    answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH] = left.lower_bound, left.least, left.enough
+    answer[LOWER_BOUND], answer[LEAST] = proof.lower_bound, proof.least
+    answer[ENOUGH] = proof.enough
 
 
 @inline(force=True)
@@ -371,9 +380,8 @@ def is_answered(lent, pair, target):
 def answer_of(lent, pair):
     """What came of the last search of a pair."""
     answer = lent.state.answers[pair]
-    return PairRemainder(
-        answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, Vec3(0.0, 0.0, 0.0)
-    )
+    nowhere = Vec3(0.0, 0.0, 0.0)
+    return Proof(answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, nowhere, -1, -1, 0, 0, 0)
 
 
 @inline(force=True)
@@ -388,4 +396,4 @@ def carried_bound(lent, pair):
 def note_bound(lent, pair, lower_bound):
     """Keeps the bound of a pair for later."""
     asked = lent
-    asked.state.lower_bounds[pair] = (lower_bound + moved_of_pair(asked, pair)) - KEPT
+    asked.state.lower_bounds[pair] = carried_down(lower_bound, moved_of_pair(asked, pair))

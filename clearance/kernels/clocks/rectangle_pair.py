@@ -1,7 +1,7 @@
 """One pair over one rectangle of two clocks' times: a lower bound, and how far either body moves there.
 
 Where both sides are whole nodes, boxes come first; over spans of several intervals, corners and separating planes
-come next; the search about the middle (`certify_pair.hold`) comes last. Not for: which rectangles and pairs are
+come next; the search about the middle (`twist`) comes last. Not for: which rectangles and pairs are
 looked at, and halving them (`unsynchronised`).
 """
 
@@ -18,8 +18,6 @@ from clearance.kernels.clocks.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import bound_between
-from clearance.kernels.motion.certify import CertificateGoal
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK, hold
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
     begin_arcs,
@@ -27,6 +25,9 @@ from clearance.kernels.motion.interval_middle import (
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
+from clearance.kernels.search.front import Fronts, PairFront
+from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch
 
 OUTWARD = 1.0 + 1e-12
@@ -41,7 +42,7 @@ class RectangleState(NamedTuple):
         lower_bounds: (nodes,) [m] proven for all that was closed at a node of clock a.
         witness_faces: (p, 2) the faces that were nearest, or -1.
         part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
-        tally: (5,) counts, as in `certify_unsynchronised`.
+        fronts: none. tally: (5,) counts, as in `certify_unsynchronised`.
     """
 
     waiting: RectangleStack
@@ -52,6 +53,7 @@ class RectangleState(NamedTuple):
     part_a: IntervalMiddle
     part_b: IntervalMiddle
     at: np.ndarray
+    fronts: Fronts
     scratch: Scratch
     tally: np.ndarray
 
@@ -160,7 +162,9 @@ def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state):
             return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
     tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)
-    held = hold(bodies, faces, motion, goal.least, goal.aim, state.scratch, tally[1:])
-    faces[0], faces[1] = held.face_a, held.face_b
-    is_done = held.completed and (goal.counts or held.lower_bound >= goal.target)
-    return PairLook(held.lower_bound, held.least, is_done, moved_a, moved_b)
+    front = PairFront(state.fronts, 0, np.inf)
+    proof = prove_while_moving(bodies, faces, motion, goal.least, goal.aim, front, state.scratch)
+    tally[3] += proof.n_nodes
+    tally[4] += proof.n_faces
+    is_done = proof.is_complete and (goal.counts or proof.lower_bound >= goal.target)
+    return PairLook(proof.lower_bound, proof.least, is_done, moved_a, moved_b)

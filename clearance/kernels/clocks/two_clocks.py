@@ -17,10 +17,10 @@ from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.separating_planes import separate
 
 FEW = 4

@@ -32,9 +32,11 @@ from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n
 from clearance.kernels.clocks.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
 from clearance.kernels.clocks.two_clocks import TwoClocks
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER, CertificateGoal
-from clearance.kernels.motion.certify_pair import allowed_gap
+from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER
 from clearance.kernels.motion.interval_middle import begin_arcs, go_to_middle, new_middle
+from clearance.kernels.motion.twist import CertificateGoal
+from clearance.kernels.search.front import no_fronts
+from clearance.kernels.search.proof import allowed_gap
 from clearance.kernels.search.scratch import new_scratch
 
 
@@ -215,8 +217,8 @@ def certify_unsynchronised(
     state = lend(RectangleState(
         new_rectangle_stack(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
         np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
-        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
-        tally,
+        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), no_fronts(1, 0),
+        new_scratch(), tally,
     ))  # fmt: skip
     for i in range(len(tally)):
         tally[i] = 0

@@ -33,7 +33,6 @@ from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.body_boxes import bound_between
-from clearance.kernels.motion.certify_pair import CHAIN_SLACK
 from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.kernels.search.body_pair import (
     NO_FACE,
@@ -43,6 +42,7 @@ from clearance.kernels.search.body_pair import (
     search,
 )
 from clearance.kernels.search.front import Fronts, PairFront, no_fronts
+from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 FIRST_LOOK = 16

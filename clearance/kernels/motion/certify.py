@@ -8,7 +8,7 @@ What does not stay above the target is halved, the earlier half first; after `mo
 pair is lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what
 its bodies move in them: pairs that it keeps above the target are not asked.
 
-Not for: one pair over one interval (`hold`), the steps themselves (`sweep`).
+Not for: one pair over one interval (`twist`), the steps themselves (`sweep`).
 """
 
 import math
@@ -23,7 +23,6 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
-from clearance.kernels.motion.certify_pair import allowed_gap, hold
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
     begin_arcs,
@@ -42,8 +41,10 @@ from clearance.kernels.motion.joint_motion_bound import (
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL
 from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
 from clearance.kernels.motion.world import World
-from clearance.kernels.search.front import KEPT_DOWN
+from clearance.kernels.search.front import KEPT_DOWN, Fronts, PairFront, no_fronts
+from clearance.kernels.search.proof import allowed_gap
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 DEPTH = 64
@@ -85,20 +86,6 @@ class CertifiedSteps(NamedTuple):
     clearance: Floats
 
 
-class CertificateGoal(NamedTuple):
-    """What is to be proven.
-
-    Attributes:
-        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
-        fail: [m] the limit that is to be decided, if need be with a smaller gap.
-        most_parts: of one interval and pair, after which the gap is widened fourfold, and so on.
-    """
-
-    gap: float
-    fail: float
-    most_parts: int
-
-
 class IntervalBounds(NamedTuple):
     """What is found of each interval.
 
@@ -132,7 +119,7 @@ class CertifyState(NamedTuple):
         displacements: (bodies,) [m] how far each can have moved in all.
         lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
         witness_faces: (p, 2) the faces that were nearest, or -1.
-        waiting: (DEPTH, 2) parts of an interval.
+        waiting: (DEPTH, 2) parts of an interval. fronts: none.
     """
 
     whole: IntervalMiddle
@@ -142,6 +129,7 @@ class CertifyState(NamedTuple):
     lower_bounds: np.ndarray
     witness_faces: np.ndarray
     waiting: np.ndarray
+    fronts: Fronts
     scratch: Scratch
 
 
@@ -174,19 +162,20 @@ def _pose_of(world, body, middle):
 
 
 @inline
-def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally):
-    """`hold` of a pair at the state in `middle`.
+def _prove_pair(lent, world, pair, middle, motion, least, aim, state, tally):
+    """A `Proof` of a pair about the state in `middle`.
 
     Many arguments: what belongs together is in tuples already.
     """
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     frames = frames_of(_pose_of(world, body_a, middle), _pose_of(world, body_b, middle))
-    tally[1] += 1
-    witness_faces = state.witness_faces[pair]
     bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
-    held = hold(bodies, witness_faces, motion, least, aim, state.scratch, tally)
-    witness_faces[0], witness_faces[1] = held.face_a, held.face_b
-    return held
+    faces, front = state.witness_faces[pair], PairFront(state.fronts, 0, math.inf)
+    proof = prove_while_moving(bodies, faces, motion, least, aim, front, state.scratch)
+    tally[1] += 1
+    tally[2] += proof.n_nodes
+    tally[3] += proof.n_faces
+    return proof
 
 
 @kernel
@@ -212,7 +201,7 @@ def certify(
     state = lend(CertifyState(
         new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 9)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
-        new_scratch(),
+        no_fronts(1, 0), new_scratch(),
     ))  # fmt: skip
     _certify(lend(surface), motion, steps, aim, bounds, tally, state)
 
@@ -241,7 +230,7 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over = _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally)
+            over = _prove_interval(lent, surface, motion, step, pair, least, aim, state, tally)
             lower_bounds[pair] = (over.lower_bound + moved) * KEPT_DOWN
             if over.share >= 0.0:
                 least, share, seen = over.least, over.share, pair
@@ -261,8 +250,8 @@ def _loosened_in(surface, world, body, state):
 
 
 @inline
-def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally):
-    """`hold` of a pair over the whole interval after `step`, halved until that is done.
+def _prove_interval(lent, surface, motion, step, pair, least, aim, state, tally):
+    """The proof of a pair over the whole interval after `step`, halved until that is done.
 
     Many arguments: what belongs together is in tuples already.
     """
@@ -274,11 +263,11 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally):
         motion_bound_at(state.motion_bounds, body_b),
         b_moves,
     )
-    held = _hold_pair(lent, world, pair, state.whole, moving, least, aim, state, tally)
-    share = 0.5 if held.least < least else -1.0
-    if held.completed or held.least <= 0.0:
-        return PairInterval(held.lower_bound, held.least, share)
-    least = held.least
+    proof = _prove_pair(lent, world, pair, state.whole, moving, least, aim, state, tally)
+    share = 0.5 if proof.least < least else -1.0
+    if proof.is_complete or proof.least <= 0.0:
+        return PairInterval(proof.lower_bound, proof.least, share)
+    least = proof.least
     lower_bound = math.inf
     waiting = state.waiting
     waiting[0, 0], waiting[0, 1] = 0.5, 1.0
@@ -297,13 +286,13 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally):
             _loosened_in(surface, world, body_b, state),
             b_moves,
         )
-        held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally)
-        if held.least < least:
-            least, share = held.least, 0.5 * (low + high)
+        proof = _prove_pair(lent, world, pair, state.part, moving, least, aim, state, tally)
+        if proof.least < least:
+            least, share = proof.least, 0.5 * (low + high)
         if least <= 0.0:
             return PairInterval(0.0, least, share)
-        if held.completed:
-            lower_bound = min(lower_bound, held.lower_bound)
+        if proof.is_complete:
+            lower_bound = min(lower_bound, proof.lower_bound)
         elif n_waiting + 2 > DEPTH:
             lower_bound = 0.0
         else:

@@ -27,8 +27,6 @@ from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.balls import less_balls, radii_of
 from clearance.kernels.search.containment import contained
-from clearance.kernels.search.descent import Tally, descend
-from clearance.kernels.search.face_search import SearchLimits
 from clearance.kernels.search.front import (
     HULLS_NEARER,
     HULLS_TOUCH,
@@ -37,6 +35,7 @@ from clearance.kernels.search.front import (
     is_worth_separating,
     note_separating_planes,
 )
+from clearance.kernels.search.nearest import SearchLimits, Tally, nearest_faces
 from clearance.kernels.search.overlap import Overlap, overlap
 from clearance.kernels.search.scratch import Scratch
 from clearance.kernels.search.separating_planes import NOT_SEPARATED, separate
@@ -233,10 +232,10 @@ def search(
     n_nodes += planes.n_nodes
     if planes.lower_bound > limit:
         return _of_planes(planes, question, slack, radii, Tally(n_nodes, 0, 0))
-    limits = SearchLimits(limit, question.wanted, slack, question.effort)
+    limits = SearchLimits(limit, question.wanted, slack, question.effort, first)
     best = first.best
     for _ in range(2):
-        found = descend(roots, best, first, limits, planes, front, scratch)
+        found = nearest_faces(roots, best, limits, planes, front, scratch)
         n_nodes, n_faces = n_nodes + found.tally.nodes, n_faces + found.tally.faces
         n_exact += found.tally.exact_decisions
         if planes.n_waiting == 0:

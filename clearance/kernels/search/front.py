@@ -38,7 +38,13 @@ MOST_LEFT_OUT = 255
 """Searches at most in which planes are not sought after they were not found."""
 
 KEPT_DOWN = 1.0 - 2.0**-50
-"""Covers the rounding of a bound to which the way so far was added."""
+"""Covers the rounding of a bound to which the way so far was added, where both are no less than 0."""
+
+
+@inline(force=True)
+def carried_down(bound, moved):
+    """[m] a bound of any sign, plus the way so far, less the rounding of either."""
+    return bound + moved - 2.0**-50 * (abs(bound) + moved)
 
 
 class Fronts(NamedTuple):

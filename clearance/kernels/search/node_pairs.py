@@ -1,6 +1,5 @@
-"""A group of nodes against a node of the other body: how far they are, what is opened next, and what waits."""
+"""A group of nodes against a node of the other body: how far they are, and what is opened next."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -8,8 +7,6 @@ import numpy as np
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
-    first_of,
-    lane,
     larger,
     marks_within,
     square_root,
@@ -22,9 +19,13 @@ from clearance.kernels.features.bounds import (
     lower_bound_boxes_along_direction,
     opposite,
 )
-from clearance.kernels.mesh.normal_cones import marks_turned_away, normal_cones_of, while_moving
+from clearance.kernels.mesh.normal_cones import normal_cones_of
 from clearance.kernels.mesh.surface import box_at, box_of, group_at, is_leaf
-from clearance.kernels.search.scratch import require_room, wait
+from clearance.kernels.search.displacement import (
+    movement_of_box,
+    movement_of_box_along,
+    still_turned_away,
+)
 
 
 class NodeGroup(NamedTuple):
@@ -87,16 +88,28 @@ def _seen(a, b, views, nodes):
 
 
 @inline(force=True)
-def bounds_of_group(a, b, views, nodes, marks, slack, cut):
+def bounds_of_group(a, b, views, nodes, marks, displacement, cut):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
 
     The cheap ones in direction if they exclude all that are marked.
     """
     p, q, view = _seen(a, b, views, nodes)
-    along_direction = lower_bound_boxes_along_direction(p, q, view.direction) - slack
+    side = 1 if nodes.is_of_b else 0
+    direction, slack = view.direction, displacement.slack
+    along_direction = (
+        lower_bound_boxes_along_direction(p, q, direction)
+        - slack
+        - movement_of_box_along(displacement, p, side, direction.u)
+        - movement_of_box_along(displacement, q, 1 - side, direction.v)
+    )
     if marks & marks_within(along_direction, cut) == 0:
         return along_direction
-    return larger(along_direction, lower_bound_boxes(p, q, view.m, slack))
+    anyhow = (
+        lower_bound_boxes(p, q, view.m, slack)
+        - movement_of_box(displacement, p, side)
+        - movement_of_box(displacement, q, 1 - side)
+    )
+    return larger(along_direction, anyhow)
 
 
 @inline(force=True)
@@ -114,28 +127,16 @@ def between_centres(a, b, views, nodes):
 
 
 @inline(force=True)
-def _cones_and_centres(a, b, views, nodes, slack):
-    """The normal cones of a group and of a node of the other body, and what is from centre to centre."""
+def turned_away(a, b, views, nodes, marks, bounds, displacement):
+    """Bits of the marked nodes of a group that hold no nearest points with the node across, at any instant."""
     p, q, view = _seen(a, b, views, nodes)
     cones, cones_across = a.cones, b.cones
     if nodes.is_of_b:
         cones, cones_across = b.cones, a.cones
-    both = normal_cones_of(cones, nodes.group, cones_across, nodes.other, view.m, slack)
-    return both, _from_centres(p, q, view)
-
-
-@inline(force=True)
-def turned_away(a, b, views, nodes, slack):
-    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
-    cones, d = _cones_and_centres(a, b, views, nodes, slack)
-    return marks_turned_away(cones, d)
-
-
-@inline(force=True)
-def turned_away_while(a, b, views, nodes, slack, cos_turn, sin_turn, way):
-    """The same at every instant of a motion about the views' `m`: see `while_moving`."""
-    cones, d = _cones_and_centres(a, b, views, nodes, slack)
-    return marks_turned_away(while_moving(cones, cos_turn, sin_turn, way), d)
+    both = normal_cones_of(
+        cones, nodes.group, cones_across, nodes.other, view.m, displacement.slack
+    )
+    return still_turned_away(displacement, both, _from_centres(p, q, view), marks, bounds)
 
 
 @inline(force=True)
@@ -162,24 +163,3 @@ def pair_in_group(nodes, k):
     """Node `k` of a group and the node across, that of a first."""
     node = WIDTH * nodes.group + k
     return (nodes.other, node) if nodes.is_of_b else (node, nodes.other)
-
-
-@inline(force=True)
-def wait_for_near(scratch, n_waiting, nodes, bounds, marks, target):
-    """Lets the marked nodes of a group that are nearer than `target` [m] wait with the node across, nearest last.
-
-    Returns:
-        how many wait, and [m] the least bound of those marked that do not; infinity without any.
-    """
-    require_room(n_waiting)
-    first, least = n_waiting, math.inf
-    while marks:
-        k = first_of(marks)
-        marks &= marks - 1
-        bound = lane(bounds, k)
-        if bound >= target:
-            least = min(least, bound)
-        else:
-            node_a, node_b = pair_in_group(nodes, k)
-            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
-    return n_waiting, least

@@ -7,21 +7,20 @@ Which contact is found depends on the bodies and their poses alone, so that a ro
 sweep starts. Not for: bodies that are apart (`descent`), of which it says nothing.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.decorators import kernel
-from clearance.kernels.arithmetic.lanes import marks_within
+from clearance.kernels.arithmetic.lanes import first_of, lane, marks_within
 from clearance.kernels.arithmetic.vec3 import Vec3, inverse
 from clearance.kernels.features.bounds import lower_bound_boxes, margin_of
 from clearance.kernels.features.face_pair import Hit, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting
 from clearance.kernels.features.posed_pair import PosedPair, parts
 from clearance.kernels.mesh.surface import is_leaf
-from clearance.kernels.search.node_pairs import boxes_of_group, opened, wait_for_near
-from clearance.kernels.search.scratch import Scratch
+from clearance.kernels.search.node_pairs import boxes_of_group, opened, pair_in_group
+from clearance.kernels.search.scratch import Scratch, require_room, wait
 
 
 class Overlap(NamedTuple):
@@ -83,5 +82,11 @@ def overlap(roots: PosedPair, slack: float, reach: float, scratch: Scratch) -> O
         p, q = boxes_of_group(a, b, nodes)
         bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
         marks = ((1 << count) - 1) & marks_within(bounds, reach)
-        n_waiting, _ = wait_for_near(scratch, n_waiting, nodes, bounds, marks, math.inf)
+        require_room(n_waiting)
+        first = n_waiting
+        while marks:
+            k = first_of(marks)
+            marks &= marks - 1
+            node_a, node_b = pair_in_group(nodes, k)
+            n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(bounds, k), first)
     return Overlap(NO_MEETING, NO_HIT, np.int64(-1), np.int64(-1), n_nodes, n_faces)

@@ -10,6 +10,7 @@ from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.predicates import ExactScratch, new_exact_scratch
 from clearance.kernels.features.refine import RefineQueue, new_refine_queue
 from clearance.kernels.search.front import LONGEST
+from clearance.kernels.search.pieces import TrianglePairs, new_pieces
 
 STACK_DEPTH = WIDTH * LONGEST + 4096
 """Node pairs that can wait: all of a front, and three for each opening, so three times the depths of both trees;
@@ -17,7 +18,7 @@ those of a million faces split at the mean are below 100 deep, and `descend` che
 
 
 class Scratch(NamedTuple):
-    """Arrays for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
+    """Arrays for what waits, for pieces of faces and for exact arithmetic, reused between queries."""
 
     nodes: Shorts2  # (STACK_DEPTH, 2) int32
     bounds: Floats  # (STACK_DEPTH,)
@@ -25,6 +26,7 @@ class Scratch(NamedTuple):
     lower_bounds: Floats  # (LONGEST + 2,)
     waiting: RefineQueue
     exact: ExactScratch
+    pieces: TrianglePairs
 
 
 @inline
@@ -37,6 +39,7 @@ def new_scratch():
         np.empty(LONGEST + 2),
         new_refine_queue(),
         new_exact_scratch(),
+        new_pieces(),
     )
 
 

@@ -32,8 +32,8 @@ from clearance.kernels.clocks.unsynchronised_steps import (
     least_of_unsynchronised_steps,
 )
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.certify import CertificateGoal
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.twist import CertificateGoal
 from clearance.kernels.motion.world import World
 from clearance.ordered import ascending
 from clearance.query.distance import distance

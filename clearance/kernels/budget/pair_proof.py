@@ -1,6 +1,6 @@
-"""What errors leave of one pair of a sweep: a kernel by itself, which both sweeps call by address.
+"""The proof of one pair of a sweep: a kernel by itself, which both sweeps call.
 
-So the search of a pair is compiled once. Not for: the search (`left`), and which pairs are asked (`sweep`).
+So the search of a pair is compiled once. Not for: the search (`proof`), and which pairs are asked (`sweep`).
 """
 
 import math
@@ -9,15 +9,17 @@ from typing import NamedTuple
 from clearance.compile.declared import Integers
 from clearance.compile.decorators import kernel
 from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import Vec3, turn
-from clearance.kernels.budget.face_left import Aim
-from clearance.kernels.budget.left import PairRemainder, Start, least_left
+from clearance.kernels.arithmetic.vec3 import turn
+from clearance.kernels.budget.error_rows import error_rows_of
 from clearance.kernels.budget.sweep_state import (
     BudgetScene,
     fill_body,
     moved_of_pair,
     pose_of,
 )
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.search.front import PairFront
+from clearance.kernels.search.proof import Goal, Proof, Start, prove
 
 
 class Look(NamedTuple):
@@ -35,24 +37,26 @@ class Look(NamedTuple):
     goes_on: bool
 
 
-_NOTHING_LEFT = PairRemainder(-math.inf, math.inf, -math.inf, False, Vec3(0.0, 0.0, 0.0))
-
-
 @kernel
-def pair_left(
-    lent: BudgetScene, look: Look, start: Start, aim: Aim, tally: Integers
-) -> PairRemainder:
-    """`pair_left`, compiled by itself."""
+def prove_pair(lent: BudgetScene, look: Look, start: Start, goal: Goal, tally: Integers) -> Proof:
+    """A `Proof` of a pair under its errors, and what moves it in the part."""
     asked, pair = lent, look.pair
-    world, state = asked.world, asked.state
+    surface, world, state = asked.surface, asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     fill_body(lent, body_a, look.half, look.number)
     fill_body(lent, body_b, look.half, look.number)
     pose = pose_of(world, body_a, state)
     frames = frames_of(pose, pose_of(world, body_b, state))
-    tally[1] += 1
+    root_a, root_b = surface.roots[world.solids[body_a]], surface.roots[world.solids[body_b]]
+    roots = PosedPair(surface, root_a, surface, root_b, frames)
     moved = moved_of_pair(asked, pair) if look.goes_on else math.inf
-    left = least_left(lent, pair, moved, frames, start, aim, tally)
-    u = turn(pose, left.u)
+    front = PairFront(state.fronts, pair, moved)
+    rows = error_rows_of(state.seen, roots, body_a, body_b)
+    proof = prove(roots, rows, start, goal, front, state.scratch)
+    tally[1] += 1
+    tally[2] += proof.n_nodes
+    tally[3] += proof.n_faces
+    tally[4] += proof.n_cut
+    u = turn(pose, proof.u)
     state.directions[pair, 0], state.directions[pair, 1], state.directions[pair, 2] = u.x, u.y, u.z
-    return left
+    return proof

@@ -1,8 +1,8 @@
-"""Two faces cut into smaller and smaller pieces, so that each is moved alike by the errors.
+"""Two faces cut into smaller and smaller pieces, so that each moves alike under a displacement.
 
 A large face, as of a table, is turned far by a small angle at its far corner, and there nothing is near. Pieces
 are triangles; each pair is bounded along the direction of its own nearest points and by its distance as a whole.
-Not for: which faces (`left`).
+Not for: which faces (`proof`).
 """
 
 import math
@@ -12,19 +12,13 @@ import numpy as np
 
 from clearance.compile.declared import Floats, Floats2
 from clearance.compile.decorators import inline
-from clearance.kernels.arithmetic.vec3 import (
-    RigidMotion,
-    Vec3,
-    along,
-    dot,
-    gap_sq,
-    move,
-    row,
-    sub,
-    turn_back,
+from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, gap_sq, move, row, sub, turn_back
+from clearance.kernels.features.bounds import direction_between
+from clearance.kernels.search.displacement import (
+    errors_of_point_along,
+    movement_of_point_along,
+    prepare_along,
 )
-from clearance.kernels.budget.reach import along_at_rest
-from clearance.kernels.budget.view import look_along, moved_of_point
 
 MOST_PIECES = 600
 """Pairs of pieces that are looked at of two faces; what is left then is bounded as it is."""
@@ -43,28 +37,6 @@ class TrianglePairs(NamedTuple):
 
     corners: Floats2
     bounds: Floats
-
-
-class TwoBodies(NamedTuple):
-    """Two bodies: the rows of their errors, and the roots of their trees."""
-
-    a: int
-    b: int
-    root_a: int
-    root_b: int
-
-
-class TwoFaces(NamedTuple):
-    """A face of each of two bodies.
-
-    Attributes:
-        m: `a_from_b`. bodies: whose errors move them.
-    """
-
-    a: int
-    b: int
-    m: RigidMotion
-    bodies: TwoBodies
 
 
 class PieceBound(NamedTuple):
@@ -192,46 +164,40 @@ class _PieceBounds(NamedTuple):
 
 
 @inline
-def _look(lent, p, q, m, bodies, slack):
-    """What is seen of two pieces, `q` in the frame of b; overwrites the rows along their own direction."""
-    work = lent.state.work
-    found, own, body_a, body_b = work.found, work.own, bodies.a, bodies.b
+def _bounded(p, q, m, displacement):
+    """A bound on two pieces along their own direction, `q` in the frame of b."""
     x, y = _near_points(p, _in_other(q, m))
-    d = sub(y, x)
-    length = math.sqrt(dot(d, d))
-    if not length > 0.0:
+    direction = direction_between(x, y, m)
+    u, v = direction.u, direction.v
+    if not dot(u, u) > 0.0:
         return _PieceBounds(
             -math.inf, -math.inf, math.sqrt(_longest_sq(p)), math.sqrt(_longest_sq(q))
         )
-    u = Vec3(d.x / length, d.y / length, d.z / length)
-    v = turn_back(m, u)
-    look_along(found, body_a, 0, u, own)
-    look_along(found, body_b, 1, v, own)
+    prepare_along(displacement, direction)
     far, most, fewest = -math.inf, -math.inf, math.inf
     for corner in p:
-        moved = moved_of_point(corner, 0, u, own)
+        moved = movement_of_point_along(displacement, corner, 0, u)
         far = max(far, dot(u, corner) + moved)
         most, fewest = max(most, moved), min(fewest, moved)
     unlike_a = most - fewest
     near, most, fewest = math.inf, -math.inf, math.inf
     for corner in q:
-        moved = moved_of_point(corner, 1, v, own)
+        moved = movement_of_point_along(displacement, corner, 1, v)
         near = min(near, dot(v, corner) - moved)
         most, fewest = max(most, moved), min(fewest, moved)
-    bound = near + dot(u, m.t) - far - slack
-    at_rest = along_at_rest(found, body_a, u, x)
-    at_rest += along_at_rest(found, body_b, v, turn_back(m, sub(y, m.t)))
-    return _PieceBounds(bound, length - at_rest, unlike_a, most - fewest)
+    bound = near + direction.offset - far - displacement.slack
+    at_rest = errors_of_point_along(displacement, x, 0, u)
+    at_rest += errors_of_point_along(displacement, turn_back(m, sub(y, m.t)), 1, v)
+    d = sub(y, x)
+    return _PieceBounds(bound, math.sqrt(dot(d, d)) - at_rest, unlike_a, most - fewest)
 
 
 @inline
-def _begin(lent, face_a, face_b):
+def _begin(faces, pieces):
     """All pairs of triangles of two fans; how many, or 0 where they are too many."""
-    scene = lent
-    pieces = scene.state.work.pieces
-    a = b = scene.surface
-    first_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
-    first_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
+    a, b = faces.surface_a, faces.surface_b
+    first_a, end_a = a.face_starts[faces.a], a.face_starts[faces.a + 1]
+    first_b, end_b = b.face_starts[faces.b], b.face_starts[faces.b + 1]
     n_a, n_b = max(1, end_a - first_a - 2), max(1, end_b - first_b - 2)
     if n_a * n_b > MOST_FANS:
         return 0
@@ -258,15 +224,14 @@ def _fan(surface, first, end, i):
 
 
 @inline
-def bound_of_pieces(lent, faces, whole, slack, target, near):
+def bound_of_pieces(faces, displacement, whole, target, near, pieces):
     """What two faces come to in pieces, at most until each stays above the target.
 
     Args:
-        faces: `TwoFaces`. whole: [m] a bound on both.
+        faces: a `PosedPair` of faces. whole: [m] a bound on both. pieces: `TrianglePairs`, overwritten.
         target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
     """
-    pieces = lent.state.work.pieces
-    n = _begin(lent, faces.a, faces.b)
+    n = _begin(faces, pieces)
     least = math.inf
     if n == 0:
         return PieceBound(whole, least)
@@ -275,7 +240,7 @@ def bound_of_pieces(lent, faces, whole, slack, target, near):
     while n > 0:
         n -= 1
         p, q = _read(pieces.corners[n], 0), _read(pieces.corners[n], 9)
-        seen = _look(lent, p, q, faces.m, faces.bodies, slack)
+        seen = _bounded(p, q, faces.frames.m, displacement)
         looked += 1
         least = min(least, seen.value)
         target = min(target, least - near)

@@ -1,0 +1,147 @@
+"""The errors of a machine as a displacement of both bodies of a pair, with the motion of an interval.
+
+Along the direction of a search boxes are bounded by a tilted direction, and by the rows that are kept beside it
+(`tilted`). Not for: the rows (`rows`), and which pairs and moments are asked (`sweep`).
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.compile.decorators import inline
+from clearance.kernels.budget.errors import BESIDE, REACH, TURNED, BodyRows
+from clearance.kernels.budget.reach import (
+    BodyReach,
+    along_at_rest,
+    reach_of_body,
+    reach_of_box,
+    reach_of_point,
+)
+from clearance.kernels.budget.tilted import kept_of_box, kept_of_point, tilted
+from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
+from clearance.kernels.features.bounds import rounding_slack
+from clearance.kernels.mesh.surface import Box, box_of
+from clearance.kernels.search.displacement import (
+    Turn,
+    direction_of_search,
+    errors_of_point_along,
+    is_nearly_still,
+    movement_of_box,
+    movement_of_box_along,
+    movement_of_point,
+    movement_of_point_along,
+    movement_of_point_in_search,
+    prepare_along,
+    still_turned_away,
+    turned_away_while,
+)
+from clearance.kernels.search.proof import CHAIN_SLACK
+
+
+class SeenErrors(NamedTuple):
+    """The rows of all bodies, and how those of two are seen.
+
+    Attributes:
+        kept: the rows beside the tilted direction of the search. own: all rows, along the prepared direction.
+    """
+
+    found: BodyRows
+    kept: AlongRows
+    own: AlongRows
+
+
+class ErrorRows(NamedTuple):
+    """The errors of both bodies of a pair.
+
+    Attributes:
+        slack: [m] what rounding can raise a bound by. seen: `SeenErrors`, lent.
+        body_a, body_b: their rows. box_a, box_b: of both whole.
+        moves: True where joints move: then boxes have a reach of their own, by that of each body.
+        reach_a, reach_b: of both. whole_a, whole_b: [m] how far any point of either can move. turn: of both together.
+    """
+
+    slack: float
+    seen: SeenErrors
+    body_a: int
+    body_b: int
+    box_a: Box
+    box_b: Box
+    moves: bool
+    reach_a: BodyReach
+    reach_b: BodyReach
+    whole_a: float
+    whole_b: float
+    turn: Turn
+
+
+@movement_of_box.register
+def _(rows: ErrorRows, box, side):
+    if not rows.moves:
+        return 0.0 * box.half.x + (rows.whole_b if side == 1 else rows.whole_a)
+    return reach_of_box(box, rows.reach_b if side == 1 else rows.reach_a)
+
+
+@movement_of_box_along.register
+def _(rows: ErrorRows, box, side, u):
+    return kept_of_box(box, side, rows.seen.kept)
+
+
+@still_turned_away.register
+def _(rows: ErrorRows, cones, d, marks, bounds):
+    return turned_away_while(rows.turn, cones, d, marks)
+
+
+@prepare_along.register
+def _(rows: ErrorRows, direction):
+    seen = rows.seen
+    look_along(seen.found, rows.body_a, 0, direction.u, seen.own)
+    look_along(seen.found, rows.body_b, 1, direction.v, seen.own)
+
+
+@movement_of_point_along.register
+def _(rows: ErrorRows, x, side, u):
+    return moved_of_point(x, side, u, rows.seen.own)
+
+
+@movement_of_point_in_search.register
+def _(rows: ErrorRows, x, side, u):
+    return kept_of_point(x, side, rows.seen.kept)
+
+
+@errors_of_point_along.register
+def _(rows: ErrorRows, x, side, u):
+    return along_at_rest(rows.seen.found, rows.body_b if side == 1 else rows.body_a, u, x)
+
+
+@movement_of_point.register
+def _(rows: ErrorRows, x, side):
+    return reach_of_point(rows.seen.found, rows.body_b if side == 1 else rows.body_a, x)
+
+
+@direction_of_search.register
+def _(rows: ErrorRows, direction):
+    seen = rows.seen
+    return tilted(direction, rows.box_a, rows.box_b, seen.own, seen.kept)
+
+
+@is_nearly_still.register
+def _(rows: ErrorRows, motion, little):
+    return motion < little
+
+
+@inline
+def error_rows_of(seen, roots, body_a, body_b):
+    """The `ErrorRows` of a pair whose rows are filled.
+
+    Args:
+        seen: `SeenErrors`, lent. roots: of the bodies' trees. body_a, body_b: their numbers in `seen`.
+    """
+    a, b, found = roots.surface_a, roots.surface_b, seen.found
+    slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, roots.frames)
+    one, other = found.sums[body_a], found.sums[body_b]
+    angle = max(one[TURNED], other[TURNED])
+    turn = Turn(angle, math.cos(angle), math.sin(angle), one[REACH] + other[REACH])
+    return ErrorRows(
+        slack, seen, body_a, body_b, box_of(a, roots.a), box_of(b, roots.b),
+        one[BESIDE] >= 0.0 or other[BESIDE] >= 0.0,
+        reach_of_body(found, body_a), reach_of_body(found, body_b), one[REACH], other[REACH], turn,
+    )  # fmt: skip
