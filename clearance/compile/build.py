@@ -36,8 +36,8 @@ from clearance.compile.sources import PACKAGE, digest_of, digest_of_sources, mod
 
 LARGEST_FIRST = (
     "budget_intervals", "budget_moments", "search", "sweep", "certify_unsynchronised",
-    "least_of_unsynchronised_steps", "certify", "nearest_at_positions", "prove_pair", "prove_while_moving", "nearest_polygons",
-    "nearest_at_poses",
+    "least_of_unsynchronised_steps", "certify", "nearest_at_positions", "prove_pair", "prove_while_moving",
+    "nearest_polygons", "nearest_at_poses",
 )  # fmt: skip
 """What takes longest is begun first."""
 

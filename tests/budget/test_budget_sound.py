@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.budget.proven import PathMoments, proven_of_steps
-from clearance.kernels.budget.sweep import REFINED_OF_MANY
-from clearance.kernels.budget.sweep import FEW
+from clearance.kernels.budget.sweep import FEW, REFINED_OF_MANY
 from tests.budget.budget_cases import pair_names, proven_sections, random_case
 from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
 

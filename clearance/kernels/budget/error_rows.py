@@ -56,7 +56,8 @@ class ErrorRows(NamedTuple):
         slack: [m] what rounding can raise a bound by. seen: `SeenErrors`, lent.
         body_a, body_b: their rows. box_a, box_b: of both whole.
         moves: True where joints move: then boxes have a reach of their own, by that of each body.
-        reach_a, reach_b: of both. whole_a, whole_b: [m] how far any point of either can move. turn: of both together.
+        reach_a, reach_b: of both. whole_a, whole_b: [m] how far any point of either can move.
+        turn: of both together.
     """
 
     slack: float

@@ -1,9 +1,9 @@
 """Nearest-first descent of two trees: the one search behind distance, certificate and tolerances.
 
-Every node pair gets a lower bound on the distance of its faces under a displacement (`displacement`). It is passed
-over where the bound is above the cut-off distance, else opened; two leaves are handed to the search, whose type says
-what it makes of two faces (`nearest`: the exact minimum; `proof`: a bound). A descent goes on from the front that
-the last one of the same pair has left, if there is one (`front`).
+Each node pair gets a lower bound on the distance of its faces under a displacement (`displacement`). A pair whose
+bound is above the cut-off distance is passed over, any other is opened. Two leaves go to the search; its type says
+what it makes of two faces: the exact minimum (`nearest`), or a proven bound (`proof`). A descent goes on from the
+front that the last one of the same pair has left, if there is one (`front`).
 """
 
 import math

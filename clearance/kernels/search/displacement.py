@@ -1,8 +1,8 @@
 """How far two bodies may move about the poses in which a search sees them; a search knows nothing else of motion.
 
-Three types say it: `Still`, the `Twist` of an interval (`motion`), the `ErrorRows` of a machine (`budget`). Each has
-a `slack` [m], by which rounding can raise a bound, and the functions below for itself. A body is named by its side:
-0 for the first of a pair, 1 for the second; boxes and points are in its frame, a box may stand for four in lanes.
+Three types say it: `Still`, the `Twist` of an interval (`motion`), the `ErrorRows` of a machine (`budget`). Each
+has a `slack` [m], by which rounding can raise a bound, and its own version of the functions below. A body is named
+by its side, 0 or 1. Boxes and points are in its frame; a box may stand for four in lanes.
 """
 
 from typing import NamedTuple
@@ -42,7 +42,7 @@ def still_turned_away(displacement, cones, d, marks, bounds):
 
 @by_type
 def prepare_along(displacement, direction):
-    """Works out what is the same for all points along a `SeparatingDirection`: those below are along the last one."""
+    """Works out what all points share along a `SeparatingDirection`; the functions below use the last one."""
     raise TypeError
 
 

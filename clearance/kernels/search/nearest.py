@@ -1,8 +1,8 @@
 """The exact nearest faces of two bodies that stand, or a proof that they are far.
 
-Two faces are measured in doubles; those that can be the nearest wait, and are refined at the end. A pair of nodes or
-faces is passed over only if a lower bound exceeds the best distance by more than its own error, so that every face
-pair that attains the minimum is refined, and the answer does not depend on the order. It stops at the first contact.
+Two faces are measured in doubles. Those that can be the nearest wait, and are refined at the end. A pair of nodes
+or faces is passed over only if a lower bound exceeds the best distance by more than its own error. So every face
+pair that attains the minimum is refined, and the answer does not depend on the order. The first contact ends it.
 Not for: which faces are visited (`descent`).
 """
 
@@ -98,7 +98,7 @@ class Best(NamedTuple):
     """The best pair of points so far, and what follows from it.
 
     Attributes:
-        gap: [m] theirs, or the limit if that is less. cut: [m] the cut-off distance: what is farther is passed over.
+        gap: [m] theirs, or the limit if that is less. cut: [m] the cut-off distance.
     """
 
     hit: Hit
@@ -280,8 +280,8 @@ def nearest_faces(roots, hit, limits, planes, front, scratch):
         hit: where to start, or none; its points say in which direction the bodies are seen apart, also where they
             are farther apart than the limit.
         limits: a `SearchLimits`.
-        planes: of `SeparatingPlanes`: if leaves wait already only these are visited; nothing else is nearer than it
-            says.
+        planes: of `SeparatingPlanes`; if leaves wait already, only these are visited, and nothing else is nearer
+            than it says.
         front: of `PairFront`, where the front of the pair is kept.
     """
     still, n_exact = Still(limits.slack), scratch.exact.count[0]

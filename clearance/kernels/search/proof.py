@@ -1,8 +1,8 @@
-"""A proven lower bound on the distance of two bodies under a displacement: of a motion, of the errors of a machine.
+"""A proven lower bound on the distance of two bodies that move, or that have errors: under a displacement.
 
-A node pair is done if its bound is above the target: the least distance seen to occur, less what is allowed below
-it. Two faces are bounded along the direction of their own nearest points, and in pieces where that is far below what
-occurs. Not for: which bodies and moments are asked, and halving intervals.
+A node pair is done if its bound is above the target: the least distance that occurs, less an allowed gap.
+Two faces are bounded along the direction of their nearest points. Where that is far below what occurs, they are
+cut into pieces. Not for: which bodies and moments are asked, and halving intervals.
 """
 
 import math
