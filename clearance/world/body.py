@@ -43,7 +43,7 @@ class Body:
 
 
 def require_no_shortfall(bodies: Iterable[Body], purpose: str) -> None:
-    """Nothing, if the surfaces of all bodies hold what they stand for, as where nothing is taken off a clearance.
+    """Refuses bodies whose surfaces may not contain the true shape: their clearance would be overstated.
 
     Raises:
         BadInput: with the first body that may stand outside its surface, as one from a CAD file may.

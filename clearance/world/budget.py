@@ -1,7 +1,7 @@
-"""What a real machine may differ from what a case says of it, as plain data: patterns and presets are resolved.
+"""Errors of a real machine, as plain data: patterns and presets are resolved.
 
 Each number is the greatest magnitude of one error, in any direction, at once with all others. Not for: reading it
-(`load`), nor what is left of a clearance (`clearance.budget`).
+(`load`), nor the remaining clearance (`clearance.budget`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 COVERAGE = 3.0
-"""[-] How many standard deviations the expected value takes off, if nothing is given."""
+"""[-] Standard deviations that the expected value subtracts, if none are given."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ class RobotTolerance:
     """Of one robot.
 
     Attributes:
-        joints: by name; a joint that is not named is exact, a follower of another takes its leader's error,
-            times its factor, beside its own.
+        joints: by name; a joint that is not named is exact, a joint that follows another has its leader's error,
+            times its factor, and its own.
         base: of its root link, in what it stands on.
         surfaces: [m] how far the surface of each link may stand out, by link.
         timing: [s] how far its clock may be off those of the other actors.
@@ -80,9 +80,9 @@ class Budget:
 
     Attributes:
         robots, obstacles: by name; what is not named is exact.
-        coverage: standard deviations that the expected value takes off. is_normal: errors are normal with their
+        coverage: standard deviations that the expected value subtracts. is_normal: errors are normal with their
             magnitude at three standard deviations; else uniform up to it.
-        unproven_ok: a limit that is kept but not proven to be, with these errors, does not fail the run.
+        unproven_ok: a limit that is kept, but not proven with these errors, does not fail the run.
         sources: where its numbers come from, one line each: presets with their source, files.
     """
 

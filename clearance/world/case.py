@@ -19,16 +19,16 @@ from clearance.errors import (
     at,
 )
 from clearance.geometry.pose import validated_pose
-from clearance.world.bodies_apart import (
-    require_names_apart,
-    require_other_names,
-    require_surfaces,
-)
 from clearance.world.body import Obstacle
 from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.distinct_bodies import (
+    require_distinct_names,
+    require_other_names,
+    require_surfaces,
+)
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
@@ -55,7 +55,7 @@ class Limits:
     Args:
         warn: as `fail` if not given.
         joints: what a joint beyond its limits is: "warn" for a warning, "fail" for a violation.
-        rules: limits of some pairs; the last that is of a pair holds, and where none is, these limits.
+        rules: limits of some pairs; the last that matches a pair applies; without one, these limits.
         rounding: [m] a clearance that is less than a level by no more is at the level; a run knows it.
 
     Raises:
@@ -94,7 +94,7 @@ class Limits:
 
     @property
     def least_kept(self) -> float:
-        """[m] A clearance of so much keeps the fail limit."""
+        """[m] The least clearance that keeps the fail limit."""
         return self.fail - self.rounding
 
     @property
@@ -110,7 +110,7 @@ class Limits:
 
 
 LOOKUP = "(lookup) "
-"""How the path of a source begins that is no file, but what was looked for in several places."""
+"""Beginning of the path of a source that is no file: a name that was searched for in several places."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Source:
     """A file that the case was made from, or a search that led to one.
 
     Attributes:
-        path: as it is shown, the same on every machine; of a search `LOOKUP` and what was looked for.
+        path: as it is shown, the same on every machine; for a search `LOOKUP` and the name.
         sha256: of its content; of a search that of where it led.
         read_from: where it was found, for nobody but who must not overwrite it; of a search what repeats it.
     """
@@ -161,7 +161,7 @@ class PlacedRobot:
     """A robot in the world.
 
     Attributes:
-        trajectory: what it is asked to do; None for a robot that is asked about by a `Checker` only.
+        trajectory: its commanded motion; None for a robot that only a `Checker` measures.
         world_from_base: (4, 4) pose of the root link [m].
         mount: what it stands on, if that is not the world; then `world_from_base` is the identity.
         timing: when its trajectory is followed.
@@ -172,7 +172,7 @@ class PlacedRobot:
         motion_limits: how fast joints may be, where more than the robot's own file is known.
         path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
         trajectory_path: the file that the trajectory is from; empty where it is from none.
-        recording: of which the trajectory is what the robot did; None where it is what it is asked.
+        recording: whose measured motion the trajectory is; None where the trajectory is commanded.
     """
 
     robot: Robot
@@ -232,7 +232,7 @@ class PlacedRobot:
 
 @dataclass(frozen=True, eq=False)
 class ReservedSpace:
-    """An outline in a plane that what the robot sweeps must keep to.
+    """An outline in a plane with which the robot's sweep is compared.
 
     Attributes:
         plane: "xy", "xz", "yz" or a point and a normal; `section` cuts there [m] instead of projecting.
@@ -262,7 +262,7 @@ class SignOff:
 
 @dataclass(frozen=True)
 class Clock:
-    """How far the clocks of actors may be apart [s]: 0 for one clock, infinite where they are not tied at all.
+    """The greatest difference of the actors' clocks [s]: 0 for one clock, infinite where they are not tied.
 
     Raises:
         BadTime: a slack below 0 or NaN.
@@ -288,7 +288,7 @@ class Case:
         obstacles: unique names.
         allow: pairs that are not measured; two patterns of names (`fnmatch`) become an `Allowance`.
         carries: which parts are carried, by what and when.
-        clock: how far the actors' clocks may be apart.
+        clock: the greatest difference of the actors' clocks.
         tolerance: what the real machine may differ by; None where nothing is given.
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
@@ -296,7 +296,7 @@ class Case:
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
         waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
-        profiles: outlines that the sweep must keep to.
+        profiles: outlines with which the sweep is compared.
         sign_off: for the report; None where it has no such fields.
         path_error: [m] by how much less clearances may be since paths are off their samples' motion; in phases.
     """
@@ -331,27 +331,33 @@ class Case:
 
     @cached_property
     def cell(self) -> Cell:
-        """What of it no trajectory changes, as a key."""
-        held: list[object] = [*self.obstacles]
-        told: list[Hashable] = [self.allow, self.limits, self.carries, self.clock, self.path_error]
+        """The part of it that no trajectory changes, as a key."""
+        objects: list[object] = [*self.obstacles]
+        values: list[Hashable] = [
+            self.allow,
+            self.limits,
+            self.carries,
+            self.clock,
+            self.path_error,
+        ]
         for placed in self.robots:
-            held += [placed.robot, placed.mount, placed.self_clearance]
-            told += [placed.world_from_base.tobytes(), placed.exclude_links]
-            told.append(tuple(sorted(placed.padding.items())))
-        return cell_of(held, tuple(told))
+            objects += [placed.robot, placed.mount, placed.self_clearance]
+            values += [placed.world_from_base.tobytes(), placed.exclude_links]
+            values.append(tuple(sorted(placed.padding.items())))
+        return cell_of(objects, tuple(values))
 
-    def telling(self, **told: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]) -> Case:
+    def telling(self, **values: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]) -> Case:
         """The same with other `notices`, `notes` or `sources`, of which nothing is to be checked.
 
-        Its cell is told anew: somebody may have written into an array since.
+        Its cell is found again: somebody may have written into an array since.
         """
         made = object.__new__(type(self))
-        made.__dict__.update(self.__dict__, **told)
+        made.__dict__.update(self.__dict__, **values)
         made.__dict__.pop("cell", None)
         return made
 
     def prefix_of(self, placed: PlacedRobot) -> str:
-        """What stands before the names of a robot's links in tables: nothing where there is one robot."""
+        """The prefix of a robot's links in tables: empty where there is one robot."""
         return "" if len(self.robots) == 1 else f"{placed.robot.name}/"
 
     @property
@@ -390,14 +396,14 @@ class Case:
 
 @once_a_cell(16)
 def _require_bodies(case: Case) -> None:
-    """Nothing, if what can be named can be told apart, and links have surfaces."""
+    """Nothing, if all names are different, and links have surfaces."""
     require_own_names("robot", [placed.robot.name for placed in case.robots])
     require_own_names("obstacle", [obstacle.name for obstacle in case.obstacles])
     for placed in case.robots:
         require_own_names("link", list(placed.robot.link_names))
         require_surfaces(placed.robot)
     if len(case.robots) > 1:
-        require_names_apart([placed.robot for placed in case.robots], case.obstacles)
+        require_distinct_names([placed.robot for placed in case.robots], case.obstacles)
     elif case.robots[0].self_clearance or case._stand_on_others:
         require_other_names(case.robots[0].robot, case.obstacles)
     require_one_carrier(case.carries)

@@ -1,8 +1,8 @@
-"""What of a case no trajectory changes, as one key: what follows from it alone is worked out once for many cases.
+"""The part of a case that no trajectory changes, as one key: its results are computed once for many cases.
 
 Two cases are of one cell where their robots, bases, obstacles, limits and what may touch are the same objects or
-alike; what robots are asked to do is not among it. Not for: keeping cases (`lru_cache` holds its arguments; this
-holds none of a case's trajectories).
+alike; commanded motions are no part of it. Not for: caching cases (`lru_cache` keeps its arguments; this
+keeps none of a case's trajectories).
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ MOST_CELLS = 16
 class Cell:
     """The key of a cell: objects by what they are, values by what they say.
 
-    It holds the objects, so that no other can come to lie in the place by which they are told apart.
+    It keeps the objects, so that no other can get an address that identifies one of them.
     """
 
-    __slots__ = ("_hash", "_held", "_told")
+    __slots__ = ("_hash", "_key", "_objects")
 
-    def __init__(self, held: Sequence[object], told: Hashable) -> None:
-        self._held, self._told = held, (tuple(map(id, held)), told)
-        self._hash = hash(self._told)
+    def __init__(self, objects: Sequence[object], values: Hashable) -> None:
+        self._objects, self._key = objects, (tuple(map(id, objects)), values)
+        self._hash = hash(self._key)
 
     def __eq__(self, other: object) -> bool:
-        return self is other or (isinstance(other, Cell) and self._told == other._told)
+        return self is other or (isinstance(other, Cell) and self._key == other._key)
 
     def __hash__(self) -> int:
         return self._hash
@@ -41,22 +41,22 @@ class Cell:
 _known: OrderedDict[Cell, Cell] = OrderedDict()
 
 
-def cell_of(held: Sequence[object], told: Hashable) -> Cell:
+def cell_of(objects: Sequence[object], values: Hashable) -> Cell:
     """The cell of some objects and values; the same one as before where they are.
 
     Values that are no key, as lists are none, make a cell of its own.
     """
     try:
-        made = Cell(held, told)
+        made = Cell(objects, values)
     except TypeError:
         return Cell([object()], None)
     cell = _known.setdefault(made, made)
-    _keep_the_last(_known, MOST_CELLS)
+    _drop_the_oldest(_known, MOST_CELLS)
     return cell
 
 
 class CellOwner(Protocol):
-    """What has a cell: a case."""
+    """Anything with a cell: a case."""
 
     @property
     def cell(self) -> Cell: ...
@@ -65,7 +65,7 @@ class CellOwner(Protocol):
 def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Result]]:
     """Decorates a function of a case and of further keys whose answer follows from the case's cell and those.
 
-    Nobody may change what it returns. Answers of the last `most` questions are kept.
+    Nobody may change what it returns. It caches the last `most` answers.
     """
 
     def decorated(work: Callable[..., Result]) -> Callable[..., Result]:
@@ -78,7 +78,7 @@ def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Re
                 with suppress(KeyError):  # another thread may have let go of it
                     return known[key]
             answer = known[key] = work(case, *others)
-            _keep_the_last(known, most)
+            _drop_the_oldest(known, most)
             return answer
 
         return found
@@ -86,7 +86,7 @@ def once_a_cell(most: int) -> Callable[[Callable[..., Result]], Callable[..., Re
     return decorated
 
 
-def _keep_the_last(known: OrderedDict, most: int) -> None:
+def _drop_the_oldest(known: OrderedDict, most: int) -> None:
     with suppress(KeyError):
         while len(known) > most:
             known.popitem(last=False)

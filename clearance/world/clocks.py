@@ -46,7 +46,7 @@ def _index(body: BodyIndex) -> int:
 def clocks_of(case: Case) -> dict[_Thing, int]:
     """The clock of each robot (False, i) and obstacle (True, i): the number of an actor, or `NO_CLOCK`.
 
-    What stands has none, even where something that moves stands on it.
+    A standing body has none, even if a moving one stands on it.
     """
     below = list(_below(case))
     moving = _moving(case, below)
@@ -64,7 +64,7 @@ def _things(case: Case) -> list[_Thing]:
 
 
 def _below(case: Case) -> Iterator[tuple[_Thing, _Thing]]:
-    """What is on something at some time, and what that is."""
+    """The things that are ever on another, each with that other."""
     names = {obstacle.name: (True, i) for i, obstacle in enumerate(case.obstacles)}
     mounted = [((False, i), robot.mount) for i, robot in enumerate(case.robots)]
     mounted += [((True, i), obstacle.mount) for i, obstacle in enumerate(case.obstacles)]

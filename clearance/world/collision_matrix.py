@@ -26,7 +26,7 @@ class CollisionMatrix:
         off_by_default: links.
         enabled: pairs of links.
         disabled: pairs of links with a reason each; of several rows for a pair the last counts.
-        notes: what was left out, one line each.
+        notes: omissions, one line each.
     """
 
     off_by_default: tuple[str, ...] = ()

@@ -51,7 +51,7 @@ def extremes_between(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(n - 1, k) least and greatest positions in each interval, its ends included.
 
-    Exactness: right to a few roundings of the greatest term; the roots of the derivative are taken in the form
+    Exactness: right to a few roundings of the greatest term; the roots of the derivative have the form
         that does not cancel.
     """
     cubics = cubics_of(times, positions, velocities)

@@ -1,5 +1,5 @@
-"""How long bodies are, how far robots reach, and lengths as they are told: what sizes and places are held against;
-and what a robot's own file has beside the robot.
+"""Lengths of bodies, reach of robots, and lengths in words: sizes and places are compared with them;
+and floor and walls of a robot's own file.
 
 Not for: what is odd about them (`plausible_sizes`, `plausible_places`).
 """
@@ -22,25 +22,25 @@ def reach_of(placed: PlacedRobot) -> float:
 
 
 def own_bodies(robot: Robot) -> list[Body]:
-    """Its links that have a shape, but for what holds the floor and walls of its own file."""
+    """Its links that have a shape, without the link of floor and walls of its own file."""
     first = 1 if robot.brings_surroundings else 0
     return [*robot.bodies[first:]]
 
 
 def own_floor(placed: PlacedRobot) -> str | None:
-    """The link that holds floor and walls of the robot's own file, if there are some and they stand."""
+    """The link of floor and walls of the robot's own file, if there are some and they stand."""
     return WORLD_LINK if placed.robot.brings_surroundings and placed.mount is None else None
 
 
 def chain_of(placed: PlacedRobot) -> float:
-    """[m] the longest way from the root over joints' origins, sliding joints as far as they go."""
+    """[m] the longest path from the root over joints' origins, sliding joints as far as they go."""
     slides = dict(slides_of(placed))
-    way = {placed.robot.link_names[0]: 0.0}
+    path = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
         step += slides.get(joint.name, 0.0)
-        way[joint.child] = way[joint.parent] + step
-    return max(way.values())
+        path[joint.child] = path[joint.parent] + step
+    return max(path.values())
 
 
 def slides_of(placed: PlacedRobot) -> tuple[tuple[str, float], ...]:
@@ -60,7 +60,7 @@ def length_of(body: Body) -> float:
 
 
 def greatest(found: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
-    """What was found, the greatest number first."""
+    """The findings, the greatest number first."""
     return sorted(found, key=lambda item: -item[0])
 
 

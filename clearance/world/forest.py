@@ -110,7 +110,7 @@ def positions_along(
 def resolved_mount(case: Case, mount: Mount) -> Mount:
     """A mount that names what it is on by what moves that: a link, or an obstacle with a motion of its own.
 
-    What is on an obstacle that rides on something is on that. On an obstacle that stands the name stays.
+    A body on an obstacle that rides on something is on that thing. On an obstacle that stands the name stays.
 
     Raises:
         UnknownLink: nothing is called so. BadInput: obstacles that ride on each other in a ring.

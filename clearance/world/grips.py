@@ -1,6 +1,6 @@
 """The errors of a carrier at the moment of a grasp or release, seen from the part.
 
-Not for: which carrier holds which part (`hands`), nor how large errors are (`budget`).
+Not for: which carrier has which part (`hands`), nor how large errors are (`budget`).
 """
 
 from __future__ import annotations

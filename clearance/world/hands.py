@@ -22,14 +22,14 @@ def with_parts(phase: Phase, before: Sequence[Phase]) -> Phase:
     """The phase with its parts where they are: in somebody's hands, or where they were let go."""
     case, last = phase.case, before[-1] if before else None
     if last is not None:
-        case = _left_as_they_were(phase, last, frozenset(p for b in before for p in b.carried))
+        case = _laid_down_as_they_were(phase, last, frozenset(p for b in before for p in b.carried))
     for carry in _carriers_first(phase.carried):
         if last is None or last.carried.get(carry.part) is not carry:
             case = _picked_up(replace(phase, case=case), carry, last)
     return phase if case is phase.case else replace(phase, case=case)
 
 
-def _left_as_they_were(phase: Phase, last: Phase, parts: frozenset[str]) -> Case:
+def _laid_down_as_they_were(phase: Phase, last: Phase, parts: frozenset[str]) -> Case:
     """The case with parts that have been carried where the phase before has them, in the same hands or in none."""
     if not parts:
         return phase.case
@@ -61,12 +61,12 @@ def _carriers_first(carried: Mapping[str, Carry]) -> list[Carry]:
 
 def _picked_up(phase: Phase, carry: Carry, last: Phase | None) -> Case:
     """The case with a part on what carries it, at the pose that it has there when it is picked up."""
-    held = phase if last is None else last
+    carrying = phase if last is None else last
     step = 0 if last is None else last.n_steps - 1
-    world_from_part = _pose_of(held, carry.part, step)
+    world_from_part = _pose_of(carrying, carry.part, step)
     world_from_by = _pose_of(phase, carry.by, 0)
     mount = Mount(carry.by, inverse(world_from_by) @ world_from_part)
-    then, now = (Grip(*at, world_from_part, GRASP) for at in ((held, step), (phase, 0)))
+    then, now = (Grip(*at, world_from_part, GRASP) for at in ((carrying, step), (phase, 0)))
     obstacles = tuple(
         Obstacle(o.body, mount=mount, padding=o.padding, past=_gripped(o, carry, then, now))
         if o.name == carry.part

@@ -44,7 +44,7 @@ class _Excess(NamedTuple):
 def notices_on_joints(
     placed: PlacedRobot, rule: str, before: str = "", extents: Sequence[JointExtent] | None = None
 ) -> list[Notice]:
-    """What is beyond its limits, at the samples or between them, or where the robot stands.
+    """Joints beyond their limits, at the samples or between them, or where the robot stands.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
@@ -65,13 +65,13 @@ def notices_on_joints(
     near = [excess for excess in found if excess not in far]
     notices = []
     if far:
-        text = f"CHECK LIMITS: {_told(far)}; is this another unit, or another robot?"
+        text = f"CHECK LIMITS: {_in_words(far)}; is this another unit, or another robot?"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
     if rule == "fail" and found:
         about = placed.robot.name
-        notices.append(Notice(Severity.VIOLATED, "joint limits", _told(found), about))
+        notices.append(Notice(Severity.VIOLATED, "joint limits", _in_words(found), about))
     elif near:
-        notices.append(Notice(Severity.WARNING, "limits", _told(near)))
+        notices.append(Notice(Severity.WARNING, "limits", _in_words(near)))
     return notices
 
 
@@ -89,17 +89,17 @@ def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> lis
     rounding = ROUNDING + (0.0 if asked is None else abs(course.factor) * asked.path_error)
     at_samples = _beyond(joint, course.at_samples, course.at_samples)
     n_beyond = int((at_samples > rounding).sum())
-    told = []
+    excesses = []
     if n_beyond:
         where = (
             f"in {n_beyond} of {len(at_samples)} steps"
             if course.i_column is not None
             else "all the time"
         )
-        told.append(_excess(joint, name, at_samples, where))
+        excesses.append(_excess(joint, name, at_samples, where))
     reached = extremes_of(course, asked)
     if reached is None:
-        return told
+        return excesses
     ends = np.maximum(0.0, np.maximum(at_samples[:-1], at_samples[1:]))
     between = _beyond(joint, *reached)
     farther = between > ends + rounding
@@ -108,8 +108,8 @@ def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> lis
             "between two samples, on the cubic that its velocities make, "
             f"in {int(farther.sum())} of {len(between)} intervals"
         )
-        told.append(_excess(joint, name, between[farther], where))
-    return told
+        excesses.append(_excess(joint, name, between[farther], where))
+    return excesses
 
 
 def _beyond(joint: Joint, least: np.ndarray, greatest: np.ndarray) -> np.ndarray:
@@ -133,7 +133,7 @@ def far_beyond(joint: Joint) -> float:
     return FAR_TURN if turns(joint) else max(FAR_SLIDE, joint.upper - joint.lower)
 
 
-def _told(found: list[_Excess]) -> str:
+def _in_words(found: list[_Excess]) -> str:
     """One line; the joint that is farthest beyond comes first where there are several."""
     ordered = sorted(found, key=lambda excess: -excess.beyond)
     names = {excess.name for excess in found}

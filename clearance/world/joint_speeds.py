@@ -18,13 +18,13 @@ from clearance.world.robot import Joint
 from clearance.world.trajectory import Trajectory
 
 ROUNDING = 1e-6
-"""Of a limit: trajectories that are as fast as they may be are written in six digits or more."""
+"""[-] Rounding of a limit: trajectories at a limit are written in six digits or more."""
 
 
 def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
-    """What is faster, or accelerates more, than it may; one notice.
+    """Joints that are faster, or accelerate more, than they may; one notice.
 
-    Of a speed that both the robot's own file and another limit, the lower limit counts.
+    If the robot's own file and another one limit a speed, the lower limit counts.
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
@@ -32,17 +32,17 @@ def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[N
     asked = placed.trajectory
     if asked is None or asked.n_steps < 2:
         return []
-    told = [
+    texts = [
         text
         for course in joint_courses(placed)
         if course.i_column is not None
         for text in _excesses(placed, course, asked, before)
     ]
-    if not told:
+    if not texts:
         return []
     if rule == "fail":
-        return [Notice(Severity.VIOLATED, "joint limits", listed(told, 4))]
-    return [Notice(Severity.WARNING, "limits", listed(told, 4))]
+        return [Notice(Severity.VIOLATED, "joint limits", listed(texts, 4))]
+    return [Notice(Severity.WARNING, "limits", listed(texts, 4))]
 
 
 def _excesses(
@@ -78,7 +78,7 @@ def greatest_rates(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, 
 
     Exactness: the speed on a cubic is a parabola, greatest at an end or where it turns; its slope is linear.
         Cubics that are off a quintic by no more than `path_error` = h^4 M / 384 have slopes off by h^3 M / 124 and
-        less, and curvatures by h^2 M / 12; that is taken off, so that what is told does occur.
+        less, and curvatures by h^2 M / 12; that is subtracted, so that the reported value does occur.
     """
     column = slice(course.i_column, (course.i_column or 0) + 1)
     length = np.diff(asked.times)

@@ -35,7 +35,7 @@ class ChainJoint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class KinematicChain:
-    """What is between two links of a robot.
+    """The frames and joints between two links of a robot.
 
     Attributes:
         joints: in order from the first link to the second.

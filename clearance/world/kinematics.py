@@ -74,15 +74,15 @@ def seen_from(
 ) -> tuple[Links, dict[tuple[int, int], int]]:
     """The links and, behind them, links as they are seen from others above them.
 
-    A link that is looked from stands at the origin there, so that only the joints between move what is seen.
+    The observing link stands at the origin there, so that only the joints between move the other one.
 
     Args:
-        wanted: (the link that is looked from, the link that is seen) each.
+        wanted: (the observing link, the observed link) each.
 
     Returns:
         all links, and the place of each that is wanted.
     """
-    origins: list[int] = []  # of each link that is added: which it is
+    origins: list[int] = []  # the index of each added link
     parents: list[int] = []
     places: dict[tuple[int, int], int] = {}
     for reference, link in wanted:
@@ -254,7 +254,7 @@ def _by_link(robot: Robot, moving: np.ndarray, *, with_offsets: bool) -> np.ndar
 def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, int, float, float]]]:
     """(links, columns, mimics): which link a column of the moving joints moves, and which links follow a column.
 
-    Those that follow have a factor and an offset, of all the joints between taken together.
+    Those that follow have a factor and an offset, of all the joints between together.
     """
     index = {name: i for i, name in enumerate(robot.link_names)}
     column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}

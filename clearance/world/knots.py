@@ -26,7 +26,7 @@ class Knots:
     """Values over a run's time; they stay before the first knot and after the last.
 
     Attributes:
-        times: (k,) [s]. before, after: (k, c) the values that a knot is come to with, and left with.
+        times: (k,) [s]. before, after: (k, c) the values just before a knot and just after it.
         rates_before, rates_after: (k, c) the same of velocities; None where values go straight.
         n_rotation: how many of the last columns are a quaternion: 0 or 4.
     """
@@ -49,7 +49,7 @@ class Knots:
         return self.times[at_once]
 
     def values_at(self, times: np.ndarray) -> np.ndarray:
-        """(n, c) the values over a stretch in which nothing jumps but at its ends: as it is left and come to."""
+        """(n, c) the values over a stretch that jumps at its ends only: after the first knot, before the last."""
         if len(times) == len(self.times) and np.array_equal(times, self.times):
             if np.array_equal(self.before[1:], self.after[1:]):
                 return self.after
@@ -76,7 +76,7 @@ class Knots:
         return found
 
     def _places(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) the knot before each time, and the share (0 to 1) of the way to the next."""
+        """(n,) the knot before each time, and the share (0 to 1) of the interval to the next."""
         places = np.clip(
             np.searchsorted(self.times, times, side="right") - 1, 0, len(self.times) - 1
         )
@@ -133,9 +133,9 @@ def knots_of(
     """
     if rates is None:
         return Knots(times, values, values, n_rotation=n_rotation)
-    come, left = rates.copy(), rates.copy()
-    come[0] = left[-1] = 0.0  # it stands before and after
-    return Knots(times, values, values, come, left, n_rotation)
+    arriving, leaving = rates.copy(), rates.copy()
+    arriving[0] = leaving[-1] = 0.0  # it stands before and after
+    return Knots(times, values, values, arriving, leaving, n_rotation)
 
 
 def looped(once: Knots, end: float) -> Knots:

@@ -81,7 +81,7 @@ def leads_of(robot: Robot) -> dict[str, tuple[tuple[str, float], ...]]:
 
 
 def masters_of(joints: Sequence[Joint]) -> dict[str, Follower]:
-    """What moves each joint, by name; in time linear in the joints.
+    """The leader of each joint, by name; in time linear in the joints.
 
     Raises:
         UnknownJoint: one follows a joint that is not there. BadInput: joints follow each other in a circle.

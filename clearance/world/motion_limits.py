@@ -31,7 +31,7 @@ class PathTolerance:
     """How far a joint may be off its path, and off its goal, before its controller stops [rad or m].
 
     Attributes:
-        trajectory, goal: infinite where the controller does not look.
+        trajectory, goal: infinite where the controller does not check.
 
     Raises:
         BadDimension: one that is not above 0.

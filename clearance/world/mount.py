@@ -1,4 +1,4 @@
-"""What something stands on that moves: a link of a robot, or an obstacle. Not for: how that moves (`forest`)."""
+"""The moving support of an actor: a link of a robot, or an obstacle. Not for: how that moves (`forest`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Joint names that are given values, held against the robot. Not for: the values (`joint_limits`, `reach`)."""
+"""Joint names that are given values, compared with the robot's. Not for: the values (`joint_limits`, `reach`)."""
 
 from __future__ import annotations
 

@@ -21,10 +21,10 @@ _FAULTS = {
 
 
 def checked_name(name: str) -> str:
-    """The name, if it is text on one line that shows what it holds.
+    """The name, if it is text on one line without hidden characters.
 
     Raises:
-        BadInput: with what it holds, the name escaped.
+        BadInput: with its characters escaped.
     """
     if name.isascii() and name.isprintable():
         return name  # as most are
@@ -36,7 +36,7 @@ def checked_name(name: str) -> str:
 
 
 def require_own_names(kind: str, names: Sequence[str]) -> None:
-    """Nothing, if no two of one kind have one name, which no table could keep apart, and each is text on one line.
+    """Refuses two of one kind with one name, which would be one row in a table, and names of several lines.
 
     Args:
         kind: "link", "joint", "obstacle" or the like, for the message.

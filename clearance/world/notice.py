@@ -1,4 +1,4 @@
-"""What a reader of the verdict must know beside the clearance: input that is suspect, and warnings.
+"""Suspect input and warnings, which a reader of the verdict must know as well as the clearance.
 
 Not for: errors (`clearance.errors`), and notes on what loading mended, which are plain text.
 """
@@ -11,7 +11,7 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
-    """What a notice does to the verdict, worst first."""
+    """Effects of a notice on the verdict, worst first."""
 
     SUSPECT = "suspect"
     VIOLATED = "violated"

@@ -75,14 +75,14 @@ class BodyIndex(NamedTuple):
         return np.ascontiguousarray(link_poses[:, frame])
 
     def padding_in(self, case: Case) -> float:
-        """[m] By how much its clearance is lessened: what was asked for, and what its surface may fall short."""
+        """[m] The reduction of its clearance: the given padding, and the shortfall of its surface."""
         shortfall = self.shape_in(case).shortfall
         if self.is_obstacle:
             return case.obstacles[self.i_body].padding + shortfall
         return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0) + shortfall
 
     def is_floor_in(self, case: Case) -> bool:
-        """True for the link that holds floor and walls of a robot's own file, where that stands in the world."""
+        """True for the link of floor and walls of a robot's own file, where that stands in the world."""
         if self.is_obstacle:
             return False
         return self.own_name_in(case) == own_floor(case.robots[self.i_robot])
@@ -111,13 +111,13 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """What is measured in a phase of a run; nobody changes it.
+    """The pairs that are measured in a phase of a run; nobody changes it.
 
     Attributes:
         pairs: links and obstacles robot by robot, then links of one robot, then of two, then obstacles.
         rules: of each pair what judges it, as `Limits.rule_names` counts. paddings: [m] of both of its
             bodies, and what paths may be off.
-        unmeasured: links and pairs that are left out, and why.
+        unmeasured: omitted links and pairs, and why.
     """
 
     pairs: list[Pair] = field(default_factory=list)
@@ -135,10 +135,10 @@ class Selection:
 
 
 def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
-    """The pairs to measure, and what is left out, of a case in which nothing changes hands.
+    """The pairs to measure, and the omitted ones, of a case in which nothing changes hands.
 
     Raises:
-        NothingToMeasure: no pair is left.
+        NothingToMeasure: there is no pair.
     """
     rows = (case.allow, case.limits.rules)
     always = (-np.inf, np.inf)
@@ -173,7 +173,7 @@ def _selected(
 
 
 def nothing_to_measure() -> NothingToMeasure:
-    """What is raised where no pair is left."""
+    """The error to raise where there is no pair."""
     return NothingToMeasure(
         "no link-obstacle pair is left to measure",
         valid="at least one obstacle, and a link with geometry that is not excluded or allowed",
@@ -210,7 +210,7 @@ class _Selector:
         """All pairs, sorted."""
         case = self.case
         for i_robot in self.robots:
-            self.found.unmeasured.extend(_links_left_out(case, i_robot))
+            self.found.unmeasured.extend(_omitted_links(case, i_robot))
             for link in _links(case, i_robot):
                 self._sort_out((link, other) for other in self.obstacles)
         for i_robot in self.robots:
@@ -245,7 +245,7 @@ class _Selector:
                 self._leave_out(one, other, f"excused: {pair.excused}")
 
     def _sort_out(self, bodies: Iterable[tuple[BodyIndex, BodyIndex]]) -> None:
-        """Adds what is measured to the pairs, and what is not to what is left out."""
+        """Adds measured pairs to the pairs, and the others to the omissions."""
         for one, other in bodies:
             why = self._why_not(one, other)
             if why is not None:
@@ -296,7 +296,7 @@ class _Selector:
         return WORLD if frame == WORLD else self.forest.rigid_part(frame)
 
     def _rule_of(self, one: BodyIndex, other: BodyIndex) -> int:
-        """What judges a pair: the last rule that is of it, or the limits by themselves."""
+        """The judge of a pair: the last rule that matches it, or the limits by themselves."""
         names = names_of(self.case, one), names_of(self.case, other)
         return next((i for i, rule in reversed(self.rules) if rule.matches(*names)), 0)
 
@@ -323,20 +323,20 @@ def _links(case: Case, i_robot: int) -> list[BodyIndex]:
     return [BodyIndex(i_robot, i) for i, body in bodies if body.name not in excluded]
 
 
-def _links_left_out(case: Case, i_robot: int) -> list[Omission]:
+def _omitted_links(case: Case, i_robot: int) -> list[Omission]:
     placed = case.robots[i_robot]
     before = case.prefix_of(placed)
     with_shape = {body.name for body in placed.robot.bodies}
     excluded = frozenset(placed.exclude_links)
-    left_out = [
+    omitted = [
         Omission(before + name, "*", "excluded in the case file") for name in placed.exclude_links
     ]
-    left_out += [
+    omitted += [
         Omission(before + name, "*", "no geometry")
         for name in placed.robot.link_names
         if name not in with_shape and name not in excluded
     ]
-    return left_out
+    return omitted
 
 
 def names_of(case: Case, body: BodyIndex) -> tuple[str, ...]:

@@ -26,15 +26,15 @@ def path_error_of(case: Case, motions: Sequence[Motion]) -> float:
     """
     if not any(_error(motion) for motion in motions):
         return 0.0
-    times_held = 1 + 2 * len(case.carries)
+    n_holds = 1 + 2 * len(case.carries)
     mounts = [placed.mount for placed in case.robots] + [one.mount for one in case.obstacles]
     if case.carries or any(mount is not None for mount in mounts):
-        longest = [2.0 * ROOT_3 * farthest_reach(case, motions) * times_held] * len(motions)
+        longest = [2.0 * ROOT_3 * farthest_reach(case, motions) * n_holds] * len(motions)
     else:
         longest = [length_of_robot(motion) for motion in motions]
     moved = sum(map(_moved, motions, longest))
     return float(
-        moved * times_held * (1.0 + 1e-3)
+        moved * n_holds * (1.0 + 1e-3)
     )  # the path itself is within a thousandth of these lengths
 
 

@@ -1,7 +1,7 @@
-"""What a case holds that can be right but looks wrong: lengths, angles or times in another unit, joints beyond
+"""Values of a case that can be right but look wrong: lengths, angles or times in another unit, joints beyond
 their limits.
 
-Works on the case itself, so that one that was made in memory is looked at as one from files is. Not for: what
+Works on the case itself, so that one made in memory is checked like one from files. Not for: what
 only a file shows (`load.plausibility`), and values that cannot be right.
 """
 
@@ -43,7 +43,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
         if not any(moves):
-            break  # nothing is asked of the robots
+            break  # no robot has to move
         before, extents = case.prefix_of(placed), joint_extents(placed)
         if placed.trajectory is not None:
             found += notices_on_motion(placed, before, extents)
@@ -55,7 +55,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
 
 
 def _notices_of_robots(case: Case) -> list[Notice]:
-    """What loading found about the robots; of several it is said whose it is."""
+    """Notices of loading about the robots; with several robots each says whose it is."""
     whose: dict[Notice, list[str]] = {}
     for placed in case.robots:
         for notice in placed.robot.notices:
@@ -93,6 +93,6 @@ def _notices_on_padding(case: Case) -> list[Notice]:
 def _in_millimetres(large: list[str], what: str) -> list[Notice]:
     if not large:
         return []
-    told = " and ".join(large) if len(large) < 3 else listed(large)
-    text = f"CHECK UNITS: {told}; {what} in metres, is this millimetres?"
+    names = " and ".join(large) if len(large) < 3 else listed(large)
+    text = f"CHECK UNITS: {names}; {what} in metres, is this millimetres?"
     return [Notice(Severity.SUSPECT, "units", text)]

@@ -1,4 +1,4 @@
-"""Tables of one case whose times may come from two clocks: they never overlap, or their stamps begin apart.
+"""Tables of one case whose times may come from two clocks: no overlap, or stamps that begin at different times.
 
 Not for: clocks that the case declares unsynchronised (`clocks`).
 """
@@ -52,23 +52,23 @@ def notices_on_clocks(case: Case) -> list[Notice]:
                 "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
             )
             found.append(Notice(Severity.SUSPECT, "clocks", text))
-    return [*found, *_recordings_apart(case)]
+    return [*found, *_recordings_begin_unlike(case)]
 
 
-def _recordings_apart(case: Case) -> Iterator[Notice]:
+def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
     """Notices on recordings that begin together in the case, but not by their stamps."""
     recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
     recorded.sort(key=_clock_at_start)
     for later in recorded[1:]:
-        apart = _clock_at_start(later) - _clock_at_start(recorded[0])
-        if apart > SKEW and not later.timing.says_start:
-            start = f"{apart / later.timing.rate:.6g}"
+        delay = _clock_at_start(later) - _clock_at_start(recorded[0])
+        if delay > SKEW and not later.timing.says_start:
+            start = f"{delay / later.timing.rate:.6g}"
             text = (
                 f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} begins {start} s after "
                 f"that of {recorded[0].robot.name!r}, but it is taken from 0 s; beside its file, "
                 f"`start: {start}` keeps the delay and `start: 0` drops it"
             )
-            by_chance = apart <= max(_usual_interval(later), _usual_interval(recorded[0]))
+            by_chance = delay <= max(_usual_interval(later), _usual_interval(recorded[0]))
             yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
 
 

@@ -24,10 +24,10 @@ LARGE_SLIDE = 100.0
 """[m] No slide is so long; in millimetres it is usual."""
 
 TOO_FAST = 10.0
-"""Velocities that mean ten times the way of the positions: degrees are 57 times radians, millimetres 1000."""
+"""Velocities that mean ten times the travel of the positions: degrees are 57 times radians, millimetres 1000."""
 
-LEAST_WAY = 1e-3
-"""[rad or m] A way below this is rest, and says nothing about units."""
+LEAST_TRAVEL = 1e-3
+"""[rad or m] Travel below this is rest, and says nothing about units."""
 
 CREEP_TURN, CREEP_SLIDE = 4e-3, 4e-4
 """[rad/s], [m/s] Where no joint is ever faster, time is in milliseconds: arms move at 0.1 to 4 rad/s and slides at
@@ -45,11 +45,11 @@ def notices_on_motion(
     Args:
         before: what stands before the names of joints. extents: `joint_extents`, where they are known.
     """
-    told = [*_odd_velocities(placed, before), *_creeping(placed, before)]
+    texts = [*_odd_velocities(placed, before), *_creeping(placed, before)]
     extents = joint_extents(placed) if extents is None else extents
     return [
         *notices_on_positions(_as_given(placed, extents), before),
-        *_suspect(told),
+        *_suspect(texts),
         *_way_in(placed),
     ]
 
@@ -97,8 +97,8 @@ def largest_usual(joint: Joint) -> float:
     return LARGE_TURN if turns(joint) else LARGE_SLIDE
 
 
-def _suspect(told: Sequence[str]) -> list[Notice]:
-    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+def _suspect(texts: Sequence[str]) -> list[Notice]:
+    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
 
 
 def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
@@ -108,35 +108,35 @@ def _large_positions(extents: Sequence[JointExtent], before: str) -> list[str]:
         greatest = max(abs(low), abs(high))
         if greatest > largest_usual(joint):
             (angles if turns(joint) else lengths).append((greatest, before + joint.name))
-    told = []
+    texts = []
     for large, unit, hint in (
         (angles, "rad", "angles are in radians, is this degrees?"),
         (lengths, "m", "lengths are in metres, is this millimetres?"),
     ):
         large.sort(key=lambda item: -item[0])
         goes = listed([f"joint {name!r} goes to {greatest:g} {unit}" for greatest, name in large])
-        told += [f"{goes}; {hint}"] if goes else []
-    return told
+        texts += [f"{goes}; {hint}"] if goes else []
+    return texts
 
 
 def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
-    """Velocities that mean a way that is many times what the positions go."""
+    """Velocities whose travel is many times that of the positions."""
     asked = placed.given_trajectory
     if asked.velocities is None:
         return []
     joints = _moving(placed)
-    told = []
+    odd = []
     for i, name in enumerate(asked.joint_names):
         speed = np.abs(asked.velocities[:, i])
         gone = float(np.abs(np.diff(asked.positions[:, i])).sum())
         meant = float((0.5 * (speed[1:] + speed[:-1]) * np.diff(asked.times)).sum())
-        if meant > TOO_FAST * max(gone, LEAST_WAY):
-            told.append((joints[name], meant, gone))
-    if not told:
+        if meant > TOO_FAST * max(gone, LEAST_TRAVEL):
+            odd.append((joints[name], meant, gone))
+    if not odd:
         return []
-    joint, meant, gone = told[0]
+    joint, meant, gone = odd[0]
     unit, other = ("rad/s", "degrees/s") if turns(joint) else ("m/s", "mm/s")
-    others = listed([repr(before + other_joint.name) for other_joint, *_ in told[1:]])
+    others = listed([repr(before + other_joint.name) for other_joint, *_ in odd[1:]])
     return [
         f"the velocities of joint {before + joint.name!r} mean a way of {meant:.3g} where its positions go "
         f"{gone:.3g}"
@@ -152,11 +152,11 @@ def _creeping(placed: PlacedRobot, before: str) -> list[str]:
     moves = False
     for i, name in enumerate(asked.joint_names):
         turning = turns(joints[name])
-        least_way, creep = (LEAST_TURN, CREEP_TURN) if turning else (LEAST_SLIDE, CREEP_SLIDE)
-        way, speed = _way_and_speed(asked, i)
+        least_travel, creep = (LEAST_TURN, CREEP_TURN) if turning else (LEAST_SLIDE, CREEP_SLIDE)
+        travel, speed = _travel_and_speed(asked, i)
         if speed * placed.timing.rate > creep:
             return []
-        moves = moves or way > least_way
+        moves = moves or travel > least_travel
     if not moves:
         return []
     length = float(asked.times[-1] - asked.times[0]) / placed.timing.rate
@@ -167,7 +167,7 @@ def _creeping(placed: PlacedRobot, before: str) -> list[str]:
     ]
 
 
-def _way_and_speed(asked: Trajectory, i_column: int) -> tuple[float, float]:
+def _travel_and_speed(asked: Trajectory, i_column: int) -> tuple[float, float]:
     """How far a joint goes in sum [rad or m], and the greatest mean speed between two samples."""
     ways = np.abs(np.diff(asked.positions[:, i_column]))
     return float(ways.sum()), float((ways / np.diff(asked.times)).max(initial=0.0))

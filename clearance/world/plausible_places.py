@@ -27,11 +27,11 @@ class Place(NamedTuple):
     """About where something is.
 
     Attributes:
-        pose: (4, 4) in the world [m], at one time. way: [m] its origin is no farther from there at any other.
+        pose: (4, 4) in the world [m], at one time. travel: [m] its origin is no farther from there at any other.
     """
 
     pose: np.ndarray
-    way: float
+    travel: float
 
 
 def odd_places(case: Case) -> list[str]:
@@ -45,16 +45,16 @@ def odd_places(case: Case) -> list[str]:
         near = any(gap <= FAR * max(1.0, reach) for gap, reach in zip(gaps, reaches, strict=True))
         if not near and min(gaps) > min(HALL, WALL * length_of(obstacle.body)):
             far.append((min(gaps), obstacle.name))
-    return _told(case, greatest(far), bases) if far else []
+    return _in_words(case, greatest(far), bases) if far else []
 
 
-def _told(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> list[str]:
+def _in_words(case: Case, far: list[tuple[float, str]], bases: list[Place]) -> list[str]:
     base = max(float(np.abs(place.pose[:3, 3]).max()) for place in bases)
     hint = "lengths are in metres, is this millimetres?"
     whose = "the robot's base" if len(bases) == 1 else "every robot's base"
     if len(far) == len(case.obstacles) and base > FAR:
-        apart = f"{metres(far[-1][0])} m from the nearest obstacle"
-        return [f"{whose} stands {metres(base)} m away, {apart}; {hint}"]
+        gap_text = f"{metres(far[-1][0])} m from the nearest obstacle"
+        return [f"{whose} stands {metres(base)} m away, {gap_text}; {hint}"]
     stand = [f"obstacle {name!r} stands {metres(gap)} m away from {whose}" for gap, name in far]
     return [f"{listed(stand)}; {hint}"]
 
@@ -69,7 +69,7 @@ def _gap(obstacle: Obstacle, place: Place, base: Place) -> float:
         gap = float(
             np.linalg.norm(local) - np.linalg.norm(obstacle.body.shape.bounds, axis=1).max()
         )
-    return gap - place.way - base.way
+    return gap - place.travel - base.travel
 
 
 def _robot_place(case: Case, i_robot: int) -> Place:
@@ -85,13 +85,13 @@ def _obstacle_place(case: Case, i_obstacle: int) -> Place:
     if obstacle.mount is not None:
         below = _mounted(case, obstacle.mount)
     carriers = [carry.by for carry in case.carries if carry.part == obstacle.name]
-    way = below.way if not carriers else np.inf
+    travel = below.travel if not carriers else np.inf
     if obstacle.moves is None:
-        return Place(below.pose, way)
+        return Place(below.pose, travel)
     positions, own = obstacle.moves.positions, np.eye(4)
     own[:3, 3] = positions[0]
     travelled = float(np.linalg.norm(positions - positions[0], axis=1).max())
-    return Place(below.pose @ own, way + travelled)
+    return Place(below.pose @ own, travel + travelled)
 
 
 def _mounted(case: Case, mount: Mount) -> Place:
@@ -99,5 +99,5 @@ def _mounted(case: Case, mount: Mount) -> Place:
     is_obstacle, i = owner_of(case, mount)
     mount = resolved_mount(case, mount)
     below = _obstacle_place(case, i) if is_obstacle else _robot_place(case, i)
-    way = below.way + (0.0 if is_obstacle else chain_of(case.robots[i]))
-    return Place(below.pose @ mount.pose, way)
+    travel = below.travel + (0.0 if is_obstacle else chain_of(case.robots[i]))
+    return Place(below.pose @ mount.pose, travel)

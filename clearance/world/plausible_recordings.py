@@ -34,8 +34,8 @@ def notices_on_holes(placed: PlacedRobot, before: str = "") -> list[Notice]:
         holes = [hole for hole in placed.given_trajectory.holes if hole.means == means]
         if holes:
             holes.sort(key=lambda hole: hole.start - hole.end)
-            told = listed([hole.text for hole in holes], 1)
-            text = text.format(whose=f" of robot {about!r}" if before else "", holes=told)
+            holes_text = listed([hole.text for hole in holes], 1)
+            text = text.format(whose=f" of robot {about!r}" if before else "", holes=holes_text)
             severity = Severity.SUSPECT if means is None else Severity.WARNING
             found.append(Notice(severity, "gaps", text, about))
     return found

@@ -1,4 +1,4 @@
-"""Bodies that look like millimetres: extents held against the robot's reach.
+"""Bodies that look like millimetres: extents compared with the robot's reach.
 
 Not for: where they stand (`plausible_places`), and bodies beyond all bounds (`reach`), which are refused.
 """
@@ -30,29 +30,29 @@ RATIO = 200.0
 unit: millimetres are 1000. Of 69 robots no mesh is shorter than 1/43 of the reach."""
 
 LONG_MESH, SHORT_MESH = 50.0, 0.01
-"""[-] Parts of the reach from and up to which a mesh is also held against the other obstacles."""
+"""[-] Parts of the reach from and up to which a mesh is also compared with the other obstacles."""
 
 FAR_ORIGIN = 20.0
 """[m] No joint is as far from the one before, and no shape from its link; 20 mm is usual."""
 
 
 def notices_on_sizes(case: Case) -> list[Notice]:
-    """What of the bodies and places of a case looks like another unit."""
+    """Bodies and places of a case that look like another unit."""
     return list(_notices(case, tuple(map(slides_of, case.robots))))
 
 
 @once_a_cell(16)
 def _notices(case: Case, slides: tuple) -> tuple[Notice, ...]:
-    """The same; of the motion only `slides`, as `slides_of` tells them, has a say."""
-    told: list[str] = []
+    """The same; of the motion only `slides` counts, as `slides_of` returns them."""
+    texts: list[str] = []
     for placed in case.robots:
         before = case.prefix_of(placed)
-        told += _odd_origins(placed, before)
-        told += _odd_links(placed, before)
-    if not told:  # a robot that is odd itself is no measure for others
+        texts += _odd_origins(placed, before)
+        texts += _odd_links(placed, before)
+    if not texts:  # a robot that is odd itself is no measure for others
         reaches = [reach_of(placed) for placed in case.robots]
-        told = [*_odd_obstacles(case.obstacles, reaches), *odd_places(case)]
-    return tuple(Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told)
+        texts = [*_odd_obstacles(case.obstacles, reaches), *odd_places(case)]
+    return tuple(Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts)
 
 
 def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:
@@ -92,10 +92,10 @@ def _odd_links(placed: PlacedRobot, before: str) -> list[str]:
             long.append((length, text))
         elif _is_mesh(body) and length * RATIO <= reach:
             tiny.append((-length, text))
-    return _lengths_told(long, tiny, reach)
+    return _lengths_in_words(long, tiny, reach)
 
 
-def _lengths_told(
+def _lengths_in_words(
     long: list[tuple[float, str]], tiny: list[tuple[float, str]], reach: float
 ) -> list[str]:
     return [
@@ -122,7 +122,7 @@ def _odd_obstacles(obstacles: Sequence[Obstacle], reaches: Sequence[float]) -> l
             large.append((lengths[i], text))
         elif _is_small(obstacle.body, lengths[i], others, least):
             small.append((-lengths[i], text))
-    return _lengths_told(large, small, least)
+    return _lengths_in_words(large, small, least)
 
 
 def _is_large(body: Body, length: float, others: list[float], reach: float) -> bool:

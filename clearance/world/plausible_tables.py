@@ -22,18 +22,18 @@ HALF_TURN = 2e-3
 
 
 def notices_on_tables(case: Case) -> list[Notice]:
-    """What of the tables of obstacles looks like another unit, or is not said in them."""
-    told, halves = [], []
+    """Tables of obstacles that look like another unit, or leave a turn open."""
+    texts, halves = [], []
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
-            told += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
+            texts += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
             halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
-    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
     return [*notices, *(Notice(Severity.SUSPECT, WRAP, text) for text in halves)]
 
 
 def _half_turns(what: str, table: PoseTable) -> list[str]:
-    """That a body turns by half a turn in a step, which is as far either way round."""
+    """Notice of half a turn of a body in a step, which is as far either way round."""
     cosines = np.abs((table.quaternions[1:] * table.quaternions[:-1]).sum(axis=1))
     steps = np.flatnonzero(2.0 * cosines < HALF_TURN)
     if not len(steps):
@@ -46,17 +46,19 @@ def _half_turns(what: str, table: PoseTable) -> list[str]:
 
 
 def _odd(what: str, table: PoseTable) -> list[str]:
-    told = []
+    texts = []
     travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
     if travel > LARGE_TRAVEL:
-        told.append(f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?")
+        texts.append(
+            f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"
+        )
     if _creeps(table):
         length = float(table.times[-1] - table.times[0]) / table.timing.rate
-        told.append(
+        texts.append(
             f"{what} moves no faster than {CREEP_SLIDE * 1000:g} mm/s and {CREEP_TURN:g} rad/s in {length:g} s; "
             "times are in seconds, is this milliseconds?"
         )
-    return told
+    return texts
 
 
 def _creeps(table: PoseTable) -> bool:
@@ -64,8 +66,8 @@ def _creeps(table: PoseTable) -> bool:
     if len(table) < 2:
         return False
     ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
-    apart = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
-    turns = 4.0 * np.arcsin(np.minimum(1.0, apart / 2.0))
+    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+    turns = 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
     lengths = np.diff(table.times) / table.timing.rate
     slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
     return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))

@@ -85,10 +85,10 @@ class PoseTable:
 
 
 def require_samples_to_loop(n_samples: int, timing: Timing) -> None:
-    """Nothing, if a table can be followed as it is asked to be.
+    """Nothing, if a table can be followed as its timing says.
 
     Raises:
-        BadTime: one sample where `loop` is asked.
+        BadTime: one sample with `loop`.
     """
     if timing.after == "loop" and n_samples < 2:
         raise BadTime("one sample where `after: loop` is asked", valid="two samples or more")

@@ -22,8 +22,8 @@ MOST_SAMPLES = 1_000_000
 """Most samples of a trajectory: an acceleration in the wrong unit needs more."""
 
 ROUNDING = 2.0**-42
-"""What rounding of a sample's position and velocity does to the path, relative to the sum of a quintic's terms:
-each coefficient is at most 15 of it and right to 5 roundings, Horner's rule takes 10 more: some 1,300 in sum."""
+"""The effect on the path of rounding a sample's position and velocity, relative to the sum of a quintic's terms:
+each coefficient is at most 15 of it and right to 5 roundings, Horner's rule needs 10 more: some 1,300 in sum."""
 
 
 class Quintics(NamedTuple):
@@ -64,8 +64,8 @@ def with_accelerations(asked: Trajectory, accelerations: np.ndarray) -> Trajecto
 
     Exactness: `path_error` is proven, rounding of samples included.
     Raises:
-        BadShape: more than `MOST_SAMPLES`. BadDimension: an acceleration that takes its joint out of all bounds.
-            BadTime: doubles cannot hold the samples apart.
+        BadShape: more than `MOST_SAMPLES`. BadDimension: an acceleration that moves its joint out of all bounds.
+            BadTime: the samples round to the same double.
     """
     assert asked.velocities is not None
     _refuse_large(asked, accelerations)

@@ -27,7 +27,7 @@ ROOT_3 = 3.0**0.5
 """How much farther than along an axis a point of a cube is from its middle."""
 
 AT_ONCE = 1024
-"""Samples that are looked at together."""
+"""Samples that are read together."""
 
 
 def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
@@ -52,7 +52,7 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
             )
 
 
-@lru_cache(maxsize=16)  # asked for again by each section of a phase
+@lru_cache(maxsize=16)  # needed again by each section of a phase
 def _reaches(case: Case, motions: tuple[Motion, ...]) -> list[tuple[str, float]]:
     """Each body by name, and how far it gets from the origin along an axis at most [m]."""
     return list(_each_reach(case, motions))
@@ -89,13 +89,13 @@ class _Frames:
         self._case, self._motions, self._origins = case, motions, _origins(case)
 
     def of_robot(self, i: int) -> float:
-        """Of all links of a robot."""
+        """For all links of a robot."""
         placed = self._case.robots[i]
         base = _farthest_along(placed.world_from_base)
         return base + _slide(self._motions[i]) + self._below(placed.mount)
 
     def of_obstacle(self, i: int) -> float:
-        """Of an obstacle, whoever has carried it."""
+        """For an obstacle, whoever has carried it."""
         obstacle = self._case.obstacles[i]
         own = self._origins[i]
         if obstacle.moves is not None:
@@ -103,7 +103,7 @@ class _Frames:
         return own + self._below(obstacle.mount)
 
     def _below(self, mount: Mount | None) -> float:
-        """Of what stands on a mount: no axis of it is longer than the sum of a shift's magnitudes."""
+        """For a body on a mount: no axis of it is longer than the sum of a shift's magnitudes."""
         if mount is None:
             return 0.0
         is_obstacle, i = owner_of(self._case, mount)
@@ -130,17 +130,17 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
         if name not in columns:
             continue
         if not abs(factor) * farthest[columns[name]] <= TURNS * 2.0 * np.pi:
-            way = abs(factor) * _ways(moves, slice(None))[:, columns[name]]
-            i = int(np.argmax(way))
+            turn = abs(factor) * _ways(moves, slice(None))[:, columns[name]]
+            i = int(np.argmax(turn))
             raise BadDimension(
-                f"joint {joint.name!r} turns by {way[i]:g} rad between {moves.times[i]:g} s and "
+                f"joint {joint.name!r} turns by {turn[i]:g} rad between {moves.times[i]:g} s and "
                 f"{moves.times[i + 1]:g} s",
                 valid=f"{TURNS:g} turns or less from sample to sample; angles are in radians",
             )
 
 
 def _longest_ways(moves: Motion | Trajectory) -> np.ndarray:
-    """(k,) [rad or m] the longest of each joint's `_ways`, looked at a stretch at a time."""
+    """(k,) [rad or m] the longest of each joint's `_ways`, a stretch at a time."""
     longest = np.zeros(moves.positions.shape[1])
     for start in range(0, len(moves.times), AT_ONCE):
         ways = _ways(moves, slice(start, start + AT_ONCE + 1))
@@ -172,19 +172,19 @@ def length_of_robot(motion: Motion) -> float:
 
 
 def _slide(motion: Motion) -> float:
-    """[m] how far the sliding joints go, and the frames of the joints are apart, in sum."""
+    """[m] the sum of the travel of sliding joints and of the distances between the frames of joints."""
     robot = motion.placed.robot
-    apart = _between_joints(robot)
+    distances = _between_joints(robot)
     columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
     slides = [one for one in followers(robot) if one.joint.kind is JointKind.PRISMATIC]
-    return apart + sum(
+    return distances + sum(
         abs(one.factor) * _farthest(motion, columns[one.master]) + abs(one.offset) for one in slides
     )
 
 
 @lru_cache(maxsize=8)
 def _between_joints(robot: Robot) -> float:
-    """[m] how far the frames of the joints are apart, in sum."""
+    """[m] the sum of the distances between the frames of joints."""
     return sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
 
 

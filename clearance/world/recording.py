@@ -1,4 +1,4 @@
-"""What a robot really did, held against what it was commanded. Not for: reading one (`load.case.recorded_run`)."""
+"""A robot's measured motion, compared with the commanded one. Not for: reading one (`load.case.recorded_run`)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 
 SHARE = 99.0
-"""[%] Of the samples, how many are no farther off than what is told beside the greatest error."""
+"""[%] The share of samples within the error that is reported besides the greatest."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def recording_of(
     timing: Timing,
     resting: Mapping[str, float],
 ) -> Recording:
-    """A recording held against what was commanded, at the samples of both while both are known.
+    """A recording compared with the commanded motion, at the samples of both while both are known.
 
     Where joints move linearly between samples in both, the greatest error is at one of these.
 

@@ -14,7 +14,7 @@ from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.notice import Notice
 
 WORLD_LINK = "world"
-"""A root link that is called so holds what stands around the robot in its own file, as a floor and walls."""
+"""A root link of this name is the surroundings of the robot in its own file: floor and walls."""
 
 
 class JointKind(StrEnum):
@@ -73,7 +73,7 @@ class Robot:
         notices: suspect input and warnings that only loading can find.
         own_matrix: which pairs of links the robot's own file excuses, and why; None where it says nothing of them.
         states: positions of joints [rad] or [m] that its own file names, by the state's name and the joint's.
-        reference: those at which its own file has it, by joint; those that are left out are 0.
+        reference: those at which its own file has it, by joint; the others are 0.
     """
 
     name: str

@@ -1,6 +1,6 @@
 """Which pairs may come how close, and which may touch: rows of patterns, times and carried parts.
 
-Not for: which pairs there are (`pairs`), and what a clearance is held against (`case.Limits`).
+Not for: which pairs there are (`pairs`), and the limits of a clearance (`case.Limits`).
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from clearance.errors import BadDimension, BadInput
 from clearance.world.timing import ALWAYS, Window
 
 DEFAULT = "default"
-"""The name of the limits that hold where no rule does."""
+"""The name of the limits that apply where no rule does."""
 
 
 def matches(name: str, pattern: str) -> bool:
-    """True if `pattern` is the name itself (which may hold `[`, `*` or `?`) or a wildcard for it."""
+    """True if `pattern` is the name itself (which may contain `[`, `*` or `?`) or a wildcard for it."""
     return name == pattern or fnmatchcase(name, pattern)
 
 
 def pattern_of(name: str) -> str:
-    """The pattern that is of this name alone, whatever wildcards the name holds."""
+    """The pattern that matches this name alone, whatever wildcards the name contains."""
     return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)
 
 
@@ -41,7 +41,7 @@ class PairPattern:
     while_carried: str | None = None
 
     def is_active(self, start: float, end: float, carried: Collection[str]) -> bool:
-        """True if it holds from `start` to `end` [s], between which no window begins or ends."""
+        """True if it applies from `start` to `end` [s], between which no window begins or ends."""
         if self.while_carried is not None and self.while_carried not in carried:
             return False
         return self.window.holds(start, end)
@@ -59,10 +59,10 @@ class PairPattern:
 
     @property
     def when(self) -> str:
-        """When it holds, in words; empty for always."""
-        told = [str(self.window)] if self.window.ends else []
-        told += [f"while {self.while_carried} is carried"] if self.while_carried else []
-        return " ".join(told)
+        """When it applies, in words; empty for always."""
+        words = [str(self.window)] if self.window.ends else []
+        words += [f"while {self.while_carried} is carried"] if self.while_carried else []
+        return " ".join(words)
 
 
 @dataclass(frozen=True)
@@ -79,11 +79,11 @@ class Rule(PairPattern):
 
     Attributes:
         name: for tables.
-        fail: as in `case.Limits`; None for the one that holds without a rule. warn: as `fail` where it is None.
+        fail: as in `case.Limits`; None for the one that applies without a rule. warn: as `fail` where it is None.
 
     Raises:
         BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. BadInput: the name of the
-            limits that hold without a rule.
+            limits that apply without a rule.
     """
 
     name: str = ""
@@ -103,7 +103,7 @@ class Rule(PairPattern):
             self.levels(self.fail)
 
     def levels(self, fail: float) -> tuple[float, float]:
-        """Its two levels [m], where `fail` is the one that holds without a rule.
+        """Its two levels [m], where `fail` is the one that applies without a rule.
 
         Raises:
             BadDimension: `warn` below `fail`.

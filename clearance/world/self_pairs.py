@@ -14,7 +14,7 @@ from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import JointKind, Robot
 
 RIGID = "joined by fixed joints"
-"""Why a pair that nothing moves is left out."""
+"""Why a pair that nothing moves is omitted."""
 
 Reasons = Callable[[str, str], str | None]
 """Why two links need not be measured, or None."""
@@ -59,8 +59,8 @@ def rigid_bodies(robot: Robot) -> dict[str, int]:
 def neighbours(robot: Robot) -> frozenset[frozenset[str]]:
     """Pairs of links with a shape that one movable joint joins, the one below the other.
 
-    Between them there may be fixed joints and links without a shape. Two links on one, and what fixed joints hold
-    beside a joint, are no neighbours: nothing keeps them apart.
+    Between them there may be fixed joints and links without a shape. Two links on one, and links on fixed
+    joints next to a joint, are no neighbours: they may meet.
     """
     solid = {body.name for body in robot.bodies}
     above = {joint.child: joint for joint in robot.joints}

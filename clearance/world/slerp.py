@@ -1,7 +1,7 @@
 """Orientations between two orientations: a turn about one axis at constant speed, the shorter way round.
 
 Orientations are quaternions (x, y, z, w) of length one to within rounding, the scalar last; q and -q are the same.
-All that asks how an orientation goes from one row of a table to the next asks here, so that there is one answer
+Every reader of a table takes the orientation between two rows from here, so that there is one answer
 also where both ways round are equally long. Not for: quaternions as users give them (`geometry.pose`).
 """
 
@@ -50,7 +50,7 @@ def arcs_between(before: np.ndarray, after: np.ndarray) -> np.ndarray:
 def aligned(quaternions: np.ndarray) -> np.ndarray:
     """(n, 4) the same orientations with signs that make neighbours nearest; the first keeps its own.
 
-    What is aligned stays as it is. Ties: at a right angle the sign goes with that of the row before.
+    Aligned quaternions stay as they are. Ties: at a right angle the sign goes with that of the row before.
     """
     flips = np.where(_dots(quaternions[:-1], quaternions[1:]) < 0.0, -1.0, 1.0)
     return (

@@ -2,7 +2,7 @@
 
 Steps are the union of all sample times, and of the ends of all windows. In a phase the case is a plain one: what
 is carried rides on what carries it, and every table has a sample at every step. Where two phases meet, the step
-belongs to both, as it is come to and as it is left. Not for: where an actor is between its samples (`knots`).
+belongs to both, with its values before and after. Not for: where an actor is between its samples (`knots`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from clearance.world.phase import Phase
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
 
-LEFT_OUT = "after: absent, or gaps: not_measured"
+NOT_THERE = "after: absent, or gaps: not_measured"
 """Why an actor may not be there."""
 
 
@@ -37,7 +37,7 @@ class Timeline:
     """A case over time.
 
     Attributes:
-        motions: of the robots at all steps; where two phases meet, as they are left.
+        motions: of the robots at all steps; where two phases meet, after the jump.
         phases: in order of time; each begins where the one before ends.
     """
 
@@ -62,13 +62,13 @@ class Timeline:
 
 @dataclass(frozen=True, eq=False)
 class _Table:
-    """What one actor is asked to do.
+    """The commanded motion of one actor.
 
     Attributes:
         knots: those of the whole run; one where it stands.
         once: [s] the first and the last time of its own samples.
         moves: False where it stands, and so says nothing of when the run begins and ends.
-        not_measured: stretches of the run in which it is left out as if it were not in the cell.
+        not_measured: stretches of the run in which it is omitted as if it were not in the cell.
     """
 
     knots: Knots
@@ -120,7 +120,7 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
             frozenset(i for i, table in enumerate(robots) if table.is_absent(here)),
             frozenset(i for i, table in obstacles.items() if table.is_absent(here)),
         )
-        plain = _with_taken_present(plain, phases)
+        plain = _with_carried_present(plain, phases)
         _require_carried_present(plain)
         phases.append(_with_absent(with_parts(plain, phases)))
         _require_carriers_present(phases[-1], end)
@@ -139,16 +139,16 @@ def _require_parts(case: Case) -> None:
             require_known(case, carry.by)
 
 
-def _with_taken_present(phase: Phase, before: Sequence[Phase]) -> Phase:
+def _with_carried_present(phase: Phase, before: Sequence[Phase]) -> Phase:
     """The phase with the parts that have been picked up, whose own tables say nothing from then on."""
     if not phase.absent_obstacles:
         return phase
-    taken = {part for then in before for part in then.carried}
+    carried = {part for then in before for part in then.carried}
     if before:
         names = [obstacle.name for obstacle in phase.case.obstacles]
         gone = {names[i] for i in before[-1].absent_obstacles}
-        taken |= phase.carried.keys() - gone
-    absent = (i for i in phase.absent_obstacles if phase.case.obstacles[i].name not in taken)
+        carried |= phase.carried.keys() - gone
+    absent = (i for i in phase.absent_obstacles if phase.case.obstacles[i].name not in carried)
     return replace(phase, absent_obstacles=frozenset(absent))
 
 
@@ -163,7 +163,7 @@ def _require_carried_present(phase: Phase) -> None:
         if carry is not None:
             start, end = phase.span
             raise BadTime(
-                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s ({LEFT_OUT})",
+                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s ({NOT_THERE})",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window in which it is, or after: hold",
             )
@@ -186,7 +186,7 @@ def _require_carriers_present(phase: Phase, end: float) -> None:
         if start == carry.window.start or until == carry.window.end < end:
             deed = "picks up" if start == carry.window.start else "lets go of"
             raise BadTime(
-                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s ({LEFT_OUT}), and {deed} part "
+                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s ({NOT_THERE}), and {deed} part "
                 f"{carry.part!r} then",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window at whose ends it is, or after: hold",
@@ -199,13 +199,13 @@ def _of_robot(motion: Motion) -> _Table:
     if rates is not None and timing.rate != 1.0:
         rates = rates * timing.rate
     knots = knots_of(timing.run_times(motion.times), motion.positions, rates)
-    left_out = asked.not_measured if asked is not None else ()
-    if left_out and timing.after == "loop":
+    not_measured = asked.not_measured if asked is not None else ()
+    if not_measured and timing.after == "loop":
         raise BadInput(
             f"the recording of robot {motion.placed.robot.name!r} has holes and repeats (after: loop)",
             valid="after: hold, or gaps: hold or linear",
         )
-    spans = (timing.run_times(np.array(window.ends)) for window in left_out)
+    spans = (timing.run_times(np.array(window.ends)) for window in not_measured)
     windows = tuple(Window(*map(float, span)) for span in spans)
     return _Table(knots, _ends(knots), timing, asked is not None, windows)
 

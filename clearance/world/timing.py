@@ -10,7 +10,7 @@ import numpy as np
 from clearance.errors import BadInput, BadTime
 
 AFTER = ("hold", "loop", "absent")
-"""What an actor does after its last sample: it stays there, begins again, or is not in the cell, which it is not
+"""After its last sample an actor stays there, begins again, or is not in the cell, which it is not
 before its first sample either."""
 
 
@@ -21,7 +21,7 @@ class Timing:
     Attributes:
         start: [s] the run's time at the table's time 0.
         rate: how many seconds of the table pass in one of the run; 0.5 is half as fast.
-        after: one of `AFTER`. Before its first sample an actor holds, unless it is absent.
+        after: one of `AFTER`. Before its first sample an actor stays there, unless it is absent.
         said: those of "start" and "after" that are given though they are as by default.
 
     Raises:
@@ -57,14 +57,14 @@ class Timing:
         """(n,) [s] the run's times of a table's times; the same array where nothing changes.
 
         Raises:
-            BadTime: they no longer increase, since doubles cannot hold them apart.
+            BadTime: they no longer increase, since they round to the same double.
         """
         if self.start == 0.0 and self.rate == 1.0:
             return times
         with np.errstate(over="ignore", invalid="ignore"):
             found = self.start + times / self.rate
-            apart = np.diff(found) > 0.0
-        if not (np.isfinite(found).all() and apart.all()):
+            increases = np.diff(found) > 0.0
+        if not (np.isfinite(found).all() and increases.all()):
             raise BadTime(
                 f"times from {times[0]:g} s to {times[-1]:g} s cannot begin at {self.start:g} s and go "
                 f"{self.rate:g} times as fast",
@@ -104,9 +104,9 @@ class Window:
         return self.start <= start and end <= self.end
 
     def __str__(self) -> str:
-        told = [f"from {self.start:g} s"] if math.isfinite(self.start) else []
-        told += [f"until {self.end:g} s"] if math.isfinite(self.end) else []
-        return " ".join(told)
+        words = [f"from {self.start:g} s"] if math.isfinite(self.start) else []
+        words += [f"until {self.end:g} s"] if math.isfinite(self.end) else []
+        return " ".join(words)
 
 
 ALWAYS = Window()

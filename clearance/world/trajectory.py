@@ -1,4 +1,4 @@
-"""What a robot is asked to do: joint positions over time."""
+"""The commanded motion of a robot: joint positions over time."""
 
 from __future__ import annotations
 
@@ -71,10 +71,10 @@ class Trajectory:
         began: [s] the clock of a recording's messages at its time 0; None for what has no such clock.
         points: the file's own samples, where it has accelerations; None where they are all.
         holes: stretches of a recording in which it was not known where joints were.
-        given_extents: (2, k) the least and greatest position before whole turns were taken off, if any were.
+        given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
         wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
-            With the shortest way, a `PlacedRobot` takes whole turns off.
+            With the shortest way, a `PlacedRobot` subtracts whole turns.
 
     Raises:
         BadShape, NotFinite: not one finite number for each time and joint. BadTime: times that do not increase.
@@ -109,19 +109,19 @@ class Trajectory:
         """Number of samples."""
         return len(self.times)
 
-    def of_columns(self, kept: Sequence[int]) -> Trajectory:
+    def of_columns(self, columns: Sequence[int]) -> Trajectory:
         """The same of some of its joints, by their columns."""
-        velocities = None if self.velocities is None else self.velocities[:, kept]
-        names = tuple(self.joint_names[i] for i in kept)
+        velocities = None if self.velocities is None else self.velocities[:, columns]
+        names = tuple(self.joint_names[i] for i in columns)
         points = self.points
         if points is not None:
             values = (points.positions, points.velocities, points.accelerations)
-            points = Points(points.times, *(one[:, kept] for one in values))
-        extents = None if self.given_extents is None else self.given_extents[:, kept]
+            points = Points(points.times, *(one[:, columns] for one in values))
+        extents = None if self.given_extents is None else self.given_extents[:, columns]
         return replace(
             self,
             joint_names=names,
-            positions=self.positions[:, kept],
+            positions=self.positions[:, columns],
             velocities=velocities,
             points=points,
             given_extents=extents,
@@ -134,14 +134,14 @@ class Trajectory:
 
     @property
     def not_measured(self) -> tuple[Window, ...]:
-        """The stretches of its time [s] that are left out."""
+        """The stretches of its time [s] that are not measured."""
         return tuple(Window(one.start, one.end) for one in self.holes if one.means == NOT_MEASURED)
 
     def shifted(self, seconds: float) -> Trajectory:
         """The same, some seconds later.
 
         Raises:
-            BadTime: doubles cannot hold its times apart.
+            BadTime: two of its times round to the same double.
         """
         timing, own = Timing(start=seconds), self.points
         times = timing.run_times(self.times)

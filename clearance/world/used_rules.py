@@ -13,7 +13,7 @@ _Names = tuple[Sequence[str], Sequence[str]]
 """The names that the two bodies of a pair go by."""
 
 
-def require_rules_used(case: Case, pairs: Iterable[Pair], left_out: Iterable[Omission]) -> None:
+def require_rules_used(case: Case, pairs: Iterable[Pair], omitted: Iterable[Omission]) -> None:
     """Nothing, if every rule is of a pair, and what a row says is carried is.
 
     Args:
@@ -26,7 +26,7 @@ def require_rules_used(case: Case, pairs: Iterable[Pair], left_out: Iterable[Omi
     if not case.limits.rules:
         return
     found: list[_Names] = [(names_of(case, pair.a), names_of(case, pair.b)) for pair in pairs]
-    found += [((one.link,), (one.obstacle,)) for one in left_out if one.obstacle != "*"]
+    found += [((one.link,), (one.obstacle,)) for one in omitted if one.obstacle != "*"]
     bodies = sorted({name for pair in found for body in pair for name in body})
     for i, rule in enumerate(case.limits.rules):
         with at(f"limits.rules[{i}].between"):

@@ -1,6 +1,6 @@
 """Waivers: who lets which two bodies come nearer than a rule says, how near, why and until when.
 
-Not for: whether a run needs one and keeps to it (`findings.judgement`), nor their files (`load.case.waiver_file`).
+Not for: whether a run needs one and meets it (`findings.judgement`), nor their files (`load.case.waiver_file`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ class Waiver(PairPattern):
     """A limit of its own for two bodies, below that of their rule; of contact there is none.
 
     Attributes:
-        at_least: [m] what they must keep. reason: why that will do. by: who says so.
-        until: the last day that it holds. case, rule: patterns of the names of cases and rules; "*" for all.
+        at_least: [m] the clearance that they must keep. reason: why that suffices. by: who says so.
+        until: the last valid day. case, rule: patterns of the names of cases and rules; "*" for all.
         where: its file and row, for messages. shared: given for many cases at once, and not all of them need it:
             whether any does is for whoever gives it to say, and no case fails by that it does not.
 

@@ -50,7 +50,7 @@ def wrapping_joints(robot: Robot) -> frozenset[str]:
 
 
 def whole_turns(positions: np.ndarray) -> np.ndarray:
-    """(n,) whole turns to be taken off each position [rad], so that no step is more than half a turn."""
+    """(n,) whole turns to subtract from each position [rad], so that no step is more than half a turn."""
     return np.concatenate(([0.0], np.cumsum(_whole_turns(np.diff(positions)))))
 
 
@@ -62,7 +62,7 @@ def long_steps(robot: Robot, asked: Trajectory) -> list[LongStep]:
 def meant(robot: Robot, asked: Trajectory) -> Trajectory:
     """The trajectory with its continuous joints going the shortest way, if `wrap` says so; else unchanged.
 
-    Exactness: whole turns are taken off, each to the rounding of a position.
+    Exactness: whole turns are subtracted, each to the rounding of a position.
     """
     if asked.wrap != SHORTEST:
         return asked
@@ -91,7 +91,7 @@ def _columns(robot: Robot, asked: Trajectory) -> Iterator[tuple[int, np.ndarray]
 
 
 def _whole_turns(steps: np.ndarray) -> np.ndarray:
-    """(n,) whole turns to be taken off each of some steps [rad], so that half a turn or less is left."""
+    """(n,) whole turns to subtract from each of some steps [rad], so that half a turn or less remains."""
     beyond = (np.abs(steps) - ROUNDING) / (2.0 * np.pi) - 0.5
     return np.sign(steps) * np.maximum(np.ceil(beyond), 0.0)
 

@@ -1,6 +1,6 @@
-"""What the links of robots and the obstacles of one case must be, so that each can be meant by its name.
+"""Checks on the bodies of one case: links have surfaces, and all names are different.
 
-Not for: names of one kind (`names`), and what a case needs beside its bodies (`case`).
+Not for: names of one kind (`names`), and what else a case needs (`case`).
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def require_surfaces(robot: Robot) -> None:
             )
 
 
-def require_names_apart(robots: Sequence[Robot], obstacles: Sequence[Obstacle]) -> None:
-    """Refuses names by which links of several robots and obstacles could be taken for each other."""
+def require_distinct_names(robots: Sequence[Robot], obstacles: Sequence[Obstacle]) -> None:
+    """Refuses names that several links or obstacles share."""
     for i, robot in enumerate(robots):
         if "/" in robot.name:
             raise BadInput(
