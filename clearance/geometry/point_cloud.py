@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NoReturn, Self
+from typing import NoReturn
 
 import numpy as np
 
@@ -67,13 +67,6 @@ class PointCloud(Polyhedron):
             raise BadDimension(f"radius is {radius!r:.60}", valid="above 0 m")
         self._fill(points, np.arange(len(points) + 1), np.arange(len(points)), 0.0, 0.0)
         object.__setattr__(self, "_ball_radius", float(radius))
-
-    @classmethod
-    def _of_distinct(cls, points: np.ndarray, radius: float) -> Self:
-        """The cloud of points that are known to differ."""
-        made = cls.__new__(cls)
-        made._fill_points(points, radius)
-        return made
 
     @property
     def ball_radius(self) -> float:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadShape, BadSyntax, MissingFile, at
+from clearance.errors import BadShape, MissingFile, at
 from clearance.kernels.curve.arc import RADIUS
 from clearance.plain_yaml import plain_data
 from clearance.planar.curve import Curve
@@ -119,20 +119,6 @@ def read_outline(path: str | Path) -> DrawnOutline:
     if isinstance(document, dict) and "curves" not in document and "points" in document:
         return DrawnOutline(path.name, solved_sketch(path).curves())
     return DrawnOutline(path.name, read_curve(str(path)))
-
-
-def read_profile(path: str | Path) -> Profile:
-    """The profile of ours in a YAML file.
-
-    Raises: MissingFile, BadSyntax (also: not a profile).
-    """
-    document = yaml_of(Path(path))
-    with at(str(path)):
-        if not is_profile(document):
-            raise BadSyntax(
-                "not a profile", valid="a file by `clearance profile sweep --out FILE.yaml`"
-            )
-        return profile_of(document)
 
 
 def solved_sketch(path: str | Path) -> Sketch:

@@ -237,16 +237,11 @@ def _column(columns: dict[str, int], name: str) -> int:
 
 def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     """(n, n_links) the position of the joint above each link; 0 for the root and for fixed joints."""
-    return _by_link(robot, moving, with_offsets=True)
-
-
-def _by_link(robot: Robot, moving: np.ndarray, *, with_offsets: bool) -> np.ndarray:
-    """(n, n_links) what the moving joints' values make of each link; without offsets, what rates make of it."""
     links, columns, mimics = _moving_links(robot)
     values = np.zeros((len(moving), len(robot.link_names)))
     values[:, links] = moving[:, columns]
     for link, column, factor, offset in mimics:
-        values[:, link] = factor * moving[:, column] + (offset if with_offsets else 0.0)
+        values[:, link] = factor * moving[:, column] + offset
     return values
 
 
@@ -267,8 +262,3 @@ def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, i
             links.append(link)
             columns.append(column_of[joint.name])
     return links, columns, mimics
-
-
-def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
-    """(n, n_links) the velocity of the joint above each link from those of the moving joints."""
-    return _by_link(robot, moving, with_offsets=False)

@@ -152,12 +152,6 @@ def outline(path: Path) -> object:
     return read_outline(path)
 
 
-def profile(path: Path) -> object:
-    from clearance.profiles.outline_file import read_profile
-
-    return read_profile(path)
-
-
 def sketch(path: Path) -> object:
     from clearance.sketch import Sketch
 

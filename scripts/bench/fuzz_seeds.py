@@ -104,7 +104,7 @@ def _drawings() -> dict[str, Reader]:
     return {
         "DXF": Reader("d.dxf", shapes.dxf(), reading.by_path(reading.dxf), lines_damaged),
         "curves": Reader("c.yaml", texts.CURVES, reading.by_path(reading.curves), yaml_damaged),
-        "profile": Reader("p.yaml", texts.PROFILE, reading.by_path(reading.profile), yaml_damaged),
+        "profile": Reader("p.yaml", texts.PROFILE, reading.by_path(reading.outline), yaml_damaged),
         "outline": Reader("p.yaml", texts.PROFILE, reading.by_path(reading.outline), yaml_damaged),
         "sketch": Reader("s.yaml", sketch, reading.by_path(reading.sketch), yaml_damaged),
     }

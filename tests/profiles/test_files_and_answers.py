@@ -13,7 +13,7 @@ from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
 from clearance.load.case.case_file import load_case
 from clearance.profiles.compare import as_data, compare
 from clearance.profiles.gap import ClosedContours, proven_gap
-from clearance.profiles.outline_file import DrawnOutline, read_outline, read_profile
+from clearance.profiles.outline_file import DrawnOutline, read_outline
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
 
@@ -30,7 +30,7 @@ def profile():
 @pytest.mark.slow
 def test_our_yaml_keeps_every_bit(profile, tmp_path):
     write_profile(profile, tmp_path / "p.yaml")
-    again = read_profile(tmp_path / "p.yaml")
+    again = read_outline(tmp_path / "p.yaml").profile
     assert rows(again) == rows(profile)
     for name in ("name", "plane", "bound", "tolerance", "facets", "n_steps", "section", "notes"):
         assert getattr(again, name) == getattr(profile, name)
@@ -278,7 +278,7 @@ def test_a_profile_file_with_a_wrong_field_is_refused_by_its_name(line, said, tm
         f"format: clearance-profile-1\ncontours: [[[0, 0, 0], [1, 0, 0], [1, 1, 0]]]\n{line}\n"
     )
     with pytest.raises(BadInput) as caught:
-        read_profile(path)
+        read_outline(path)
     assert (
         said in str(caught.value)
         and "p.yaml" in str(caught.value)

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.gjk import LIMIT, VertexGraph, gjk, support
+from clearance.kernels.polytope.gjk import LIMIT, VertexGraph, gjk, hill_climb
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
 from tests.examples import some_slow
@@ -36,7 +36,7 @@ def test_hill_climbing_finds_what_looking_at_all_finds(n):
     for direction in np.random.default_rng(2).normal(size=(50, 3)):
         best = (body.vertices @ direction).max()
         for start in (0, n // 2):
-            found = support(VertexGraph(body.vertices, *body.vertex_graph), start, direction)
+            found = hill_climb(VertexGraph(body.vertices, *body.vertex_graph), start, *direction)
             assert body.vertices[found] @ direction == pytest.approx(best, abs=1e-15)
 
 

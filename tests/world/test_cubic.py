@@ -9,7 +9,12 @@ from scipy.interpolate import CubicHermiteSpline
 from clearance.errors import BadDimension, BadShape, NotFinite
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import extremes_between, positions_along
-from clearance.world.kinematics import moving_velocities, positions_by_link, velocities_by_link
+from clearance.world.kinematics import (
+    links_of_robot,
+    moving_velocities,
+    positions_by_link,
+    rates_by_link,
+)
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
@@ -66,7 +71,7 @@ def test_mimics_move_at_their_multiple_and_fixed_joints_rest():
     placed = PlacedRobot(robot, asked, fixed_positions={"c": 0.7})
     velocities = moving_velocities(placed, asked.joint_names, asked.velocities)
     assert velocities.tolist() == [[3.0, 0.0]]
-    assert velocities_by_link(robot, velocities).tolist() == [[0.0, 3.0, -6.0, 0.0]]
+    assert rates_by_link(links_of_robot(robot), velocities).tolist() == [[0.0, 3.0, -6.0, 0.0]]
     assert positions_by_link(robot, np.array([[0.5, 0.7]])).tolist() == [[0.0, 0.5, 4.0, 0.7]]
 
 

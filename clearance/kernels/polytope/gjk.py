@@ -47,12 +47,6 @@ def hill_climb(graph, v, x, y, z):
             return v
 
 
-@kernel
-def support(graph: VertexGraph, v: int, direction: Floats) -> int:
-    """The index of the vertex farthest in `direction`, climbing from vertex `v`."""
-    return hill_climb(graph, v, direction[0], direction[1], direction[2])
-
-
 @inline
 def face_coefficients(gram, members, n, shares):
     """True if the affine hull of the simplex's `members` has its least point inside; sets `shares`.

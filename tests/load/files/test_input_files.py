@@ -7,7 +7,7 @@ import pytest
 from clearance.errors import MissingFile
 from clearance.load.case.case_file import load_case
 from clearance.load.files.input_files import InputFiles, read_bytes
-from clearance.profiles.outline_file import read_outline, read_profile
+from clearance.profiles.outline_file import read_outline
 from clearance.sketch import Sketch
 from tests.load.making import PATH, write_case
 
@@ -48,6 +48,6 @@ def test_files_and_links_to_them_are_read(tmp_path):
 
 def test_sketches_and_profiles_from_pipes_are_refused(tmp_path):
     os.mkfifo(tmp_path / "s.yaml")
-    for read in (Sketch.load, read_outline, read_profile):
+    for read in (Sketch.load, read_outline):
         with pytest.raises(MissingFile, match="file"):
             read(tmp_path / "s.yaml")
