@@ -3,7 +3,6 @@
 So the search of a pair is compiled once. Not for: the search (`proof`), and which pairs are asked (`sweep`).
 """
 
-import math
 from typing import NamedTuple
 
 from clearance.compile.declared import Integers
@@ -14,11 +13,10 @@ from clearance.kernels.budget.error_rows import error_rows_of
 from clearance.kernels.budget.sweep_state import (
     BudgetScene,
     fill_body,
-    moved_of_pair,
     pose_of,
 )
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.search.front import PairFront
+from clearance.kernels.search.carried import front_of, no_front
 from clearance.kernels.search.proof import Goal, Proof, Start, prove
 
 
@@ -49,8 +47,8 @@ def prove_pair(lent: BudgetScene, look: Look, start: Start, goal: Goal, tally: I
     frames = frames_of(pose, pose_of(world, body_b, state))
     root_a, root_b = surface.roots[world.solids[body_a]], surface.roots[world.solids[body_b]]
     roots = PosedPair(surface, root_a, surface, root_b, frames)
-    moved = moved_of_pair(asked, pair) if look.goes_on else math.inf
-    front = PairFront(state.fronts, pair, moved)
+    carried = state.carried
+    front = front_of(world.pairs, pair, carried) if look.goes_on else no_front(carried)
     rows = error_rows_of(state.seen, roots, body_a, body_b)
     proof = prove(roots, rows, start, goal, front, state.scratch)
     tally[1] += 1

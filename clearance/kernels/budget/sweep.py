@@ -21,19 +21,18 @@ from clearance.kernels.budget.sweep_state import (
     answer_of,
     begin_anew,
     bound_by_boxes,
-    carried_bound,
     fill_body,
     go_on,
     go_on_to_step,
     is_answered,
     note_answer,
-    note_bound,
     start_at,
     start_before,
     thin_of,
 )
-from clearance.kernels.motion.certify import DEPTH, WIDER
+from clearance.kernels.motion.halving import prove_interval, prove_part
 from clearance.kernels.motion.interval_middle import begin_arcs
+from clearance.kernels.search.carried import carried_bound, carry
 from clearance.kernels.search.proof import Goal, allowed_gap
 
 FEW = 16
@@ -117,9 +116,10 @@ def _most_taken(lent, pair, look):
 @inline
 def _with_boxes(lent, pair, half, look, target, carried):
     """[m] the bound that is carried of a pair, or that of its boxes where it is better; then it is kept."""
+    scene = lent
     by_boxes = bound_by_boxes(lent, pair, half, look, target)
     if by_boxes > carried:
-        note_bound(lent, pair, by_boxes)
+        carry(scene.world.pairs, pair, by_boxes, scene.state.carried)
         return by_boxes
     return carried
 
@@ -127,6 +127,7 @@ def _with_boxes(lent, pair, half, look, target, carried):
 @inline
 def _at_moment(lent, look, start, target, exact_looks, tally):
     """What errors leave of a pair at a moment, looked into as far as a target [m], if that is not known."""
+    scene = lent
     left = answer_of(lent, look.pair)
     if is_answered(lent, look.pair, target):
         tally[0] += 1
@@ -136,7 +137,7 @@ def _at_moment(lent, look, start, target, exact_looks, tally):
         goal = Goal(target, math.inf, 0.0, 0.0, thin, True, False, exact_looks, refined)
         left = prove_pair(lent, look, start, goal, tally)
         note_answer(lent, look.pair, target, left)
-        note_bound(lent, look.pair, left.lower_bound)
+        carry(scene.world.pairs, look.pair, left.lower_bound, scene.state.carried)
     return left
 
 
@@ -165,9 +166,9 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
         begin_arcs(world.links, path.balls, interval)
         go_to_part(world.links, path, errors, interval, share, share, state.middle)
         if not (is_step and was_step):
-            state.lower_bounds[:] = -math.inf
+            state.carried.lower_bounds[:] = -math.inf
             state.answers[:, MOVES] = -1.0
-            state.fronts.spans[:, 1] = 0
+            state.carried.fronts.spans[:, 1] = 0
         was_step = is_step
         if is_step:
             go_on_to_step(lent, before, interval + np.int64(share))
@@ -185,7 +186,7 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
             if turn >= 0 and (turn == order or turn == last):
                 continue
             target = min(best, enough)
-            carried = carried_bound(lent, pair)
+            carried = carried_bound(world.pairs, pair, state.carried)
             if turn >= 0 and carried < target:
                 carried = _with_boxes(lent, pair, 0.0, place, target, carried)
             if carried >= target:
@@ -209,50 +210,35 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
         rows.share[place] = -1.0
 
 
-class _PairInterval(NamedTuple):
-    """A pair over an interval: [m] bound and least seen, and where that was, or -1."""
+class PairWithErrors(NamedTuple):
+    """A pair in the interval after a step.
 
-    lower_bound: float
-    least: float
-    share: float
+    Attributes:
+        scene: lent. look: the number of the look at the whole interval. asked: of which it is one. tally: counts.
+    """
+
+    scene: BudgetScene
+    step: int
+    pair: int
+    look: int
+    asked: BudgetIntervals
+    tally: Integers
 
 
-@inline
-def _hold(lent, step, pair, look, least, asked, tally):
-    """What errors leave of a pair over the interval after `step`, halved until that is proven; the next look."""
+@prove_part.register
+def _(pair: PairWithErrors, low, high, n_parts, least, gap):
+    lent, asked = pair.scene, pair.asked
     scene = lent
     path, state = scene.path, scene.state
-    waiting = state.waiting
-    waiting[0, 0], waiting[0, 1] = 0.0, 1.0
-    n_waiting, n_parts = 1, 0
-    lower_bound, share, gap = math.inf, -1.0, asked.gap
-    while n_waiting > 0:
-        n_waiting -= 1
-        n_parts += 1
-        low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
-        if n_parts % asked.most_parts == 0 or n_waiting + 2 > DEPTH:
-            gap *= WIDER
-        if n_parts > 1:
-            look += 1
-            go_to_part(scene.world.links, path, scene.errors, step, low, high, state.middle)
-        half = half_of(path, step, low, high)
-        target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-        thin = thin_of(lent, pair)
-        goal = Goal(target, least, gap, asked.fail, thin, False, False, 0, REFINED)
-        start = start_before(lent, pair)
-        left = prove_pair(lent, Look(pair, half, look, n_parts == 1), start, goal, tally)
-        if left.least < least:
-            least, share = left.least, 0.5 * (low + high)
-        if left.is_complete:
-            lower_bound = min(lower_bound, left.lower_bound)
-        elif n_waiting + 2 > DEPTH:
-            lower_bound = -math.inf
-        else:
-            at = 0.5 * (low + high)
-            waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
-            waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
-            n_waiting += 2
-    return _PairInterval(lower_bound, least, share), n_parts > 1, look
+    if n_parts > 1:
+        links = scene.world.links
+        go_to_part(links, path, scene.errors, pair.step, low, high, state.middle)
+    target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
+    thin = thin_of(lent, pair.pair)
+    goal = Goal(target, least, gap, asked.fail, thin, False, False, 0, REFINED)
+    half, number = half_of(path, pair.step, low, high), pair.look + n_parts - 1
+    look = Look(pair.pair, half, number, n_parts == 1)
+    return prove_pair(lent, look, start_before(lent, pair.pair), goal, pair.tally)
 
 
 @kernel
@@ -283,7 +269,7 @@ def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRow
             if turn == order or pair < 0:
                 continue
             target = min(asked.enough, least - allowed_gap(least, asked.gap, asked.fail))
-            carried = carried_bound(lent, pair)
+            carried = carried_bound(world.pairs, pair, state.carried)
             if carried < target:
                 if moved:
                     look += 1
@@ -294,8 +280,10 @@ def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRow
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            over, moved, look = _hold(lent, step, pair, look, least, asked, tally)
-            note_bound(lent, pair, over.lower_bound)
+            of_pair = PairWithErrors(lent, step, pair, look, asked, tally)
+            over = prove_interval(of_pair, least, asked.gap, asked.most_parts, state.waiting)
+            moved, look = over.n_parts > 1, look + over.n_parts - 1
+            carry(world.pairs, pair, over.lower_bound, state.carried)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share
             if over.lower_bound < lower_bound:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.declared import Floats2, Floats3, Integers
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
@@ -41,12 +41,13 @@ from clearance.kernels.motion.body_boxes import (
     new_body_boxes,
     place_box,
 )
-from clearance.kernels.motion.certify import DEPTH
+from clearance.kernels.motion.halving import DEPTH
 from clearance.kernels.motion.joint_motion_bound import orientation_rounding
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
-from clearance.kernels.search.front import POOL, Fronts, carried_down, no_fronts
+from clearance.kernels.search.carried import NO_FACE, Carried
+from clearance.kernels.search.front import POOL, Fronts, no_fronts
 from clearance.kernels.search.proof import CHAIN_SLACK, Proof, Start
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
@@ -59,13 +60,12 @@ class BudgetSweepState(NamedTuple):
         directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
         levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
         filled, placed: (bodies,) the look at which the rows and the box of each were made.
-        poses: (links, 4, 4) at the last step. moved: (bodies,) [m] how far each can have moved in all.
-        n_moves: (bodies,) how often each has moved.
-        lower_bounds: (p,) [m] what was proven of each pair, plus what its bodies had moved by then.
+        poses: (links, 4, 4) at the last step. n_moves: (bodies,) how often each has moved.
+        carried: of all pairs.
         answers: (p, 6) what came of the last search of each pair where all stands, by `MOVES` how often its bodies
             had moved by then, or -1; `TARGET` [m] how far it was looked into; `LOWER_BOUND`, `LEAST`, `ENOUGH` [m]
             as in `Proof`; `TWICE` 1 if the search before was the same.
-        waiting: (DEPTH, 2) parts of an interval. fronts: where the last search of each pair has ended.
+        waiting: (DEPTH, 2) parts of an interval.
         seen: the rows of all bodies. scratch: of a search.
     """
 
@@ -77,12 +77,10 @@ class BudgetSweepState(NamedTuple):
     filled: Integers
     placed: Integers
     poses: Floats3
-    moved: Floats
     n_moves: Integers
-    lower_bounds: Floats
+    carried: Carried
     answers: Floats2
     waiting: Floats2
-    fronts: Fronts
     seen: SeenErrors
     scratch: Scratch
 
@@ -132,8 +130,9 @@ def new_room():
 
 def in_room(state, room):
     """A state that searches in some room, of which nothing is taken over."""
+    fronts = state.carried.fronts._replace(entries=room.entries, lower_bounds=room.lower_bounds)
     return state._replace(
-        fronts=state.fronts._replace(entries=room.entries, lower_bounds=room.lower_bounds),
+        carried=state.carried._replace(fronts=fronts),
         scratch=room.scratch,
     )
 
@@ -147,13 +146,16 @@ def new_state(world, errors, room):
         new_along_rows(errors.most_rows),
     )  # fmt: skip
     spans, used = np.zeros((n_pairs, 6), dtype=np.int64), np.zeros(1, dtype=np.int64)
+    carried = Carried(
+        np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), NO_FACE),
+        Fronts(room.entries, room.lower_bounds, spans, used),
+    )  # fmt: skip
     return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)),
-        np.zeros(n_bodies), np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, -np.inf),
-        np.full((n_pairs, 6), -1.0), np.empty((DEPTH, 2)),
-        Fronts(room.entries, room.lower_bounds, spans, used), seen, room.scratch,
+        np.zeros(n_bodies, dtype=np.int64), carried, np.full((n_pairs, 6), -1.0),
+        np.empty((DEPTH, 2)), seen, room.scratch,
     )  # fmt: skip
 
 
@@ -164,12 +166,12 @@ def begin_anew(world, state):
     state.directions[:] = 0.0
     state.filled[:] = -1
     state.placed[:] = -1
-    state.moved[:] = 0.0
+    state.carried.moved[:] = 0.0
     state.n_moves[:] = 0
-    state.lower_bounds[:] = -math.inf
+    state.carried.lower_bounds[:] = -math.inf
     state.answers[:, MOVES] = -1.0
-    state.fronts.spans[:] = 0
-    state.fronts.used[0] = 0
+    state.carried.fronts.spans[:] = 0
+    state.carried.fronts.used[0] = 0
 
 
 @inline(force=True)
@@ -294,10 +296,12 @@ def go_on(lent, before, step):
         if world.frames[body] < 0:
             continue
         if state.late or step < before:
-            state.moved[body] = math.inf
+            state.carried.moved[body] = math.inf
         else:
             for between in range(before, step):
-                state.moved[body] += moved_from_step(world, asked.path, between, body, state.levers)
+                state.carried.moved[body] += moved_from_step(
+                    world, asked.path, between, body, state.levers
+                )
 
 
 @inline(force=True)
@@ -330,20 +334,13 @@ def go_on_to_step(lent, before, step):
             moved = displacement(surface, root, state.poses[frame], poses[frame])
             moved += moved_beside(world, asked.path, before, step, body, levers)
             moved += ROUNDED * (levers.sizes[body] + _far(poses[frame]))
-        state.moved[body] += moved
+        state.carried.moved[body] += moved
         state.n_moves[body] += 1
     for link in range(len(poses)):
         if state.middle.marks[link, WANTED]:
             for i in range(3):
                 for k in range(4):
                     state.poses[link, i, k] = poses[link, i, k]
-
-
-@inline(force=True)
-def moved_of_pair(asked, pair):
-    """[m] what both bodies of a pair have moved in all; infinite where that is not known."""
-    pairs, moved = asked.world.pairs, asked.state.moved
-    return moved[pairs[pair, 0]] + moved[pairs[pair, 1]]
 
 
 @inline(force=True)
@@ -381,19 +378,6 @@ def answer_of(lent, pair):
     """What came of the last search of a pair."""
     answer = lent.state.answers[pair]
     nowhere = Vec3(0.0, 0.0, 0.0)
-    return Proof(answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, nowhere, -1, -1, 0, 0, 0)
-
-
-@inline(force=True)
-def carried_bound(lent, pair):
-    """[m] what is left of the bound of a pair after what its bodies have moved."""
-    asked = lent
-    moved = moved_of_pair(asked, pair)
-    return asked.state.lower_bounds[pair] - moved if moved < math.inf else -math.inf
-
-
-@inline(force=True)
-def note_bound(lent, pair, lower_bound):
-    """Keeps the bound of a pair for later."""
-    asked = lent
-    asked.state.lower_bounds[pair] = carried_down(lower_bound, moved_of_pair(asked, pair))
+    return Proof(
+        answer[LOWER_BOUND], answer[LEAST], answer[ENOUGH], True, False, nowhere, -1, -1, 0, 0, 0
+    )

@@ -89,6 +89,30 @@ def take_rectangle(waiting, place):
     return Rectangle(nodes[0], nodes[1], s[0], s[1], s[2], s[3]), count
 
 
+class OpenRectangle(NamedTuple):
+    """A rectangle that is to be halved.
+
+    Attributes:
+        in_a: True for halves in the time of clock a. count: the first so many listed pairs are asked there.
+        seen: [s] the half nearer to that time, of the clock that is halved, is asked first.
+    """
+
+    rectangle: Rectangle
+    in_a: bool
+    count: int
+    seen: float
+
+
+@inline
+def put_open(tree_a, tree_b, part, waiting, place):
+    """Lets both halves of an `OpenRectangle` wait at a place and the next."""
+    earlier, later = halves_of(tree_a, tree_b, part.rectangle, part.in_a)
+    if part.seen > middle_of_side(tree_a, tree_b, part.rectangle, part.in_a):
+        earlier, later = later, earlier
+    put_rectangle(later, part.count, waiting, place)
+    put_rectangle(earlier, part.count, waiting, place + 1)
+
+
 @inline(force=True)
 def is_whole(low, high):
     """True for all of a node."""

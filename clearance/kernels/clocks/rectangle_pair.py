@@ -26,7 +26,7 @@ from clearance.kernels.motion.interval_middle import (
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
-from clearance.kernels.search.front import Fronts, PairFront
+from clearance.kernels.search.carried import Carried, no_front
 from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch
 
@@ -40,20 +40,19 @@ class RectangleState(NamedTuple):
     Attributes:
         gaps: (m,) [m] allowed in each interval. n_looked_at: (m,) rectangles that were.
         lower_bounds: (nodes,) [m] proven for all that was closed at a node of clock a.
-        witness_faces: (p, 2) the faces that were nearest, or -1.
+        carried: the faces of all pairs that were nearest.
         part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
-        fronts: none. tally: (5,) counts, as in `certify_unsynchronised`.
+        tally: (5,) counts, as in `certify_unsynchronised`.
     """
 
     waiting: RectangleStack
     gaps: np.ndarray
     n_looked_at: np.ndarray
     lower_bounds: np.ndarray
-    witness_faces: np.ndarray
+    carried: Carried
     part_a: IntervalMiddle
     part_b: IntervalMiddle
     at: np.ndarray
-    fronts: Fronts
     scratch: Scratch
     tally: np.ndarray
 
@@ -152,7 +151,7 @@ def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state):
     bodies = PosedPair(
         lent, world.solids[body_a], lent, world.solids[body_b], frames_of(pose_a, pose_b)
     )
-    faces = state.witness_faces[pair]
+    faces = state.carried.faces[pair]
     one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
     if not goal.is_fine and (moved_b > moved_a or not one_a):  # else it may be halved for ever
         bound, settled = _settled_coarsely(
@@ -162,7 +161,7 @@ def look_at_pair(lent, surface, clocks, rectangle, pair, goal, state):
             return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
     tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)
-    front = PairFront(state.fronts, 0, np.inf)
+    front = no_front(state.carried)
     proof = prove_while_moving(bodies, faces, motion, goal.least, goal.aim, front, state.scratch)
     tally[3] += proof.n_nodes
     tally[4] += proof.n_faces

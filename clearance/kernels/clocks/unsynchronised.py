@@ -18,13 +18,13 @@ from clearance.compile.lending import lend
 from clearance.kernels.clocks.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
+    OpenRectangle,
     clipped,
-    halves_of,
     is_whole,
     meets_band,
     middle_occurs,
-    middle_of_side,
     new_rectangle_stack,
+    put_open,
     put_rectangle,
     take_rectangle,
 )
@@ -32,10 +32,18 @@ from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n
 from clearance.kernels.clocks.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
 from clearance.kernels.clocks.two_clocks import TwoClocks
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.certify import ROUNDED_DOWN, WIDER
+from clearance.kernels.motion.certify import ROUNDED_DOWN
+from clearance.kernels.motion.halving import (
+    WIDER,
+    Visit,
+    halve,
+    put_halves,
+    with_part,
+    without_part,
+)
 from clearance.kernels.motion.interval_middle import begin_arcs, go_to_middle, new_middle
 from clearance.kernels.motion.twist import CertificateGoal
-from clearance.kernels.search.front import no_fronts
+from clearance.kernels.search.carried import nothing_carried
 from clearance.kernels.search.proof import allowed_gap
 from clearance.kernels.search.scratch import new_scratch
 
@@ -147,20 +155,14 @@ def _look(lent, surface, clocks, rectangle, count, aim, bounds, state):
 
 
 @inline
-def _wait_halves(clocks, rectangle, in_a, count, n_waiting, bounds, waiting):
-    """Lets both halves of a rectangle wait, the one nearer to the least distance seen to be looked at first."""
-    tree_a, tree_b = clocks.tree_a, clocks.tree_b
-    row = middle_leaf(tree_a, rectangle.node_a)
+def _seen_at(clocks, rectangle, in_a, bounds):
+    """[s] when the least distance of the intervals of a rectangle was seen, by one clock."""
+    row = middle_leaf(clocks.tree_a, rectangle.node_a)
     step, share = bounds.step_b[row], bounds.share_b[row]
     if in_a:
-        step, share = tree_a.start + row, bounds.share_a[row]
+        step, share = clocks.tree_a.start + row, bounds.share_a[row]
     times = clocks.path.times
-    seen = times[step] + share * (times[step + 1] - times[step])
-    earlier, later = halves_of(tree_a, tree_b, rectangle, in_a)
-    if seen > middle_of_side(tree_a, tree_b, rectangle, in_a):
-        earlier, later = later, earlier
-    put_rectangle(later, count, waiting, n_waiting)
-    put_rectangle(earlier, count, waiting, n_waiting + 1)
+    return times[step] + share * (times[step + 1] - times[step])
 
 
 @inline
@@ -216,44 +218,55 @@ def certify_unsynchronised(
     n_pairs = len(clocks.world.pairs)
     state = lend(RectangleState(
         new_rectangle_stack(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
-        np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
-        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), no_fronts(1, 0),
-        new_scratch(), tally,
+        np.full(len(clocks.tree_a.first), math.inf), nothing_carried(0, n_pairs, 0),
+        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(), tally,
     ))  # fmt: skip
     for i in range(len(tally)):
         tally[i] = 0
     _begin(clocks, steps, aim, bounds, state)
-    _certify(surface, clocks, aim, bounds, state)
+    halve(RectangleProofs(lend(surface), clocks, aim, bounds, state), DEPTH)
     _end(clocks, bounds, state)
 
 
-@inline
-def _certify(surface, clocks, aim, bounds, state):
-    """`certify_unsynchronised`, with the arrays of its state."""
-    lent = lend(surface)
-    tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
-    n_waiting = 1
-    while n_waiting > 0:
-        n_waiting -= 1
-        r, count = take_rectangle(waiting, n_waiting)
-        if not meets_band(tree_a, tree_b, r, clocks.band):
-            continue
-        state.tally[0] += 1
-        one_a = is_leaf_of_clock(tree_a, r.node_a)
-        if one_a:
-            row = tree_a.first[r.node_a]
-            state.n_looked_at[row] += 1
-            if state.n_looked_at[row] % aim.most_parts == 0:
-                state.gaps[row] *= WIDER
-            if is_leaf_of_clock(tree_b, r.node_b):
-                r = clipped(tree_a, tree_b, r, clocks.band)
-        _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
-        _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
-        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state)
-        if n_left == 0:
-            continue
-        if n_waiting + 2 > DEPTH:
-            state.lower_bounds[r.node_a] = 0.0
-            continue
-        _wait_halves(clocks, r, in_a, n_left, n_waiting, bounds, waiting)
-        n_waiting += 2
+class RectangleProofs(NamedTuple):
+    """What rectangles are asked: surface, clocks, bounds and state are lent."""
+
+    surface: Surface
+    clocks: TwoClocks
+    aim: CertificateGoal
+    bounds: TwoClockBounds
+    state: RectangleState
+
+
+@with_part.register
+def _(search: RectangleProofs, place):
+    clocks, aim, bounds, state = search.clocks, search.aim, search.bounds, search.state
+    tree_a, tree_b = clocks.tree_a, clocks.tree_b
+    r, count = take_rectangle(state.waiting, place)
+    if not meets_band(tree_a, tree_b, r, clocks.band):
+        return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
+    state.tally[0] += 1
+    if is_leaf_of_clock(tree_a, r.node_a):
+        row = tree_a.first[r.node_a]
+        state.n_looked_at[row] += 1
+        if state.n_looked_at[row] % aim.most_parts == 0:
+            state.gaps[row] *= WIDER
+        if is_leaf_of_clock(tree_b, r.node_b):
+            r = clipped(tree_a, tree_b, r, clocks.band)
+    _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
+    _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
+    n_left, in_a = _look(search.surface, search.surface, clocks, r, count, aim, bounds, state)
+    seen = _seen_at(clocks, r, in_a, bounds)
+    return Visit(search, OpenRectangle(r, in_a, n_left, seen), n_left > 0)
+
+
+@without_part.register
+def _(search: RectangleProofs, part):
+    search.state.lower_bounds[part.rectangle.node_a] = 0.0
+    return search
+
+
+@put_halves.register
+def _(search: RectangleProofs, part, place):
+    clocks = search.clocks
+    put_open(clocks.tree_a, clocks.tree_b, part, search.state.waiting, place)

@@ -18,12 +18,12 @@ from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.clocks.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
+    OpenRectangle,
     RectangleStack,
-    halves_of,
     meets_band,
     middle_occurs,
-    middle_of_side,
     new_rectangle_stack,
+    put_open,
     put_rectangle,
     take_rectangle,
 )
@@ -33,15 +33,16 @@ from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.body_boxes import bound_between
+from clearance.kernels.motion.halving import Visit, halve, put_halves, with_part, without_part
 from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.kernels.search.body_pair import (
-    NO_FACE,
     NOTHING_MEASURED,
     TO_THE_END,
     PairQuestion,
     search,
 )
-from clearance.kernels.search.front import Fronts, PairFront, no_fronts
+from clearance.kernels.search.carried import Carried, carry_faces, nothing_carried
+from clearance.kernels.search.front import PairFront
 from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
@@ -72,8 +73,7 @@ class StepsState(NamedTuple):
     """Scratch: rectangles that wait, the faces of each pair that were nearest, and that of a search."""
 
     waiting: RectangleStack
-    witness_faces: np.ndarray
-    fronts: Fronts
+    carried: Carried
     scratch: Scratch
 
 
@@ -111,13 +111,13 @@ def _bodies_at(lent, clocks, pair, row_a, row_b):
 @inline
 def _measured(asked, state, tally):
     """A `StepsPair` as `search` finds it."""
-    faces = state.witness_faces[asked.pair]
+    faces = state.carried.faces[asked.pair]
     question = PairQuestion(
         asked.within, asked.within, faces[0], faces[1], asked.apart, TO_THE_END, False
     )
-    front = PairFront(state.fronts, 0, 0.0)
+    front = PairFront(state.carried.fronts, asked.pair, 0.0)
     found = search(asked.bodies, question, front, state.scratch)
-    faces[0], faces[1] = found.face_a, found.face_b
+    carry_faces(asked.pair, found, state.carried)
     tally[2] += 1
     tally[3] += found.tally.nodes
     tally[4] += found.tally.faces
@@ -245,7 +245,7 @@ def _look_at_pair(surface, asked, seen_enough, state, tally):
         seen_enough: [m] what comes nearer is to be measured; of what does not it is enough to know that it is not
             farther than was asked.
     """
-    faces, bodies = state.witness_faces[asked.pair], asked.bodies
+    faces, bodies = state.carried.faces[asked.pair], asked.bodies
     a, b = bodies.frames.a, bodies.frames.b
     seen = corners_apart(surface, faces, a, b) * NOT_LESS
     if seen_enough < seen < asked.within:
@@ -328,8 +328,7 @@ def least_of_unsynchronised_steps(
     state = lend(
         StepsState(
             new_rectangle_stack(n_pairs),
-            np.full((n_pairs, 2), NO_FACE),
-            no_fronts(1, 0),
+            nothing_carried(0, n_pairs, 0),
             new_scratch(),
         )
     )
@@ -345,7 +344,7 @@ def least_of_unsynchronised_steps(
 def _least_of_steps(surface, clocks, least_only, state, found, tally):
     """The same, with the arrays of its state."""
     lent = lend(surface)
-    tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
+    waiting = state.waiting
     if least_only:
         _look_at_few(lent, clocks, state, found, tally)
     else:
@@ -353,23 +352,42 @@ def _least_of_steps(surface, clocks, least_only, state, found, tally):
         for row in range(1, len(found.clearance)):
             _walk(lent, clocks, row, state, found, tally)
     put_rectangle(ALL_TIMES, len(waiting.listed), waiting, 0)
-    n_waiting = 1
-    while n_waiting > 0:
-        n_waiting -= 1
-        r, count = take_rectangle(waiting, n_waiting)
-        if not meets_band(tree_a, tree_b, r, clocks.band):
-            continue
-        tally[0] += 1
-        n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally)
-        if n_left == 0:
-            continue
-        if n_waiting + 2 > DEPTH:
-            raise AssertionError("no room for what waits")
-        earlier, later = halves_of(tree_a, tree_b, r, in_a)
-        row = middle_leaf(tree_a, r.node_a)
-        seen = tree_a.start + row if in_a else found.step_b[row]
-        if seen >= 0 and clocks.path.times[seen] > middle_of_side(tree_a, tree_b, r, in_a):
-            earlier, later = later, earlier
-        put_rectangle(later, n_left, waiting, n_waiting)
-        put_rectangle(earlier, n_left, waiting, n_waiting + 1)
-        n_waiting += 2
+    halve(RectanglesOfSteps(lent, clocks, state, found, tally), DEPTH)
+
+
+class RectanglesOfSteps(NamedTuple):
+    """What rectangles are asked: all but the counts are lent."""
+
+    surface: Surface
+    clocks: TwoClocks
+    state: StepsState
+    found: StepMinima
+    tally: Integers
+
+
+@with_part.register
+def _(search: RectanglesOfSteps, place):
+    clocks, state, found, tally = search.clocks, search.state, search.found, search.tally
+    tree_a, tree_b = clocks.tree_a, clocks.tree_b
+    r, count = take_rectangle(state.waiting, place)
+    if not meets_band(tree_a, tree_b, r, clocks.band):
+        return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
+    tally[0] += 1
+    n_left, in_a = _look(search.surface, search.surface, clocks, r, count, state, found, tally)
+    row = middle_leaf(tree_a, r.node_a)
+    step = tree_a.start + row if in_a else found.step_b[row]
+    seen = clocks.path.times[step] if step >= 0 else -np.inf
+    return Visit(search, OpenRectangle(r, in_a, n_left, seen), n_left > 0)
+
+
+@without_part.register
+def _(search: RectanglesOfSteps, part):
+    if part.count > 0:  # a result must not lack them
+        raise AssertionError("no room for what waits")
+    return search
+
+
+@put_halves.register
+def _(search: RectanglesOfSteps, part, place):
+    clocks = search.clocks
+    put_open(clocks.tree_a, clocks.tree_b, part, search.state.waiting, place)

@@ -11,7 +11,6 @@ its bodies move in them: pairs that it keeps above the target are not asked.
 Not for: one pair over one interval (`twist`), the steps themselves (`sweep`).
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +22,7 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
+from clearance.kernels.motion.halving import DEPTH, prove_interval, prove_part
 from clearance.kernels.motion.interval_middle import (
     IntervalMiddle,
     begin_arcs,
@@ -43,15 +43,15 @@ from clearance.kernels.motion.kinematics import BALL
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
 from clearance.kernels.motion.world import World
-from clearance.kernels.search.front import KEPT_DOWN, Fronts, PairFront, no_fronts
+from clearance.kernels.search.carried import (
+    Carried,
+    carried_bound,
+    carry,
+    no_front,
+    nothing_carried,
+)
 from clearance.kernels.search.proof import allowed_gap
 from clearance.kernels.search.scratch import Scratch, new_scratch
-
-DEPTH = 64
-"""Parts of an interval that can wait, one a halving; after 52 the ends are one number."""
-
-WIDER = 4.0
-"""Times as wide is the gap of a pair in an interval that has come to its most parts."""
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of the steps' clearances, which are right to the last place."""
@@ -101,14 +101,6 @@ class IntervalBounds(NamedTuple):
     pair: Integers
 
 
-class PairInterval(NamedTuple):
-    """What is known of a pair over an interval: bound and least distance [m], and where that was seen, or -1."""
-
-    lower_bound: float
-    least: float
-    share: float
-
-
 class CertifyState(NamedTuple):
     """What is carried from interval to interval, and scratch.
 
@@ -116,20 +108,15 @@ class CertifyState(NamedTuple):
         whole, part: the middle of the interval, and of a part of it.
         motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] what of it is the
             rounding of orientations, which holds in all parts of it.
-        displacements: (bodies,) [m] how far each can have moved in all.
-        lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
-        witness_faces: (p, 2) the faces that were nearest, or -1.
-        waiting: (DEPTH, 2) parts of an interval. fronts: none.
+        carried: of all pairs, without fronts; a bound is one over an interval.
+        waiting: (DEPTH, 2) parts of an interval.
     """
 
     whole: IntervalMiddle
     part: IntervalMiddle
     motion_bounds: np.ndarray
-    displacements: np.ndarray
-    lower_bounds: np.ndarray
-    witness_faces: np.ndarray
+    carried: Carried
     waiting: np.ndarray
-    fronts: Fronts
     scratch: Scratch
 
 
@@ -151,7 +138,7 @@ def _go_on(surface, world, path, step, state):
         note_motion_bound(motion_bound, numbers)
         if world.frames[body] >= 0:
             box = box_of(surface, surface.roots[world.solids[body]])
-            state.displacements[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)
+            state.carried.moved[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)
 
 
 @inline
@@ -161,16 +148,49 @@ def _pose_of(world, body, middle):
     return rigid(middle.poses[frame] if frame >= 0 else world.standing[body])
 
 
-@inline
-def _prove_pair(lent, world, pair, middle, motion, least, aim, state, tally):
-    """A `Proof` of a pair about the state in `middle`.
+class MovingPair(NamedTuple):
+    """A pair in the interval after a step.
 
-    Many arguments: what belongs together is in tuples already.
+    Attributes:
+        surface, state: lent. motion, aim: as of `certify`. tally: counts, as there.
     """
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+
+    surface: Surface
+    state: CertifyState
+    motion: CertifiedMotion
+    step: int
+    pair: int
+    aim: CertificateGoal
+    tally: Integers
+
+
+@inline
+def _motion_of(asked, body, is_whole):
+    """The motion bound of a body about the middle of the interval or a part, with the rounding of the interval."""
+    state = asked.state
+    if is_whole:
+        return motion_bound_at(state.motion_bounds, body)
+    bound = motion_bound_in(asked.surface, asked.motion.world, body, state.part)
+    return loosened(bound, state.motion_bounds[body, 8])
+
+
+@prove_part.register
+def _(asked: MovingPair, low, high, n_parts, least, gap):
+    world, state, surface, tally = asked.motion.world, asked.state, asked.surface, asked.tally
+    is_whole = n_parts == 1
+    if not is_whole:
+        go_to_middle(world.links, asked.motion.path, asked.step, low, high, state.part)
+    body_a, body_b = world.pairs[asked.pair, 0], world.pairs[asked.pair, 1]
+    motion = PairMotion(
+        _motion_of(asked, body_a, is_whole),
+        _motion_of(asked, body_b, is_whole),
+        world.frames[body_b] >= 0,
+    )
+    middle = state.whole if is_whole else state.part
     frames = frames_of(_pose_of(world, body_a, middle), _pose_of(world, body_b, middle))
-    bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
-    faces, front = state.witness_faces[pair], PairFront(state.fronts, 0, math.inf)
+    bodies = PosedPair(surface, world.solids[body_a], surface, world.solids[body_b], frames)
+    faces, front = state.carried.faces[asked.pair], no_front(state.carried)
+    aim = CertificateGoal(gap, asked.aim.fail, asked.aim.most_parts)
     proof = prove_while_moving(bodies, faces, motion, least, aim, front, state.scratch)
     tally[1] += 1
     tally[2] += proof.n_nodes
@@ -200,8 +220,7 @@ def certify(
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = lend(CertifyState(
         new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 9)),
-        np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
-        no_fronts(1, 0), new_scratch(),
+        nothing_carried(n_bodies, n_pairs, 0), np.empty((DEPTH, 2)), new_scratch(),
     ))  # fmt: skip
     _certify(lend(surface), motion, steps, aim, bounds, tally, state)
 
@@ -211,8 +230,7 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
     """`certify`, with the arrays of its state."""
     surface = lent
     world, order, clearance = motion.world, steps.order, steps.clearance
-    n_pairs = len(world.pairs)
-    displacements, lower_bounds = state.displacements, state.lower_bounds
+    pairs, carried = world.pairs, state.carried
     for i in range(len(tally)):
         tally[i] = 0
     for step in range(steps.first, steps.last):
@@ -220,18 +238,18 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
         lower_bound = least  # 0 for a contact: then nothing is left to prove
         share, seen = -1.0, np.int64(-1)
         _go_on(surface, world, motion.path, step, state)
-        for turn in range(-1, n_pairs):
+        for turn in range(-1, len(pairs)):
             pair = order[step] if turn < 0 else turn
             if turn == order[step] or least <= 0.0:
                 continue
-            moved = displacements[world.pairs[pair, 0]] + displacements[world.pairs[pair, 1]]
-            carried = lower_bounds[pair] - moved
-            if carried >= least - allowed_gap(least, aim.gap, aim.fail):
-                lower_bound = min(lower_bound, carried)
+            bound = carried_bound(pairs, pair, carried)
+            if bound >= least - allowed_gap(least, aim.gap, aim.fail):
+                lower_bound = min(lower_bound, bound)
                 tally[0] += 1
                 continue
-            over = _prove_interval(lent, surface, motion, step, pair, least, aim, state, tally)
-            lower_bounds[pair] = (over.lower_bound + moved) * KEPT_DOWN
+            asked = MovingPair(lent, state, motion, step, pair, aim, tally)
+            over = prove_interval(asked, least, aim.gap, aim.most_parts, state.waiting)
+            carry(pairs, pair, over.lower_bound, carried)
             if over.share >= 0.0:
                 least, share, seen = over.least, over.share, pair
             lower_bound = min(lower_bound, over.lower_bound)
@@ -240,64 +258,3 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
         bounds.share[step] = share
         bounds.pair[step] = seen
     return 0
-
-
-@inline(force=True)
-def _loosened_in(surface, world, body, state):
-    """The motion bound of a body about the middle of a part, with the rounding of the whole interval."""
-    bound = motion_bound_in(surface, world, body, state.part)
-    return loosened(bound, state.motion_bounds[body, 8])
-
-
-@inline
-def _prove_interval(lent, surface, motion, step, pair, least, aim, state, tally):
-    """The proof of a pair over the whole interval after `step`, halved until that is done.
-
-    Many arguments: what belongs together is in tuples already.
-    """
-    world, path = motion.world, motion.path
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    b_moves = world.frames[body_b] >= 0
-    moving = PairMotion(
-        motion_bound_at(state.motion_bounds, body_a),
-        motion_bound_at(state.motion_bounds, body_b),
-        b_moves,
-    )
-    proof = _prove_pair(lent, world, pair, state.whole, moving, least, aim, state, tally)
-    share = 0.5 if proof.least < least else -1.0
-    if proof.is_complete or proof.least <= 0.0:
-        return PairInterval(proof.lower_bound, proof.least, share)
-    least = proof.least
-    lower_bound = math.inf
-    waiting = state.waiting
-    waiting[0, 0], waiting[0, 1] = 0.5, 1.0
-    waiting[1, 0], waiting[1, 1] = 0.0, 0.5
-    n_waiting = 2
-    n_parts = 0
-    while n_waiting > 0:
-        n_waiting -= 1
-        n_parts += 1
-        low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
-        if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
-            aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
-        go_to_middle(world.links, path, step, low, high, state.part)
-        moving = PairMotion(
-            _loosened_in(surface, world, body_a, state),
-            _loosened_in(surface, world, body_b, state),
-            b_moves,
-        )
-        proof = _prove_pair(lent, world, pair, state.part, moving, least, aim, state, tally)
-        if proof.least < least:
-            least, share = proof.least, 0.5 * (low + high)
-        if least <= 0.0:
-            return PairInterval(0.0, least, share)
-        if proof.is_complete:
-            lower_bound = min(lower_bound, proof.lower_bound)
-        elif n_waiting + 2 > DEPTH:
-            lower_bound = 0.0
-        else:
-            at = 0.5 * (low + high)
-            waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
-            waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
-            n_waiting += 2
-    return PairInterval(lower_bound, least, share)

@@ -19,9 +19,10 @@ from clearance.kernels.motion.row_search import RowLook, nearest_by_boxes, neare
 from clearance.kernels.motion.schedule import all_due
 from clearance.kernels.motion.sweep_goal import Goal
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, write_step
-from clearance.kernels.motion.sweep_state import SweepState, carried, new_sweep_state
+from clearance.kernels.motion.sweep_state import SweepState, new_sweep_state
 from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
+from clearance.kernels.search.carried import carried_bound
 
 LOOK, WINNER = 0, 1
 
@@ -119,16 +120,15 @@ def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tall
     if look == 0:
         put_all(world, positions, state.placed)
         for pair in range(len(world.pairs)):
-            state.lower_bounds[pair] = box_bound(
-                surface, world, pair, state.placed, state.boxes, np.inf
-            )
-        at[WINNER] = np.argmin(state.lower_bounds)
+            bound = box_bound(surface, world, pair, state.placed, state.boxes, np.inf)
+            state.carried.lower_bounds[pair] = bound
+        at[WINNER] = np.argmin(state.carried.lower_bounds)
         fill_order(world.pairs, world.frames, state.order)
-        sort_all(state.lower_bounds, state.order)
+        sort_all(state.carried.lower_bounds, state.order)
     else:
-        bring(surface, world, bodies, positions, look, state.placed)
+        bring(surface, world, bodies, positions, look, state.placed, state.carried.moved)
     first = at[WINNER]
-    if carried(world, first, state) <= 0.0:
+    if carried_bound(world.pairs, first, state.carried) <= 0.0:
         first = nearest_by_boxes(surface, world, bodies, state, first)
     asked = RowLook(bodies, row, row, first, -1, np.inf, TO_THE_END)
     best = nearest_of(lend(surface), world, asked, goal, state, pair_rows, tally)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.declared import Floats, Floats3, Integers
+from clearance.compile.declared import Floats3, Integers
 from clearance.compile.decorators import inline
 from clearance.kernels.features.bounds import displacement
 from clearance.kernels.motion.kinematics import NO_PARENT, place_links
@@ -23,7 +23,6 @@ class PlacedBodies(NamedTuple):
         links: (links, 4, 4) `world_from_link` [m] of those that were wanted at the last look.
         wanted: (links,) the last look at which each was wanted, or -1.
         poses: (bodies, 4, 4) `world_from_body` [m].
-        displacements: (bodies,) [m] accumulated: no less than what each has moved in all, from look to look.
         moves: (bodies,) how often it was found elsewhere than before.
         looks: (bodies,) how often it was looked at after the first time.
     """
@@ -31,7 +30,6 @@ class PlacedBodies(NamedTuple):
     links: Floats3
     wanted: Integers
     poses: Floats3
-    displacements: Floats
     moves: Integers
     looks: Integers
 
@@ -40,7 +38,7 @@ class PlacedBodies(NamedTuple):
 def new_placed_bodies(n_links, n_bodies):
     """Bodies that are nowhere yet."""
     return PlacedBodies(
-        np.empty((n_links, 4, 4)), np.full(n_links, -1), np.empty((n_bodies, 4, 4)), np.zeros(n_bodies),
+        np.empty((n_links, 4, 4)), np.full(n_links, -1), np.empty((n_bodies, 4, 4)),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
     )  # fmt: skip
 
@@ -82,8 +80,12 @@ def put_all(world, positions, placed):
 
 
 @inline(force=True)
-def bring(surface, world, bodies, positions, look, placed):
-    """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,)."""
+def bring(surface, world, bodies, positions, look, placed, moved):
+    """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,).
+
+    Args:
+        moved: (bodies,) [m] to which is added how far each has come.
+    """
     for body in bodies:
         _want(world.links, world.frames[body], look, placed.wanted)
     place_links(world.links, positions, placed.links, placed.wanted, look)
@@ -92,7 +94,7 @@ def bring(surface, world, bodies, positions, look, placed):
         placed.looks[body] += 1
         if _has_moved(before, after):
             placed.moves[body] += 1
-            placed.displacements[body] += (
+            moved[body] += (
                 displacement(surface, surface.roots[world.solids[body]], before, after) * GROWTH
             )
             _put(after, placed, body)

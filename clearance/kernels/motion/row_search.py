@@ -23,13 +23,18 @@ from clearance.kernels.motion.sweep_rows import write_pair
 from clearance.kernels.motion.sweep_state import (
     NOT_LESS,
     bounded_again,
-    carried,
-    moved_by,
     spare,
 )
 from clearance.kernels.motion.world import pair_frames
 from clearance.kernels.search.body_pair import TO_THE_END, PairQuestion, search
-from clearance.kernels.search.front import KEPT_DOWN, PairFront, forget
+from clearance.kernels.search.carried import (
+    carried_bound,
+    carry,
+    carry_faces,
+    front_of,
+    moved_of,
+)
+from clearance.kernels.search.front import forget
 
 LOOK_AHEAD = 2.0
 """Mean displacements between two looks: within so many of them beyond the best a pair is still measured, so that
@@ -75,23 +80,23 @@ class RowNearest(NamedTuple):
 @inline(force=True)
 def nearest_by_boxes(surface, world, bodies, state, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
-    order = state.order
+    order, bounds = state.order, state.carried.lower_bounds
     nearest = np.inf
     for body in bodies:
         place, end = order.starts[body], order.ends[body]
         while place < end:
             pair = order.pairs[place]
-            if carried(world, pair, state) >= nearest:
+            if carried_bound(world.pairs, pair, state.carried) >= nearest:
                 break
             lower_bound = bounded_again(surface, world, pair, state, nearest)
             if lower_bound < nearest:
                 nearest = lower_bound
                 winner = pair
             place += 1
-        sort_first(state.lower_bounds, order, body, place)
+        sort_first(bounds, order, body, place)
         for place in range(end, order.starts[body + 1]):
             pair = order.pairs[place]
-            if carried(world, pair, state) < nearest:
+            if carried_bound(world.pairs, pair, state.carried) < nearest:
                 lower_bound = bounded_again(surface, world, pair, state, nearest)
                 if lower_bound < nearest:
                     nearest = lower_bound
@@ -105,15 +110,15 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
 
     Many arguments: it is inlined into its one caller, whose locals they are.
     """
-    placed, answers, witness_faces = state.placed, state.answers, state.witness_faces
+    placed, answers, carried = state.placed, state.answers, state.carried
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_by(world, pair, placed)
+    moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_of(world.pairs, pair, carried)
     if still_holds(answers, pair, moves, gap):
         return answer_of(answers, pair)
     ahead = moved / max(1, placed.looks[body_a])
     limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
     if lower_bound <= 0.0:
-        forget(state.fronts, pair)  # where bodies may meet, nearest first from the roots is best
+        forget(carried.fronts, pair)  # where bodies may meet, nearest first from the roots is best
     apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
     touches = was_contact(answers, pair)
     measured = search(
@@ -125,14 +130,14 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
             pair_frames(world, pair, placed.poses),
         ),
         PairQuestion(
-            limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, touches
+            limit, gap, carried.faces[pair, 0], carried.faces[pair, 1], apart, effort, touches
         ),
-        PairFront(state.fronts, pair, moved),
+        front_of(world.pairs, pair, carried),
         state.scratch,
     )
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
-    state.lower_bounds[pair] = (measured.lower_bound + moved) * KEPT_DOWN
-    witness_faces[pair, 0], witness_faces[pair, 1] = measured.face_a, measured.face_b
+    carry(world.pairs, pair, measured.lower_bound, carried)
+    carry_faces(pair, measured, carried)
     tally[0] -= 1
     tally[1] += 1
     tally[2] += measured.tally.nodes
@@ -147,7 +152,7 @@ def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, t
     Many arguments: it is inlined into its one caller, whose locals they are.
     """
     gap = state.within[pair] if goal.each else best.gap
-    lower_bound = carried(world, pair, state)
+    lower_bound = carried_bound(world.pairs, pair, state.carried)
     if lower_bound <= 0.0 or gap < np.inf:
         lower_bound = bounded_again(surface, world, pair, state, gap)
     if lower_bound <= gap:
@@ -183,7 +188,7 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally):
         while place < end:
             pair = order.pairs[place]
             place += 1
-            lower_bound = carried(world, pair, state)
+            lower_bound = carried_bound(world.pairs, pair, state.carried)
             is_beyond = not goal.each and lower_bound > best.gap
             if turn >= 0 and pair == first:
                 lower_bound = spare(world, first, state, goal)
@@ -212,7 +217,7 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally):
         if goal.each:
             continue
         if turn < 0:
-            sort_one(state.lower_bounds, order, world.pairs[first, 0], first)
+            sort_one(state.carried.lower_bounds, order, world.pairs[first, 0], first)
         else:
-            sort_first(state.lower_bounds, order, body, stop)
+            sort_first(state.carried.lower_bounds, order, body, stop)
     return RowNearest(best.hit, best.pair, best.gap, lowest)

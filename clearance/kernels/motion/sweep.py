@@ -18,9 +18,10 @@ from clearance.kernels.motion.row_search import RowLook, nearest_by_boxes, neare
 from clearance.kernels.motion.schedule import all_due, find_due
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import SweepRows, pass_over, write_step
-from clearance.kernels.motion.sweep_state import NOT_LESS, carried, new_sweep_state
+from clearance.kernels.motion.sweep_state import NOT_LESS, new_sweep_state
 from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
+from clearance.kernels.search.carried import carried_bound
 
 
 @inline
@@ -82,7 +83,8 @@ def _sweep(surface, world, path, goal, effort, state, found, tally):
     Many arguments: those of `sweep`, and what it has made; called once a sweep.
     """
     positions, steps, rows = path.positions, path.steps, found.rows
-    within, lower_bounds, order = state.within, state.lower_bounds, state.order
+    within, carried, order = state.within, state.carried, state.order
+    lower_bounds = carried.lower_bounds
     placed, due = state.placed, state.due
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
@@ -102,11 +104,11 @@ def _sweep(surface, world, path, goal, effort, state, found, tally):
     while row < len(steps):
         bodies = due.bodies[:n_due]
         if look > 0:
-            bring(surface, world, bodies, positions[row], look, placed)
+            bring(surface, world, bodies, positions[row], look, placed, carried.moved)
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
         if (
             first >= 0
-            and carried(world, first, state) <= 0.0
+            and carried_bound(world.pairs, first, carried) <= 0.0
             and not was_contact(state.answers, first)
         ):
             first = nearest_by_boxes(surface, world, bodies, state, first)

@@ -26,6 +26,7 @@ from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.balls import less_balls, radii_of
+from clearance.kernels.search.carried import NO_FACE
 from clearance.kernels.search.containment import contained
 from clearance.kernels.search.front import (
     HULLS_NEARER,
@@ -39,8 +40,6 @@ from clearance.kernels.search.nearest import SearchLimits, Tally, nearest_faces
 from clearance.kernels.search.overlap import Overlap, overlap
 from clearance.kernels.search.scratch import Scratch
 from clearance.kernels.search.separating_planes import NOT_SEPARATED, separate
-
-NO_FACE = -1
 
 TO_THE_END = 2**62
 """The effort of a search that is not cut short."""

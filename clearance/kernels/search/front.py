@@ -8,6 +8,7 @@ An entry is a group of nodes of one body against a node of the other, `(group, o
 says that node k of the group is meant, `OF_B` that the group is of b.
 """
 
+import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -37,14 +38,12 @@ HULLS_TOUCH, HULLS_NEARER = 15, 1
 MOST_LEFT_OUT = 255
 """Searches at most in which planes are not sought after they were not found."""
 
-KEPT_DOWN = 1.0 - 2.0**-50
-"""Covers the rounding of a bound to which the way so far was added, where both are no less than 0."""
-
 
 @inline(force=True)
 def carried_down(bound, moved):
     """[m] a bound of any sign, plus the way so far, less the rounding of either."""
-    return bound + moved - 2.0**-50 * (abs(bound) + moved)
+    carried = bound + moved
+    return carried - 2.0**-50 * (abs(bound) + moved) if abs(carried) < math.inf else carried
 
 
 class Fronts(NamedTuple):

@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from clearance.compile.calls import Written
-from clearance.compile.declared import Floats, Floats2, Floats3, Integers, Integers2, LentTo
+from clearance.compile.declared import Floats2, Floats3, Integers2, LentTo
 from clearance.compile.decorators import inline, kernel
 from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
@@ -20,14 +20,8 @@ from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, search
-from clearance.kernels.search.front import (
-    KEPT_DOWN,
-    LONGEST,
-    Fronts,
-    PairFront,
-    forget,
-    no_fronts,
-)
+from clearance.kernels.search.carried import Carried, carry_faces, nothing_carried
+from clearance.kernels.search.front import LONGEST, PairFront, carried_down, forget
 from clearance.kernels.search.scratch import Scratch
 
 ROOM = 2 * LONGEST + 16
@@ -42,8 +36,6 @@ SURELY = 1e-7
 FAR = 1.0
 """Bodies that move farther than this share of the smaller one's breadth are searched from the roots again."""
 
-MOVED, LOWER_BOUND, STRIDE = 0, 1, 2
-
 POSES_ARE_RIGID, AFRESH = 1, 2
 """How `nearest_at_poses` is asked; numbers, since each argument that Python hands over takes time."""
 
@@ -53,20 +45,18 @@ class HeldPair(NamedTuple):
 
     Attributes:
         a, b: their surfaces, one body each.
-        scratch, fronts: arrays for the search, and where the last one ended.
+        scratch: arrays for the search.
         poses: (2, 4, 4) of both bodies at the last search [m].
-        witness_faces: (2,) the witness cache: the faces that were nearest, or NO_FACE.
-        carried: (3,) [m] what both bodies have moved in all; a lower bound on their distance, plus that; how
-            far they may move at once before a search from the roots is better.
+        carried: of one pair; what both bodies have moved stands at the first, the second has moved nothing.
+        stride: [m] how far they may move at once before a search from the roots is better.
     """
 
     a: Surface
     b: Surface
     scratch: Scratch
-    fronts: Fronts
     poses: Floats3
-    witness_faces: Integers
-    carried: Floats
+    carried: Carried
+    stride: float
 
 
 @inline
@@ -79,8 +69,8 @@ def _breadth(surface):
 def hold_pair(a: Surface, b: Surface, room: int, scratch: Scratch):
     """A pair of surfaces of which nothing is known yet, with room for a front of so many node pairs."""
     held = HeldPair(
-        a, b, scratch, no_fronts(1, room), np.zeros((2, 4, 4)), np.array([NO_FACE, NO_FACE]),
-        np.array([0.0, -np.inf, FAR * min(_breadth(a), _breadth(b))]),
+        a, b, scratch, np.zeros((2, 4, 4)), nothing_carried(2, 1, room),
+        FAR * min(_breadth(a), _breadth(b)),
     )  # fmt: skip
     return Written(held, HeldPair)
 
@@ -106,10 +96,9 @@ def _is_surely_rigid(pose):
 class PairState(NamedTuple):
     """What is known of a pair: the fields of `HeldPair` that change from question to question."""
 
-    fronts: Annotated[Fronts, LentTo]
     poses: Floats3
-    witness_faces: Integers
-    carried: Floats
+    carried: Annotated[Carried, LentTo]
+    stride: float
 
 
 @inline
@@ -121,11 +110,12 @@ def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
     """
     way = displacement(a, a.roots[0], state.poses[0], pose_a)
     way += displacement(b, b.roots[0], state.poses[1], pose_b)
-    if not way <= state.carried[STRIDE]:
+    carried = state.carried
+    if not way <= state.stride:
         return np.inf
     way += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
-    moved = (state.carried[MOVED] + way) * ROUNDED_UP
-    return moved if state.carried[LOWER_BOUND] > moved else np.inf
+    moved = (carried.moved[0] + way) * ROUNDED_UP
+    return moved if carried.lower_bounds[0] > moved else np.inf
 
 
 @inline
@@ -136,19 +126,19 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b):
     """
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
-    state.carried[LOWER_BOUND] = -np.inf  # until the search has come to its end
-    question = PairQuestion(
-        np.inf, np.inf, state.witness_faces[0], state.witness_faces[1], True, TO_THE_END, False
-    )
+    carried = state.carried
+    carried.lower_bounds[0] = -np.inf  # until the search has come to its end
+    face_a, face_b = carried.faces[0, 0], carried.faces[0, 1]
+    question = PairQuestion(np.inf, np.inf, face_a, face_b, True, TO_THE_END, False)
     if moved == np.inf:
         moved = 0.0
         question = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
-        forget(state.fronts, 0)
+        forget(carried.fronts, 0)
     bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
-    measured = search(bodies, question, PairFront(state.fronts, 0, moved), scratch)
-    state.carried[MOVED] = moved
-    state.carried[LOWER_BOUND] = (measured.lower_bound + moved) * KEPT_DOWN
-    state.witness_faces[0], state.witness_faces[1] = measured.face_a, measured.face_b
+    measured = search(bodies, question, PairFront(carried.fronts, 0, moved), scratch)
+    carried.moved[0] = moved
+    carried.lower_bounds[0] = carried_down(measured.lower_bound, moved)
+    carry_faces(0, measured, carried)
     for i in range(4):
         for k in range(4):
             state.poses[0, i, k], state.poses[1, i, k] = pose_a[i, k], pose_b[i, k]
@@ -181,7 +171,7 @@ def nearest_at_poses(
             _is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])
         ):
             return i
-    state = PairState(held.fronts, held.poses, held.witness_faces, held.carried)
+    state = PairState(held.poses, held.carried, held.stride)
     _nearest(held.a, held.b, state, held.scratch, poses_a, poses_b, how, numbers, points, counts)
     return -1
 
@@ -196,7 +186,7 @@ def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, count
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(len(numbers)):
         if how & AFRESH:
-            state.carried[LOWER_BOUND] = -np.inf
+            state.carried.lower_bounds[0] = -np.inf
         pose_a, pose_b = poses_a[min(i, last_a)], poses_b[min(i, last_b)]
         measured = _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b)
         hit, tally = measured.hit, measured.tally

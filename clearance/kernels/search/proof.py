@@ -136,7 +136,8 @@ class Proof(NamedTuple):
     Attributes:
         lower_bound: [m] proven, if the search was completed. least: [m] the least seen to occur, or as asked.
         enough: [m] at a step, what is as good as that.
-        is_complete: False where the target cannot be proven without a shorter interval.
+        is_complete: False where the target cannot be proven without a shorter interval. in_contact: True where
+            bodies meet and nothing is left to prove.
         u: the direction of the nearest points seen (frame of a). face_a, face_b: they are on these, or -1.
         n_nodes, n_faces, n_cut: node pairs bounded, face pairs measured and cut.
     """
@@ -145,6 +146,7 @@ class Proof(NamedTuple):
     least: float
     enough: float
     is_complete: bool
+    in_contact: bool
     u: Vec3
     face_a: int
     face_b: int
@@ -436,6 +438,7 @@ def prove(roots, displacement, start, goal, front, scratch):
         left, bounds = scratch.left, scratch.lower_bounds
         keep(fronts, pair, queue.n_kept, left, bounds, found.n_left)
     return Proof(
-        lower_bound, least, search.enough - goal.thin, search.state != GIVEN_UP, search.u,
-        search.face_a, search.face_b, found.n_nodes, search.n_faces, search.n_cut,
+        lower_bound, least, search.enough - goal.thin, search.state != GIVEN_UP,
+        search.state == IN_CONTACT, search.u, search.face_a, search.face_b, found.n_nodes,
+        search.n_faces, search.n_cut,
     )  # fmt: skip
