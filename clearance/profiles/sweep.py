@@ -14,11 +14,12 @@ import numpy as np
 
 from clearance.errors import BadDimension, NothingToMeasure
 from clearance.kernels.profile.swept_cover import Raster, row_sums
+from clearance.profiles.contour import Contour
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Origin, Profile
 from clearance.profiles.region import Region, RegionIndex, covered_region, polygons, touching, union
-from clearance.profiles.silhouette import Silhouette
+from clearance.profiles.silhouette import Hulls, Silhouette
 from clearance.profiles.swept_bodies import (
     CaseOverTime,
     RecordHolder,
@@ -206,7 +207,7 @@ class PolygonCollection:
         self._makers = np.zeros((0, 2), dtype=np.int64)
         self._fresh = 0
 
-    def add(self, hulls, i_view: int) -> None:
+    def add(self, hulls: Hulls, i_view: int) -> None:
         made = polygons(hulls.corners, hulls.n_corners)
         makers = np.stack([np.full(len(made), i_view), hulls.instant.astype(np.int64)], axis=1)
         self._parts = np.concatenate([self._parts, made])
@@ -224,7 +225,7 @@ class PolygonCollection:
             self._parts, self._makers, self._fresh = self._parts[keep], self._makers[keep], 0
         return self._whole
 
-    def origin(self, contours, labels: tuple[str, ...]) -> Origin:
+    def origin(self, contours: Sequence[Contour], labels: tuple[str, ...]) -> Origin:
         """The maker of each piece: whose polygon is nearest to its middle, the first on ties."""
         middles = np.concatenate([contour.middles() for contour in contours])
         makers = self._makers[RegionIndex(self._parts)(middles)]

@@ -22,7 +22,7 @@ class Carried(NamedTuple):
     Attributes:
         moved: (bodies,) [m] no less than what each body has moved in all; infinite where that is not known.
         lower_bounds: (p,) [m] a bound on each pair, plus what both bodies had moved by then.
-        faces: (p, 2) where to begin: the nearest faces met, or NO_FACE.
+        faces: (p, 2) the witness faces: those that were nearest, or NO_FACE.
         fronts: where the last descent of each pair has ended.
     """
 
