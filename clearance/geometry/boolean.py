@@ -1,7 +1,7 @@
 """Closed meshes that share a region, or grow together: the adapter of manifold3d.
 
 manifold3d works on closed surfaces with two faces an edge, in float64, and answers with such a surface
-again. What it cannot take is refused in one line. Not for: convex bodies, which `query.intersection` cuts
+again. Input that it cannot take is refused in one line. Not for: convex bodies, which `query.intersection` cuts
 exactly.
 """
 
@@ -63,7 +63,7 @@ class ClosedMesh:
 
     @property
     def centroid(self) -> np.ndarray:
-        """(3,) [m] of the region; of its corners where it holds no volume."""
+        """(3,) [m] of the region; of its corners where it has no volume."""
         total = self._shares.sum()
         if not total > 0.0:
             return self.vertices.mean(axis=0) if len(self.vertices) else np.full(3, np.nan)
@@ -80,7 +80,7 @@ def solid(vertices: np.ndarray, triangles: np.ndarray) -> Any:
     """manifold3d's solid of a closed, outward surface; vertices (n, 3) [m], triangles (m, 3).
 
     Raises:
-        Unavailable: manifold3d is not installed. BadPolygon: the surface is not what it can take.
+        Unavailable: manifold3d is not installed. BadPolygon: the surface is none that it can take.
     """
     manifold = _library()
     mesh = manifold.Mesh64(  # copies, because it takes no read-only arrays
@@ -97,7 +97,7 @@ def solid(vertices: np.ndarray, triangles: np.ndarray) -> Any:
 
 
 def evaluated(one: Any) -> Any:
-    """The same solid, worked out now: else what it is made of is gone through in every boolean with it."""
+    """The same solid, evaluated now: else its parts are evaluated in every boolean with it."""
     one.num_tri()
     return one
 
@@ -109,7 +109,7 @@ def block(box: np.ndarray) -> Any:
 
 
 def union(solids: Sequence[Any]) -> Any:
-    """What any of the solids holds."""
+    """The union of the solids."""
     manifold = _library()
     return manifold.Manifold.batch_boolean(list(solids), manifold.OpType.Add)
 

@@ -27,7 +27,7 @@ def cloud_surface(cloud: PointCloud) -> Surface:
     nothing = np.zeros((n, 3))
     centres, boxes, children = nodes_over(points, starts, each)
     _, firsts = np.unique(cloud.face_component, return_index=True)
-    probes = ascending(np.sort(firsts))  # halved to ask whether a point is one
+    probes = ascending(np.sort(firsts))  # halved to test whether a point is one
     return Surface(
         vertices=points,
         exact=points,
@@ -58,7 +58,7 @@ def cloud_surface(cloud: PointCloud) -> Surface:
 
 
 def _with_balls(boxes: np.ndarray, radius: float) -> np.ndarray:
-    """The boxes with that of the root, and its like beside it, large enough for the balls."""
+    """The boxes, with that of the root and its equivalents large enough for the balls."""
     grown = boxes.copy()
     grown[9:12, :WIDTH] += np.float32(radius * _ROUNDED_UP)
     grown[9:12, :WIDTH] *= np.float32(_ROUNDED_UP)

@@ -11,7 +11,7 @@ import numpy as np
 
 SEARCH = {"mcts_nodes": 10, "mcts_iterations": 60, "mcts_max_depth": 2, "resolution": 1000}
 """A search half as wide and deep as CoACD's default: the ways out that it leads to are the same on what
-`query/CONTACT.md` measures, lower bounds up to 1 % of the depth weaker; a pipe takes 0.5 s of processor time."""
+`query/CONTACT.md` measures, lower bounds up to 1 % of the depth weaker; a pipe needs 0.5 s of processor time."""
 
 
 def _main() -> None:

@@ -1,6 +1,6 @@
-"""Normal cones of a tree's nodes: which way the faces look that could hold the nearest point to another body.
+"""Normal cones of a tree's nodes: directions of the faces that could have the nearest point to another body.
 
-What a cone must hold, and why, is said in `kernels.mesh.normal_cones`.
+`kernels.mesh.normal_cones` says which directions a cone must contain, and why.
 Not for: how two cones are compared (there).
 """
 
@@ -22,10 +22,10 @@ OUTWARD = 1.0 + 2.0**-20
 `tree_build.LEAST_HALF`, where that has its usual precision."""
 
 NARROW = 0.25
-"""[rad] Cones no wider than this to either side are left about the mean."""
+"""[rad] Cones no wider than this to either side stay about the mean."""
 
 FEW = 128
-"""Nodes over more faces than that are left about the mean: hardly one of them has a cone in the end."""
+"""Cones of nodes over more faces than that stay about the mean: hardly one of them has a cone in the end."""
 
 STEPS = 8
 """Times that the axis of a cone is moved towards what is farthest from it."""
@@ -37,7 +37,7 @@ def node_cones(
     """(6 g, 4) `Surface.cones` from the axes (3, f) and half angles (f,) [rad] of the faces' cones.
 
     A cone stands for itself and its opposite, so that both sides of a thin wall have one in common. That of a node
-    is about the mean of the axes below it, each taken the way that the others look, or better.
+    is about the mean of the axes below it, each turned towards the others, or better.
     """
     n_nodes = len(children)
     axis = _unit(_aligned_sums(children, axes))
@@ -60,7 +60,7 @@ def node_cones(
 
 
 def no_cones(boxes: np.ndarray) -> np.ndarray:
-    """(6 g, 4) `Surface.cones` of nodes that may hold the nearest point whatever way they are seen."""
+    """(6 g, 4) `Surface.cones` of nodes that may have the nearest point from any direction."""
     n = len(boxes) // 12 * WIDTH
     return _rows(np.zeros((3, n)), np.zeros(n), np.full(n, NO_CONE), boxes)
 
@@ -75,7 +75,7 @@ def _rows(axis: np.ndarray, cosine: np.ndarray, sine: np.ndarray, boxes: np.ndar
 
 
 def _aligned_sums(children: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """(3, n) for each node the sum of the axes below it, those of a child turned round where they look away."""
+    """(3, n) for each node the sum of the axes below it, those of a child reversed where they point away."""
     total = np.zeros((3, len(children)))
     leaf = children[:, 1] == 0
     total[:, leaf] = axes[:, children[leaf, 0]]
@@ -160,7 +160,7 @@ def _narrow(
     Source: Bădoiu & Clarkson 2003, smaller core-sets for balls.
 
     Args:
-        cone, item: (k,) which cone holds which item.
+        cone, item: (k,) which cone contains which item.
         items, widths: (3, m) unit vectors and (m,) [rad] how far to all sides each reaches.
         either_way: True if an item or its opposite will do.
     """
@@ -183,7 +183,9 @@ def _narrow(
         to = items[:, far]
         if either_way:
             to = np.where(cosine[far] < 0.0, -to, to)
-        here[:, number[far]] += (to - here[:, number[far]]) / (step + 3.0)  # of several, the last
+        here[:, number[far]] += (to - here[:, number[far]]) / (
+            step + 3.0
+        )  # if there are several, the last
         here = _unit(here)
 
 

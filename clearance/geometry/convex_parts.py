@@ -1,6 +1,6 @@
-"""A body as convex parts from both sides: `outer` ones that together hold it, `inner` ones that it holds.
+"""A body as convex parts from both sides: `outer` parts whose union contains it, `inner` parts that it contains.
 
-What separates the outer ones from something separates the body from it; what goes deep into an inner one goes deep
+A translation that separates the outer parts separates the body; a depth in an inner part is a depth in the
 into the body. A convex body is its own only part on both sides; then every depth is exact. Otherwise the two
 bound it, and `note` says in one line what they are. Not for: measuring distance, which never uses parts.
 """
@@ -28,13 +28,13 @@ MUCH_MORE = 1.1
 """[-] A hull of more than this times the body's volume should have been cut."""
 
 MISSED = 1e-12
-"""[-] Relative to the volume: parts that miss no more of a body hold it."""
+"""[-] Relative to the volume: parts that miss no more of a body contain it."""
 
 MOST_HULL = 20_000
-"""Corners of which a hull is made: a second or two. Of more the envelope is taken, a hull of its own reach."""
+"""Corners of which a hull is made: a second or two. With more, the envelope is taken, a hull of that reach."""
 
 LITTLE_HULL = 500
-"""Corners of which a hull takes 5 ms; of so few it is always made, since small dents are seen no other way."""
+"""Corners of which a hull needs 5 ms; with so few it is always made, since only it shows small dents."""
 
 MOST_CUT = 30_000
 """Triangles that CoACD is given: with more it was never done within `decompose.MOST_WORK`."""
@@ -43,10 +43,10 @@ MOST_COMPARED = 200_000_000
 """Faces of a hull times triangles whose depth below it is measured: about 2 s."""
 
 VOLUMES = "volumes shared with a closed body are of its own mesh"
-"""What is said of bodies that manifold3d has a solid of: only their depth comes from what stands for them."""
+"""The note on bodies that are solids for manifold3d: only their depth comes from a substitute."""
 
 SAMPLED = 64
-"""Triangles that are looked at before all others."""
+"""Triangles that are tested before all others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +82,7 @@ def convex_parts(body: Polyhedron, *, rough: bool = False) -> ConvexParts:
     """The convex parts of a body in its own frame, found at the first call.
 
     Closed concave bodies are cut by CoACD; surfaces that are not closed, or where a library is missing, are
-    held by their hull alone.
+    contained in their hull alone.
 
     Args:
         rough: concave bodies are not cut, and of those that are clearly concave no hull is made: milliseconds.
@@ -111,9 +111,9 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
             return made
     hull = Polytope(points) if len(points) <= MOST_HULL else envelope(points)
     if volume is None:
-        return _held_by(hull, None, False, "its surface is not closed")
+        return _by_hull(hull, None, False, "its surface is not closed")
     if not volume > FLAT * hull.volume:
-        return _held_by(hull, None, False, "its surface holds no volume")
+        return _by_hull(hull, None, False, "its surface holds no volume")
     if hull.volume - volume <= FLAT * hull.volume:
         return _of_convex(hull, body.excess)
     solid, missing = _solid(body)
@@ -125,7 +125,7 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
     if not missing:
         missing = _uncuttable(body)
     if missing:
-        return _held_by(hull, solid, True, f"concave, {missing}")
+        return _by_hull(hull, solid, True, f"concave, {missing}")
     return _of_concave(body, hull, solid)
 
 
@@ -155,7 +155,7 @@ def _dented(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts | None:
 
 
 def _dent(hull: Polytope, triangles: np.ndarray) -> float:
-    """[m] as `_depth_in`; infinite where a few of them are deeper than facets may be, or all take too long."""
+    """[m] as `_depth_in`; infinite where a few are deeper than facets may be, or all would need too long."""
     few = triangles[:: max(1, len(triangles) // SAMPLED)]
     if _depth_in(hull, few) > TESSELLATION or hull.n_faces * len(triangles) > MOST_COMPARED:
         return np.inf
@@ -180,7 +180,7 @@ def hull_drawn_in(surface: np.ndarray, only_convex: bool) -> tuple[Polytope, ...
     return _drawn_in(hull, dent)
 
 
-def _held_by(hull: Polytope, solid: Any, closed: bool, why: str) -> ConvexParts:
+def _by_hull(hull: Polytope, solid: Any, closed: bool, why: str) -> ConvexParts:
     if solid is None:
         note = f"{why}: its hull stands for it, from which depth and volume are upper bounds"
     else:
@@ -218,9 +218,9 @@ def _uncuttable(body: Polyhedron) -> str:
 
 def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     try:
-        parts = _grown_to_hold(solid, _cut(body, hull))
+        parts = _grown_to_contain(solid, _cut(body, hull))
     except ClearanceError as error:
-        return _held_by(hull, solid, True, f"concave, not cut into convex parts ({error.problem})")
+        return _by_hull(hull, solid, True, f"concave, not cut into convex parts ({error.problem})")
     surface = body.vertices[body.triangles()]
     inner: list[Polytope] = []
     greatest = 0.0
@@ -251,8 +251,8 @@ def _cut(body: Polyhedron, hull: Polytope) -> list[Polytope]:
     return [hull]
 
 
-def _grown_to_hold(solid: Any, parts: list[Polytope]) -> list[Polytope]:
-    """The parts made larger until the solid lies in their union: first by a film, then by what is left.
+def _grown_to_contain(solid: Any, parts: list[Polytope]) -> list[Polytope]:
+    """The parts made larger until the solid lies in their union: first by a film, then by the rest.
 
     Raises:
         BadPolygon: a few rounds are not enough.
@@ -314,7 +314,7 @@ def _depth_in(part: Polytope, triangles: np.ndarray) -> float:
 
 
 def _drawn_in(part: Polytope, depth: float) -> tuple[Polytope, ...]:
-    """The part with all faces moved inwards by `depth` [m]; none where nothing is left.
+    """The part with all faces moved inwards by `depth` [m]; none where nothing remains.
 
     For what that proves see `_proves`.
     """
@@ -330,8 +330,8 @@ def _drawn_in(part: Polytope, depth: float) -> tuple[Polytope, ...]:
 def _proves(part: Polytope, stands_out: float, surface: np.ndarray) -> bool:
     """True if the part drawn in by `stands_out` lies in the body within the closed surface (t, 3, 3).
 
-    The depth below all faces is concave. On the way from a point of the part outside the body to the
-    centroid it is at least the less of the two ends; if the centroid is in the body, the way meets the
+    The depth below all faces is concave. On the line from a point of the part outside the body to the
+    centroid it is at least the less of the two ends; if the centroid is in the body, the line meets the
     body's surface, where the depth is at most `stands_out`; if the centroid is deeper than that, the point is
     not.
     """

@@ -15,7 +15,7 @@ from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.kernels.mesh import coplanar as kernels
 
 _EXACT_RANGE = 2.0**300
-"""Coordinates between the inverse of this and this, in magnitude, keep the predicates free of underflow."""
+"""Coordinates between the inverse of this and this, in magnitude, cause no underflow in the predicates."""
 
 
 class Polygons(NamedTuple):
@@ -24,8 +24,8 @@ class Polygons(NamedTuple):
     Attributes:
         vertices: (n, 3) [m], all different but for those that a face without area repeats.
         face_starts, face_vertices: as in `Polyhedron`.
-        n_dropped: zero-area triangles left out, because a proper face holds all their points.
-        n_degenerate: zero-area faces that are kept, because none does.
+        n_dropped: zero-area triangles dropped, because a proper face contains all their points.
+        n_degenerate: zero-area faces that stay, because none does.
     """
 
     vertices: np.ndarray
@@ -49,7 +49,7 @@ class _Faces(NamedTuple):
         return self.flat, self.flat[rings_of(self.starts).ahead]
 
     def half_edges(self) -> kernels.HalfEdges:
-        """The faces as the kernels take them apart: rings of half-edges, each with its twin."""
+        """The faces as the kernels split them: rings of half-edges, each with its twin."""
         ring = rings_of(self.starts)
         twin = twins(self.flat, self.flat[ring.ahead])
         return kernels.HalfEdges(self.flat, ring.ahead, ring.behind, twin, ring.face)
@@ -59,12 +59,12 @@ def merge_coplanar(vertices: np.ndarray, triangles: np.ndarray) -> Polygons:
     """The triangles as few convex polygons.
 
     Args:
-        vertices: (n, 3) [m], finite; equal ones are taken for one.
+        vertices: (n, 3) [m], finite; equal ones count as one.
         triangles: (m, 3) indices, all in range.
 
     Exactness: all decisions are signs of exact determinants; the union of the faces is the same set of
         points, and an edge that joined two faces still does. Coordinates whose magnitudes range over more
-        than 2^300 are left unmerged.
+        than 2^300 stay unmerged.
     Ties: the longest edges go first, equal ones by index; the result is the same every time.
     """
     vertices = np.array(vertices, dtype=np.float64)
@@ -104,8 +104,8 @@ def _covered_outright(corners: np.ndarray, axes: np.ndarray) -> np.ndarray:
     edges = {frozenset(pair) for pair in _edge_rows(proper)}
     points = set(proper.ravel().tolist())
     for i in np.flatnonzero(repeated):
-        kept = frozenset(corners[i].tolist())
-        covered[i] = kept in edges if len(kept) == 2 else next(iter(kept)) in points
+        own = frozenset(corners[i].tolist())
+        covered[i] = own in edges if len(own) == 2 else next(iter(own)) in points
     return covered
 
 
@@ -153,20 +153,20 @@ def _without_covered_needles(points: np.ndarray, faces: _Faces) -> _Faces:
         spread = np.abs(points[corners][:, None] - points[corners][None]).max(axis=2)
         longest[k] = corners[list(np.unravel_index(spread.argmax(), spread.shape))]
     edges = edge_keys(tails[proper], heads[proper], len(points))
-    keep = np.ones(len(faces.axes), dtype=bool)
-    keep[needles] = ~np.isin(edge_keys(longest[:, 0], longest[:, 1], len(points)), edges)
-    return _selected(faces, keep)
+    proper = np.ones(len(faces.axes), dtype=bool)
+    proper[needles] = ~np.isin(edge_keys(longest[:, 0], longest[:, 1], len(points)), edges)
+    return _selected(faces, proper)
 
 
-def _selected(faces: _Faces, keep: np.ndarray) -> _Faces:
+def _selected(faces: _Faces, proper: np.ndarray) -> _Faces:
     sizes = np.diff(faces.starts)
-    starts = np.concatenate([[0], np.cumsum(sizes[keep])])
+    starts = np.concatenate([[0], np.cumsum(sizes[proper])])
     return _Faces(
         starts,
-        faces.flat[np.repeat(keep, sizes)],
-        faces.group[keep],
-        faces.axes[keep],
-        faces.signs[keep],
+        faces.flat[np.repeat(proper, sizes)],
+        faces.group[proper],
+        faces.axes[proper],
+        faces.signs[proper],
     )
 
 
@@ -176,7 +176,7 @@ def _read_back(faces: _Faces, half_edges: kernels.HalfEdges, parents: np.ndarray
 
 
 def _merged(points: np.ndarray, faces: _Faces) -> _Faces:
-    """Takes edges and then straight corners away until nothing changes."""
+    """Removes edges and then straight corners until nothing changes."""
     while True:
         before = len(faces.flat)
         faces = _without_straight_corners(points, _with_edges_removed(points, faces))
@@ -208,18 +208,18 @@ def _without_straight_corners(points: np.ndarray, faces: _Faces) -> _Faces:
     removable = _straight_vertices(points, faces)
     sizes_at = np.bincount(faces.flat, minlength=len(points))
     while removable.any():
-        kept = ~removable[faces.flat]
-        thinner = _with_corners(faces, kept)
-        clashing = _clashing_vertices(faces, kept, thinner, sizes_at)
+        staying = ~removable[faces.flat]
+        thinner = _with_corners(faces, staying)
+        clashing = _clashing_vertices(faces, staying, thinner, sizes_at)
         if not len(clashing):
             return thinner
         removable[clashing] = False
     return faces
 
 
-def _with_corners(faces: _Faces, kept: np.ndarray) -> _Faces:
-    starts = np.concatenate([[0], np.cumsum(kept)])[faces.starts]
-    return faces._replace(starts=starts, flat=faces.flat[kept])
+def _with_corners(faces: _Faces, staying: np.ndarray) -> _Faces:
+    starts = np.concatenate([[0], np.cumsum(staying)])[faces.starts]
+    return faces._replace(starts=starts, flat=faces.flat[staying])
 
 
 def _straight_vertices(points: np.ndarray, faces: _Faces) -> np.ndarray:
@@ -243,13 +243,13 @@ def _straight_vertices(points: np.ndarray, faces: _Faces) -> np.ndarray:
 
 
 def _clashing_vertices(
-    faces: _Faces, kept: np.ndarray, thinner: _Faces, n_corners: np.ndarray
+    faces: _Faces, staying: np.ndarray, thinner: _Faces, n_corners: np.ndarray
 ) -> np.ndarray:
-    """Vertices to keep after all: without them, edges that were different would have the same two ends."""
+    """Vertices that must stay after all: without them, edges that were different would have the same two ends."""
     use = edge_use(*thinner.ends())
     n_uses = np.empty(len(thinner.flat), dtype=np.int64)
     n_uses[use.order] = np.repeat(use.n_uses, use.n_uses)
-    followers = faces.flat[rings_of(faces.starts).ahead[kept]]  # what came next before the removal
+    followers = faces.flat[rings_of(faces.starts).ahead[staying]]  # the next one before the removal
     _, heads = thinner.ends()
     skipped = followers != heads
     return followers[skipped & (n_uses != n_corners[followers])]

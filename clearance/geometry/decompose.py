@@ -18,14 +18,14 @@ from clearance.extras import install, is_installed
 
 THRESHOLDS = (0.05, 0.02, 0.01)
 """[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
-distance queries on the bodies themselves. The finer ones are for long thin bodies that it leaves whole."""
+distance queries on the bodies themselves. The finer ones are for long slender bodies that it does not cut."""
 
 MOST_WORK = 15
-"""[s] of processor time after which CoACD is given up: many times what most links take. On some meshes it
+"""[s] of processor time after which CoACD is given up: many times what most links need. On some meshes it
 cuts for ever."""
 
 LONGEST = 10.0 * MOST_WORK
-"""[s] of the clock, should the other limit not hold."""
+"""[s] of the clock, should the other limit fail."""
 
 _PROCESS = Path(__file__).with_name("coacd_process.py")
 

@@ -101,7 +101,7 @@ def edge_use(tails: np.ndarray, heads: np.ndarray) -> EdgeUse:
 
 
 def twins(tails: np.ndarray, heads: np.ndarray) -> np.ndarray:
-    """(n,) the one half-edge that runs the other way along the same edge; -1 where it is not just one."""
+    """(n,) the one half-edge that runs along the same edge in reverse; -1 where it is not just one."""
     use = edge_use(tails, heads)
     pairs = np.flatnonzero(use.n_uses == 2)
     first = use.starts[pairs]

@@ -1,4 +1,4 @@
-"""What holds a body at little cost: its support planes along 26 directions; and a look whether it is concave."""
+"""A cheap convex body around a body: its support planes along 26 directions; and a test whether it is concave."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ TWENTY_SIX = np.array([d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) 
 TWENTY_SIX /= np.linalg.norm(TWENTY_SIX, axis=1)[:, None]
 
 SAMPLED = 64
-"""Faces that are looked at."""
+"""Faces that are tested."""
 
 MOST_POINTS = 4000
-"""Corners that are held against them."""
+"""Corners that are compared with them."""
 
 CLEARLY = 1e-3
 """[-] Of the size: a corner so far above a face says that a body is no convex one with small dents."""
 
 
 def envelope(points: np.ndarray) -> Polytope:
-    """The convex body within the support planes of points (n, 3) [m] along 26 directions: it holds them.
+    """The convex body within the support planes of points (n, 3) [m] along 26 directions: it contains them.
 
     Raises:
         NotSolid: the points are flat along one of the directions.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    middle, room = 0.5 * (low + high), 1e-12 * float((high - low).max())
-    heights = ((points - middle) @ TWENTY_SIX.T).max(axis=0) + room
+    middle, slack = 0.5 * (low + high), 1e-12 * float((high - low).max())
+    heights = ((points - middle) @ TWENTY_SIX.T).max(axis=0) + slack
     return Polytope.from_half_spaces(np.column_stack([TWENTY_SIX, -heights - TWENTY_SIX @ middle]))
 
 

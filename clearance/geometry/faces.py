@@ -167,7 +167,7 @@ def _off_line(offsets: np.ndarray, starts: np.ndarray, face: np.ndarray) -> np.n
 def _bends_inward(
     vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, planes: Planes
 ) -> np.ndarray:
-    """(m,) True where a corner clearly turns the wrong way, or the boundary runs round more than once."""
+    """(m,) True where a corner clearly turns in the wrong sense, or the boundary runs round more than once."""
     ring = rings_of(starts)
     arriving = vertices[flat] - vertices[flat[ring.behind]]
     leaving = vertices[flat[ring.ahead]] - vertices[flat]

@@ -12,7 +12,7 @@ import numpy as np
 from clearance.geometry.topology import component_volumes
 
 SAMPLES = 16
-"""Corners of a part to test against another part, beside its six outermost."""
+"""Corners of a part to test against another part, besides its six outermost."""
 
 ON = 1e-9
 """[-] Rounding error for a point on a triangle, relative to the product of the distances of its corners."""

@@ -85,7 +85,7 @@ class PointCloud(Polyhedron):
         return np.array([low - self.ball_radius, high + self.ball_radius])
 
     def box_about(self) -> Polyhedron:
-        """A box along the axes of the body frame that holds all balls."""
+        """A box along the axes of the body frame that contains all balls."""
         middle = np.eye(4)
         middle[:3, 3] = self.bounds.mean(axis=0)
         size = np.ptp(self.bounds, axis=0) + 8.0 * np.spacing(np.abs(self.bounds).max())
@@ -100,7 +100,7 @@ class PointCloud(Polyhedron):
         """None.
 
         Raises:
-            BadShape: always, so that nothing takes a cloud for a body without a surface.
+            BadShape: always, so that no code mistakes a cloud for a body without a surface.
         """
         raise BadShape("a cloud of points has no faces", valid=_SURFACE)
 
@@ -153,7 +153,7 @@ class PointCloud(Polyhedron):
 
 
 def require_surface(given: object, where: str) -> Polyhedron:
-    """What was given, if it is a `Polyhedron` with faces.
+    """The argument, if it is a `Polyhedron` with faces.
 
     Raises:
         BadShape: it is a cloud of points, or no `Polyhedron`.
@@ -167,7 +167,7 @@ def require_surface(given: object, where: str) -> Polyhedron:
 def components_of(points: np.ndarray, radius: float) -> np.ndarray:
     """(n,) numbers of groups of points (n, 3) [m] whose balls surely hang together.
 
-    A cell of edge 2 r / sqrt(6) and the one beside it hold no two points farther apart than 2 r. What no ball
+    A cell of edge 2 r / sqrt(6) and its neighbour contain no two points more than 2 r apart. What no ball
     touches has the points of a group all inside or all outside.
     """
     span = points - points.min(axis=0)
@@ -176,13 +176,13 @@ def components_of(points: np.ndarray, radius: float) -> np.ndarray:
         return np.arange(len(points))
     keys = (cells @ np.array(_STEPS, dtype=np.float64)).astype(np.int64)
     occupied, cell_of_point = np.unique(keys, return_inverse=True)
-    pairs = [_beside(occupied, step) for step in _STEPS]
+    pairs = [_neighbouring(occupied, step) for step in _STEPS]
     first, second = (np.concatenate(side) for side in zip(*pairs, strict=True))
     return joined_labels(len(occupied), first, second)[cell_of_point.reshape(-1)]
 
 
-def _beside(occupied: np.ndarray, step: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places of the cells, of the ordered keys of all, that have one beside them a step on, and of that one."""
+def _neighbouring(occupied: np.ndarray, step: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places, among the ordered keys, of the cells with a neighbour a step on, and of that neighbour."""
     place = np.minimum(np.searchsorted(occupied, occupied + step), len(occupied) - 1)
     has = np.flatnonzero(occupied[place] == occupied + step)
     return has, place[has]

@@ -2,7 +2,7 @@
 
 Faces are stored flat (`face_starts`, `face_vertices`), counter-clockwise as seen from outside where the
 surface is consistently oriented. A `Polyhedron` that exists is valid: finite, with at least one face, every
-index in range, every face flat and convex. Everything else is found out when asked for, and then kept. Not
+index in range, every face flat and convex. Everything else is computed on first use, and then cached. Not
 for: reading files (room `load`) and making shapes (`shapes`).
 """
 
@@ -31,7 +31,7 @@ from clearance.geometry.topology import Topology, component_volumes, topology_of
 
 
 def require_polyhedron(given: object, where: str) -> Polyhedron:
-    """What was given, if it is a `Polyhedron`.
+    """The argument, if it is a `Polyhedron`.
 
     Raises:
         BadShape: it is not.
@@ -55,7 +55,7 @@ class Polyhedron:
         faces: for each face the indices of its three or more vertices in order, as any sequence of
             sequences or as an (m, k) array.
         excess: [m] how far the surface may stand outside the shape it stands for (0: it is the shape).
-        shortfall: [m] how far that shape may stand outside the surface: a case takes it off the clearance.
+        shortfall: [m] how far that shape may stand outside the surface: a case subtracts it from the clearance.
 
     Raises:
         EmptyMesh: no faces. NotFinite: NaN or infinity. BadShape: not (n, 3). BadDimension: `excess` or
@@ -134,7 +134,7 @@ class Polyhedron:
     ) -> Self:
         """The surface of triangles, with coplanar neighbours merged exactly into convex polygons.
 
-        Equal vertices become one; zero-area triangles that a proper face covers are left out, others kept
+        Equal vertices become one; zero-area triangles that a proper face covers are dropped, others stay
         (`coplanar.merge_coplanar` also counts them).
 
         Args:
@@ -258,12 +258,12 @@ class Polyhedron:
 
     @property
     def component_two_sided(self) -> np.ndarray:
-        """(k,) True for closed components that hold each face once for each side: nothing is inside them."""
+        """(k,) True for closed components that have each face once for each side: nothing is inside them."""
         return self._topology.component_two_sided
 
     @cached_property
     def volume(self) -> float | None:
-        """[m^3] what the surface holds, cavities taken off; None unless it is closed and oriented."""
+        """[m^3] the enclosed volume, less cavities; None unless the surface is closed and oriented."""
         if not self.closed or not self.oriented:
             return None
         component = self.face_component[self.triangle_faces]
@@ -276,8 +276,8 @@ class Polyhedron:
     def component_inside_out(self) -> np.ndarray:
         """(k,) True for the closed components that are inside out; cavities and two-sided ones are not."""
         component = self.face_component[self.triangle_faces]
-        holds = self.component_closed & ~self.component_two_sided
-        return inside_out_components(self.vertices, self.triangles(), component, holds)
+        encloses = self.component_closed & ~self.component_two_sided
+        return inside_out_components(self.vertices, self.triangles(), component, encloses)
 
     def outward(self) -> Polyhedron:
         """The surface with closed components that are inside out turned round, as they nest (`nesting`)."""
@@ -289,7 +289,7 @@ class Polyhedron:
         return self._with_reversed(np.ones(self.n_faces, dtype=bool))
 
     def _with_reversed(self, faces: np.ndarray) -> Polyhedron:
-        """The surface with the faces where (m,) `faces` is True running the other way round."""
+        """The surface with the faces where (m,) `faces` is True reversed."""
         ring = rings_of(self.face_starts)
         entries = np.arange(len(self.face_vertices))
         mirrored = self.face_starts[ring.face] + self.face_starts[ring.face + 1] - 1 - entries

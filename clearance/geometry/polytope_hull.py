@@ -1,6 +1,6 @@
 """From points or half-spaces to the merged faces of a convex polytope, by Qhull through scipy.
 
-Coordinates are scaled to the unit cube axis by axis first: hulls keep their faces under affine maps, and
+Coordinates are scaled to the unit cube axis by axis first: hulls have the same faces under affine maps, and
 flat, needle-like and huge bodies then look alike to Qhull's tolerances. Not for: finding common points.
 """
 
@@ -114,7 +114,7 @@ def corners_of_half_spaces(rows: np.ndarray) -> np.ndarray:
     """(n, 3) [m] the corners of {x: rows[:, :3] x + rows[:, 3] <= 0}.
 
     Raises:
-        Unbounded: a direction is left open. NotSolid: nothing is strictly inside.
+        Unbounded: a direction is unbounded. NotSolid: nothing is strictly inside.
     """
     from scipy.optimize import linprog
     from scipy.spatial import ConvexHull, HalfspaceIntersection, QhullError

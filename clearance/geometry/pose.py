@@ -96,7 +96,7 @@ def validated_pose(pose: np.ndarray) -> np.ndarray:
     return matrix
 
 
-@lru_cache(maxsize=256)  # a robot's base is asked for each of its motions
+@lru_cache(maxsize=256)  # a robot's base is needed for each of its motions
 def _require_rigid(content: bytes) -> None:
     """Nothing, if the numbers of a (4, 4) array are a rigid motion."""
     matrix = np.frombuffer(content).reshape(4, 4)

@@ -1,6 +1,6 @@
 """Unit quaternions: of rotation matrices, without importing scipy for it, and of rounded ones.
 
-Not for: the way back (`pose`).
+Not for: the inverse (`pose`).
 """
 
 from __future__ import annotations

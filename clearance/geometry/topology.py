@@ -1,4 +1,4 @@
-"""What faces form together: edges shared or open, connected components, volume, inside and outside.
+"""The topology of faces: edges shared or open, connected components, volume, inside and outside.
 
 Not for: the shape of single faces (`planes`, `faces`) and containment as a query (room `query`).
 """
@@ -21,8 +21,8 @@ class Topology(NamedTuple):
         face_component: (m,) which component each face is in; components share no edge.
         component_closed: (k,) True where every edge of the component is used equally often in both
             directions: it has an inside, and winding numbers are whole.
-        component_two_sided: (k,) True where a closed component, more than two faces back to back, holds each face
-            as often one way round as the other: winding numbers are 0, so that nothing is inside it.
+        component_two_sided: (k,) True where a closed component, more than two faces back to back, has each face
+            as often in one sense as in the other: winding numbers are 0, so that nothing is inside it.
         closed: every edge is used by an even number of faces.
         oriented: no edge is used more than once in a direction without a partner in the other.
         manifold: no edge is used by more than two faces.

@@ -1,6 +1,6 @@
 """Polyhedra in the form that kernels search: owned features, plane data and the bounding volume tree.
 
-Built once a polyhedron and kept with it; `join` lays several behind one another so that one compiled call
+Built once a polyhedron and cached in it; `join` lays several behind one another so that one compiled call
 can serve a whole robot and scene. Not for: the search itself (`kernels.search.descent`).
 """
 
@@ -16,9 +16,9 @@ from clearance.geometry.cloud_surface import cloud_surface
 from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
-from clearance.geometry.kept_surfaces import kept_surface
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.surface_cache import cached_surface
 from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
@@ -29,7 +29,7 @@ _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Su
 _joined = weakref.WeakKeyDictionary()
 
 LARGE = 200
-"""Faces of a shape in a scene whose searchable form is kept for later runs; of fewer it is built in 1 to 2 ms."""
+"""Faces of a shape in a scene whose searchable form is cached for later runs; others are built in 1 to 2 ms."""
 
 _NO_CAPS = np.empty((0, 3))
 
@@ -44,7 +44,7 @@ def surface_of(shape: Polyhedron) -> Surface:
 def join(shapes: Sequence[Polyhedron]) -> Surface:
     """The searchable form of several polyhedra; `roots[i]` is the tree of `shapes[i]`.
 
-    The last one that begins with the same shape is kept, for runs of one case after another.
+    The last one that begins with the same shape is cached, for runs of one case after another.
     """
     if len(shapes) == 1:
         return surface_of(shapes[0])
@@ -54,7 +54,7 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
             return known[1]
     for shape in shapes:
         if shape not in _built and shape.n_faces >= LARGE and not isinstance(shape, PointCloud):
-            _built[shape] = kept_surface(shape, _build)
+            _built[shape] = cached_surface(shape, _build)
     joined = _join([surface_of(shape) for shape in shapes])
     _joined[shapes[0]] = (tuple(weakref.ref(shape) for shape in shapes), joined)
     return joined
@@ -246,16 +246,18 @@ def _turns(copies: Copies, closed: np.ndarray, closing: Closing | None) -> np.nd
 
 
 def _cones(
-    kept: np.ndarray, ring: Ring, twin: np.ndarray, vertices: np.ndarray, corners: np.ndarray,
+    chosen: np.ndarray, ring: Ring, twin: np.ndarray, vertices: np.ndarray, corners: np.ndarray,
     normals: np.ndarray, bent: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """`face_cones` of the faces that are kept, as if there were no others."""
+    """`face_cones` of the chosen faces, as if there were no others."""
     n_faces = len(bent)
-    if len(kept) == n_faces:
+    if len(chosen) == n_faces:
         return face_cones(ring, twin, vertices, corners, normals, bent)
-    left = corners[np.isin(ring.face, kept)]
-    ring = rings_of(np.concatenate([[0], np.cumsum(np.bincount(ring.face)[kept])]))
+    remaining = corners[np.isin(ring.face, chosen)]
+    ring = rings_of(np.concatenate([[0], np.cumsum(np.bincount(ring.face)[chosen])]))
     axes, angles = np.zeros((3, n_faces)), np.full(n_faces, np.inf)
-    twin = twins(left, left[ring.ahead])
-    axes[:, kept], angles[kept] = face_cones(ring, twin, vertices, left, normals[kept], bent[kept])
+    twin = twins(remaining, remaining[ring.ahead])
+    axes[:, chosen], angles[chosen] = face_cones(
+        ring, twin, vertices, remaining, normals[chosen], bent[chosen]
+    )
     return axes, angles

@@ -75,11 +75,9 @@ def sections_for(radius: float, tolerance: float, sections: int | None) -> int:
             )
         return int(sections)
     with np.errstate(over="ignore"):
-        ratio = (
-            0.999999 * positive(tolerance, "tolerance") / radius
-        )  # leaves room for the push by ulps
-    ratio = min(ratio, 1e300)  # of a radius of 1e-320 it overflows
-    # cos(x) = 1 / (1 + ratio), written as sin(x / 2)^2 so that a small ratio keeps its digits
+        ratio = 0.999999 * positive(tolerance, "tolerance") / radius  # allows for the push by ulps
+    ratio = min(ratio, 1e300)  # it overflows for a radius of 1e-320
+    # cos(x) = 1 / (1 + ratio), written as sin(x / 2)^2 so that a small ratio loses no digits
     half_angle = 2.0 * np.arcsin(np.sqrt(0.5 * ratio / (1.0 + ratio)))
     n = max(8, int(np.ceil(np.pi / half_angle)))
     if n > MOST_SECTIONS:

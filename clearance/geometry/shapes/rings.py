@@ -1,6 +1,6 @@
 """Polygons round circles, and surfaces of stacked rings about the z axis with exactly flat faces.
 
-A ring is a polygon that holds a circle even after its corners are rounded; two rings of one family have the
+A ring is a polygon that contains a circle even after its corners are rounded; two rings of one family have the
 same directions, and products of direction and radius that are exact, so that the quadrilaterals between
 them are flat to the last bit. Not for: which rings make which shape.
 """
@@ -23,17 +23,17 @@ def corner_factor(n: int) -> float:
 
 
 def ring_around(radius: float, n: int) -> np.ndarray:
-    """(n, 2) corners, counter-clockwise, of a polygon that holds the circle of that radius."""
+    """(n, 2) corners, counter-clockwise, of a polygon that contains the circle of that radius."""
     return _directions(n) * (radius * corner_factor(n) * (1.0 + PUSH))
 
 
 def ring_within(radius: float, n: int) -> np.ndarray:
-    """(n, 2) corners, counter-clockwise, of a polygon that the circle of that radius holds."""
+    """(n, 2) corners, counter-clockwise, of a polygon inside the circle of that radius."""
     return _directions(n) * (radius * (1.0 - PUSH))
 
 
 def family_around(radii: np.ndarray, n: int) -> np.ndarray:
-    """(k, n, 2) rings that hold circles of the k radii, with the same directions exactly.
+    """(k, n, 2) rings that contain circles of the k radii, with the same directions exactly.
 
     Exactness: directions and radii have 26 bits, so their products are exact and side i of every ring is
         parallel to side i of every other. Radii grow by up to 2^-22 of themselves and of the greatest.

@@ -24,7 +24,7 @@ _FINEST = 1e-5
 def cylinder(
     radius: float, length: float, tolerance: float = TESSELLATION, sections: int | None = None
 ) -> Polyhedron:
-    """A prism that holds the cylinder along z: `sections` sides, or as many as the tolerance [m] needs.
+    """A prism that contains the cylinder along z: `sections` sides, or as many as the tolerance [m] needs.
 
     Raises:
         BadDimension: radius, length or tolerance not above 0, or fewer than three sections.
@@ -42,7 +42,7 @@ def cylinder(
 
 
 def sphere(radius: float, tolerance: float = TESSELLATION) -> Polyhedron:
-    """A polyhedron that holds the sphere, whose corners stand at most the tolerance [m] outside it.
+    """A polyhedron that contains the sphere, whose corners stand at most the tolerance [m] outside it.
 
     Raises:
         BadDimension: radius or tolerance not above 0, or a tolerance below 1e-5 of the radius.
@@ -53,7 +53,7 @@ def sphere(radius: float, tolerance: float = TESSELLATION) -> Polyhedron:
 
 
 def capsule(radius: float, length: float, tolerance: float = TESSELLATION) -> Polyhedron:
-    """A polyhedron that holds the capsule: the points within `radius` of a line of `length` [m] along z.
+    """A polyhedron that contains the capsule: the points within `radius` of a line of `length` [m] along z.
 
     Raises:
         BadDimension: radius or tolerance not above 0, length below 0, or a tolerance too fine.
@@ -104,7 +104,7 @@ def _upper_rings(radius: float, tolerance: float) -> tuple[int, np.ndarray]:
 def _fewest_faces(ratio: float) -> tuple[int, np.ndarray]:
     """Sectors n and the rings of the upper half, (radius, height) for a unit sphere, with the fewest faces.
 
-    `ratio` is how far corners may stand outside, of which 2^-21 is left for coarse rounding (`COARSE`).
+    `ratio` is how far corners may stand outside, of which 2^-21 is reserved for coarse rounding (`COARSE`).
     The best n is near 1.18 times the least possible (NOTES.md); up to a hundred from 1 to 1.6 times are tried.
     """
     reach = 1.0 + ratio - 2.0**-21
@@ -116,7 +116,7 @@ def _fewest_faces(ratio: float) -> tuple[int, np.ndarray]:
 
 
 def _latitudes(reach: float, n: int) -> np.ndarray:
-    """Latitudes at which flat bands touch, from the pole to the equator or below, as far apart as can be.
+    """Latitudes at which flat bands touch, from the pole to the equator or below, with the widest possible gaps.
 
     Neighbours touching at latitudes a > b meet at radius 1 / cos((a - b) / 2) on the meridian (a + b) / 2,
     and stand farther out at the corners of the sectors: norm^2 = sec^2(gap) (1 + cos^2(mean) tan^2(pi / n)).

@@ -1,4 +1,4 @@
-"""What a row of the table of shapes holds: a maker, and what its dimensions are called and may be.
+"""A row of the table of shapes: a maker, and the names and valid values of its dimensions.
 
 Not for: the shapes themselves, nor how a file format writes them (room `load`).
 """
@@ -13,7 +13,7 @@ from clearance.geometry.polyhedron import Polyhedron
 
 
 class Measure(Enum):
-    """What a dimension is."""
+    """A dimension of a shape."""
 
     LENGTH = "a length above 0 [m]"
     LENGTH_OR_ZERO = "a length, 0 or more [m]"

@@ -1,4 +1,4 @@
-"""Searchable forms that are kept: the same bits come back, nothing that is executed, and they are never needed."""
+"""The cache of searchable forms: the same bits come back, nothing that is executed, and no run needs it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.geometry import kept_surfaces as room
-from clearance.geometry import tree
+from clearance.geometry import surface_cache, tree
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder
 from clearance.kernels.mesh.surface import Surface
@@ -17,7 +16,7 @@ from clearance.kernels.mesh.surface import Surface
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The folder of what is kept, empty."""
+    """The folder of the cache, empty."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     return tmp_path / "clearance" / "surfaces"
 
@@ -47,7 +46,7 @@ def assert_same_bits(one: Surface, other: Surface) -> None:
 
 def test_a_surface_is_built_once_and_comes_back_with_the_same_bits(folder):
     build = Builder()
-    built, read = (room.kept_surface(round_one(), build) for _ in range(2))
+    built, read = (surface_cache.cached_surface(round_one(), build) for _ in range(2))
     assert build.n_built == 1 and len(list(folder.iterdir())) == 1
     assert_same_bits(built, read)
 
@@ -55,10 +54,10 @@ def test_a_surface_is_built_once_and_comes_back_with_the_same_bits(folder):
 @pytest.mark.parametrize("changed", ["package_digest", "processor"])
 def test_other_shapes_and_what_another_program_built_are_built(folder, changed, monkeypatch):
     build = Builder()
-    room.kept_surface(round_one(), build)
-    room.kept_surface(round_one(0.4), build)
-    monkeypatch.setattr(room, changed, lambda: "another")
-    room.kept_surface(round_one(), build)
+    surface_cache.cached_surface(round_one(), build)
+    surface_cache.cached_surface(round_one(0.4), build)
+    monkeypatch.setattr(surface_cache, changed, lambda: "another")
+    surface_cache.cached_surface(round_one(), build)
     assert build.n_built == 3
 
 
@@ -79,11 +78,11 @@ def with_objects(path: Path) -> None:
 )
 def test_what_is_damaged_or_not_plain_numbers_is_built_again(folder, damage):
     build = Builder()
-    built = room.kept_surface(round_one(), build)
+    built = surface_cache.cached_surface(round_one(), build)
     (path,) = folder.iterdir()
     damage(path)
     for _ in range(2):
-        assert_same_bits(built, room.kept_surface(round_one(), build))
+        assert_same_bits(built, surface_cache.cached_surface(round_one(), build))
     assert build.n_built == 2
 
 
@@ -92,7 +91,7 @@ def test_where_nothing_can_be_written_it_is_built_each_time(tmp_path, monkeypatc
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     build = Builder()
     for _ in range(2):
-        room.kept_surface(round_one(), build)
+        surface_cache.cached_surface(round_one(), build)
     assert build.n_built == 2
 
 
@@ -101,24 +100,24 @@ def test_where_nobody_knows_the_home_it_is_built(monkeypatch):
         raise RuntimeError("Could not determine home directory.")
 
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    monkeypatch.setattr(room.Path, "home", unknown)
+    monkeypatch.setattr(surface_cache.Path, "home", unknown)
     build = Builder()
-    room.kept_surface(round_one(), build)
+    surface_cache.cached_surface(round_one(), build)
     assert build.n_built == 1
 
 
-def test_the_oldest_goes_where_more_is_kept_than_may_be(folder, monkeypatch):
+def test_the_oldest_goes_where_the_cache_is_too_large(folder, monkeypatch):
     heights = (0.1, 0.2, 0.3, 0.4)
     for age, height in enumerate(heights):
-        room.kept_surface(round_one(height), tree._build)
+        surface_cache.cached_surface(round_one(height), tree._build)
         newest = max(folder.iterdir(), key=lambda path: path.stat().st_mtime)
         os.utime(newest, (age, age))
-    monkeypatch.setattr(room, "MOST_BYTES", 4 * newest.stat().st_size)
+    monkeypatch.setattr(surface_cache, "MOST_BYTES", 4 * newest.stat().st_size)
     build = Builder()
-    room.kept_surface(round_one(0.5), build)
+    surface_cache.cached_surface(round_one(0.5), build)
     assert len(list(folder.iterdir())) == 2
     for height in (0.5, 0.4, 0.3):
-        room.kept_surface(round_one(height), build)
+        surface_cache.cached_surface(round_one(height), build)
     assert build.n_built == 2  # 0.5, and 0.3 which was gone
 
 

@@ -1,4 +1,4 @@
-"""Searchable forms of shapes that an earlier run has built, as arrays in files: 43,000 faces take 0.3 s to build.
+"""Cache of searchable forms of shapes, as arrays in files: 43,000 faces need 0.3 s to build.
 
 A file goes by the digest of what it is built from, of this package's sources, of versions and processor. So what
 would be built again comes back bit for bit, and what cannot be read is built. Not for: how it is built (`tree`).
@@ -22,10 +22,10 @@ from clearance.kernels.mesh.surface import Surface
 from clearance.package_digest import package_digest
 
 MOST_BYTES = 500_000_000
-"""How much is kept; past that, what was written the longest ago goes until half is left."""
+"""The most bytes in the cache; beyond, the oldest files go until half remain."""
 
 
-def kept_surface(shape: Polyhedron, build: Callable[[Polyhedron], Surface]) -> Surface:
+def cached_surface(shape: Polyhedron, build: Callable[[Polyhedron], Surface]) -> Surface:
     """`build(shape)`, read from the user's cache where an earlier run has built it."""
     try:
         path = _path_of(shape)
@@ -34,9 +34,9 @@ def kept_surface(shape: Polyhedron, build: Callable[[Polyhedron], Surface]) -> S
     found = _read(path)
     if found is None:
         found = build(shape)
-        with suppress(OSError):  # no room, or no right to write: it is built in each run
+        with suppress(OSError):  # no space, or no right to write: it is built in each run
             _write(path, found)
-            _make_room(path.parent)
+            _remove_oldest(path.parent)
     return found
 
 
@@ -67,8 +67,8 @@ def _write(path: Path, surface: Surface) -> None:
         os.replace(whole, path)
 
 
-def _make_room(folder: Path) -> None:
-    """Takes away what was written the longest ago, where more is kept than may be."""
+def _remove_oldest(folder: Path) -> None:
+    """Removes the oldest files where the cache is too large."""
     files = [(path.stat(), path) for path in folder.glob("*.npz")]
     n_bytes = sum(found.st_size for found, _ in files)
     if n_bytes <= MOST_BYTES:
@@ -76,5 +76,5 @@ def _make_room(folder: Path) -> None:
     for found, path in sorted(files, key=lambda one: one[0].st_mtime):
         if 2 * n_bytes <= MOST_BYTES:
             return
-        path.unlink(missing_ok=True)  # another run takes it away too
+        path.unlink(missing_ok=True)  # another run removes it too
         n_bytes -= found.st_size
