@@ -1,4 +1,4 @@
-"""The points of a cloud that are near a body, by its bounds: of a scan of a room, few are near a link.
+"""The points of a cloud that are near a body, by its bounds: few points of a scanned hall are near a link.
 
 Not for: whether they are inside (`inside`, and `kernels.search.containment` for surfaces that are closed).
 """
@@ -46,8 +46,8 @@ class CloudPoints(NamedTuple):
             corners @ world_from_body[:3, :3].T + world_from_body[:3, 3] - world_from_cloud[:3, 3]
         )
         corners = corners @ world_from_cloud[:3, :3]
-        room = _ROUNDING * np.abs(corners).max()
-        low, high = corners.min(axis=0) - room, corners.max(axis=0) + room
+        slack = _ROUNDING * np.abs(corners).max()
+        low, high = corners.min(axis=0) - slack, corners.max(axis=0) + slack
         points = self.heads if one_of_each else self.every
         first, last = (
             np.searchsorted(points[:, 0], low[0]),

@@ -1,7 +1,7 @@
 """A point strictly inside several polytopes, or a certificate that there is none.
 
-`common_point` asks for the deepest point: the x with the greatest t such that x keeps t times each face's
-distance from its own centroid. Not for: the paper's way (`common_point_paper`), the common region
+`common_point` finds the deepest point: the x with the greatest t such that x is inside by t times each face's
+distance from its own centroid. Not for: the paper's method (`common_point_paper`), the common region
 (`intersection`).
 """
 
@@ -57,14 +57,14 @@ class SeparationCertificate:
 
 @dataclass(frozen=True)
 class CommonPoint:
-    """Where bodies meet.
+    """The common point of bodies.
 
     Args:
         relation: "overlap" (the point is strictly inside all), "touch" or "apart".
         point: (3,) [m], None when apart.
         depth: [-] the t reached, 1 at a body's centroid; about 0 when touching, below 0 when apart.
         certificate: the faces that forbid an inner point; None on overlap.
-        n_faces: faces (for GJK: support points) looked at; passes: rounds over all bodies.
+        n_faces: faces (for GJK: support points) visited; passes: rounds over all bodies.
         warm: the basis: what a next call on the same bodies, moved, may begin with.
     """
 
@@ -114,7 +114,7 @@ def common_point(
     """The deepest point common to all, or the faces that prove there is none.
 
     Args:
-        poses: `world_from_body` (4, 4) of each; all at rest if None. Bodies are not copied: the way to
+        poses: `world_from_body` (4, 4) of each; all at rest if None. Bodies are not copied: the map to
             follow a trajectory.
         warm: the `warm` of an answer for the same bodies in a near pose. The answer is the same without.
 
@@ -123,9 +123,9 @@ def common_point(
         NotFinite: a pose that is not.
 
     Exactness: "overlap" is never said of bodies whose inner points are fewer than rounding
-        (`ROUNDING` times the size) deep; each body's faces are looked at through a map that misses none; at
+        (`ROUNDING` times the size) deep; each body's faces are visited through a map that misses none; at
         most `MAX_PASSES` rounds, counted.
-    Source: Tereshchenko (2013), section 2.2 asks for the point; the linear programme in four unknowns with
+    Source: Tereshchenko (2013), section 2.2 needs the point; the linear programme in four unknowns with
         faces on demand is the simplex method (Dantzig 1963) on its dual.
     """
     bodies = checked_bodies(polytopes)
@@ -141,7 +141,7 @@ def common_point(
         rows, frames, origin, block, names, MARGIN, begin, MAX_PASSES
     )
     if not settled and block[SOLUTION, T] > 0.0:
-        _keep_what_is_sure(bodies, frames, origin, block[SOLUTION])
+        _lower_to_what_is_sure(bodies, frames, origin, block[SOLUTION])
     return _judged(bodies, origin, block, names, n_faces, passes)
 
 
@@ -149,10 +149,10 @@ def _names_a_face(bodies: list[Polytope], name: int) -> bool:
     return name >= 0 and name >> 32 < len(bodies) and name & 0xFFFFFFFF < bodies[name >> 32].n_faces
 
 
-def _keep_what_is_sure(
+def _lower_to_what_is_sure(
     bodies: list[Polytope], frames: np.ndarray, origin: np.ndarray, solution: np.ndarray
 ) -> None:
-    """Sets t to what the point really keeps of every face, where the simplex method came to no end."""
+    """Sets t to the point's least share of all faces, where the simplex method did not end."""
     point = solution[:T] + origin
     for i, body in enumerate(bodies):
         frame = frames[min(i, len(frames) - 1)]

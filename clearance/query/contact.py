@@ -1,4 +1,4 @@
-"""What it means that two bodies overlap: how deep, which way out, which region, which volume.
+"""Overlap of two bodies: penetration depth, separation vector, common region and its volume.
 
 Depth comes from convex parts (`penetration`, `retreat`), the region of convex bodies from the exact cut
 (`intersection`), that of concave ones from manifold3d. Whatever is not exact is a pair of bounds. Not for:
@@ -42,9 +42,9 @@ class Contact:
     """The overlap of body a with body b.
 
     Attributes:
-        penetration: [m] `a` moved by `penetration * direction` is parted from `b`; the shortest such way, or an
+        penetration: [m] `a` moved by `penetration * direction` is separate from `b`; the shortest such, or an
             upper bound of it.
-        penetration_at_least: [m] no shorter way parts them.
+        penetration_at_least: [m] no shorter translation separates them.
         direction: (3,) unit, world frame: the retreat direction of `a`.
         volume: [m^3] of the region that both fill, or an upper bound. volume_at_least: a lower bound.
         centroid: (3,) [m] of the region, world frame; the common point where they only touch.
@@ -83,11 +83,11 @@ def contact(
     rough: bool = False,
     bounded: bool = True,
 ) -> Contact | None:
-    """How two bodies overlap; None if they are apart.
+    """The overlap of two bodies; None if they are separate.
 
     Args:
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
-        rough: concave bodies are not cut, which takes milliseconds: bounds of the depth are wider.
+        rough: concave bodies are not cut, which needs milliseconds only: bounds of the depth are wider.
         bounded: False leaves the lower bound of the depth at 0 where it is not known anyway: half the work.
 
     Raises:
@@ -150,7 +150,7 @@ class BodyPair:
         return replace(self, near_a=near_a, near_b=near_b)
 
     def shared(self, b_from_a: np.ndarray) -> ClosedMesh | None:
-        """What the meshes of two solids share, not both convex; None where that is not known."""
+        """The common region of the meshes of two solids, not both convex; None where it is not known."""
         try:
             one = solid_for(self.parts_a, self.near_a, self.b, inverse(b_from_a))
             other = solid_for(self.parts_b, self.near_b, self.a, b_from_a)
@@ -216,7 +216,7 @@ class _PlacedPair:
     # ---- depth
 
     def _depth(self, *, bounded: bool) -> tuple[Ray, float]:
-        """The way out, and what no way out is shorter than, 0 where that is neither known nor asked for."""
+        """The separation vector, and a lower bound of its length; 0 where that is neither known nor needed."""
         whole = penetration(_joined(self.outer_a), _joined(self.outer_b))
         ray = Ray(whole.depth, whole.direction)
         if self._both_convex and not self._faceted:
@@ -224,7 +224,7 @@ class _PlacedPair:
         if self._by_region:
             ray = self._through_region(ray)
         elif self._needs_search:
-            extra = np.array([whole.direction, *(thin.direction for thin in self._thin_rays())])
+            extra = np.array([whole.direction, *(thin.direction for thin in self._rays_across())])
             rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
         if not bounded:
@@ -235,7 +235,7 @@ class _PlacedPair:
 
     @property
     def _needs_search(self) -> bool:
-        """True where hulls are more than the bodies; surfaces without an inside are left as their hulls."""
+        """True where hulls are more than the bodies; hulls stand for surfaces without an inside."""
         return self._both_closed and not all(parts.tight for parts in self._both_parts)
 
     @property
@@ -250,9 +250,9 @@ class _PlacedPair:
         )
 
     def _through_region(self, proven: Ray) -> Ray:
-        """The shortest way that the bodies confirm along what the region is thin in, or its normals."""
+        """The shortest translation that the bodies confirm, along thin directions or normals of the region."""
         region = self._region[0]
-        rays = sorted([*self._thin_rays(), *ways_through(region)], key=lambda ray: ray.length)
+        rays = sorted([*self._rays_across(), *ways_through(region)], key=lambda ray: ray.length)
         found = shortened_through(
             self._padded(rays), proven.length, self._is_clear, self._still_shared
         )
@@ -277,7 +277,7 @@ class _PlacedPair:
         return [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
 
     def _confirmed(self, rays: list[Ray]) -> Ray:
-        """The shortest way that the bodies confirm; the last of `rays` is proven by the hulls anyway."""
+        """The shortest translation that the bodies confirm; the hulls prove the last of `rays` anyway."""
         padded = self._padded(rays)
         return shortened(padded, self._is_clear) or padded[-1]
 
@@ -287,7 +287,7 @@ class _PlacedPair:
         return distance(self.pair.a, self.pair.b, pose_a=pose).distance > 0.0
 
     def _depth_of_inner(self) -> float:
-        """[m] the depth of the convex bodies inside both: no way out of the bodies is shorter.
+        """[m] the depth of the convex bodies inside both: no translation that separates the bodies is shorter.
 
         Pairs in turn by what 26 directions leave of their depth, until that is no more than the greatest found.
         """
@@ -303,28 +303,28 @@ class _PlacedPair:
         return found
 
     @cached_property
-    def _thin(self) -> Penetration | None:
-        """How thin the hull of the region is, and along what; None where the region is empty."""
+    def _width(self) -> Penetration | None:
+        """The width of the hull of the region, and its direction; None where the region is empty."""
         region = self._region[0]
         if region.is_empty:
             return None
         corners = ConvexCorners(region.vertices, np.zeros((0, 3)))
         return penetration(corners, corners)
 
-    def _thin_rays(self) -> list[Ray]:
+    def _rays_across(self) -> list[Ray]:
         """The two ways out of what is shared where it is thinnest; none where it is empty."""
-        thin = self._thin
+        thin = self._width
         if thin is None:
             return []
-        return [Ray(thin.depth, way) for way in (thin.direction, -thin.direction)]
+        return [Ray(thin.depth, direction) for direction in (thin.direction, -thin.direction)]
 
     def _width_of_region(self, more_than: float, only_convex: bool) -> float:
-        """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself.
+        """[m] the width of a convex part of the region: a separation of the bodies separates it from itself.
 
-        Where the whole hull is no wider than `more_than` [m], no part of it is looked for.
+        Where the whole hull is no wider than `more_than` [m], no part of it is searched for.
         """
         region, volume, volume_at_least = self._region
-        if volume_at_least < volume or self._thin is None or self._thin.depth <= more_than:
+        if volume_at_least < volume or self._width is None or self._width.depth <= more_than:
             return 0.0
         if len(region.vertices) > MOST_CORNERS and any(parts.rough for parts in self._both_parts):
             return 0.0
@@ -368,7 +368,7 @@ class _PlacedPair:
 
     @cached_property
     def _mesh_shared(self) -> ClosedMesh | None:
-        """What the meshes themselves share, of closed bodies that are not both convex."""
+        """The common region of the meshes, for closed bodies that are not both convex."""
         if self._both_convex or not self._both_closed or not boolean.available():
             return None
         return self.pair.shared(self.b_from_a)

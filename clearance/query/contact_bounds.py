@@ -1,4 +1,4 @@
-"""Proven bounds on an overlap where nothing else may be asked: a few products per corner of both bodies.
+"""Proven bounds on an overlap where the effort is spent: a few products per corner of both bodies.
 
 Not for: the depth itself (`contact`).
 """
@@ -29,17 +29,17 @@ def bounded_contact(
         witness: (3,) a common point. why: a note says why no more is known.
 
     Exactness: moved by `penetration * direction` no corner of a is below one of b along that direction, so the
-        bodies are parted whether they are closed or not. What both fill lies in both boxes.
+        bodies are separate whether they are closed or not. Their common region lies in both boxes.
     """
     here = a.vertices @ b_from_a[:3, :3].T + b_from_a[:3, 3]
     supports = _extent_of(b) - (here @ TWENTY_SIX.T).min(axis=0)
     least = int(supports.argmin())
     low = np.maximum(here.min(axis=0), b.bounds[0])
     high = np.minimum(here.max(axis=0), b.bounds[1])
-    room = ROUNDING * float(np.abs([here.min(axis=0), here.max(axis=0), *b.bounds]).max())
-    volume = float(np.prod(np.maximum(0.0, high - low + room)))
+    slack = ROUNDING * float(np.abs([here.min(axis=0), here.max(axis=0), *b.bounds]).max())
+    volume = float(np.prod(np.maximum(0.0, high - low + slack)))
     return Contact(
-        penetration=max(0.0, float(supports[least]) + room),
+        penetration=max(0.0, float(supports[least]) + slack),
         penetration_at_least=0.0,
         direction=TWENTY_SIX[least].copy(),
         volume=volume,

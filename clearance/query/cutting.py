@@ -1,6 +1,6 @@
 """One polytope cut by others: the working state of `kernels.polytope.cut`.
 
-Coordinates are taken about a common inner point before anything is computed, so that thin regions keep
+Coordinates are taken about a common inner point before anything is computed, so that thin regions have
 their digits. Not for: deciding whether there is a region (`common_point`).
 """
 
@@ -40,7 +40,7 @@ PATCHED_FROM = 2000
 """Faces from which on the second body's inner surface is put in as a whole: a third less time at 10000 faces,
 none gained at 2000."""
 
-ROOM = 4
+ROWS_A_VERTEX = 4
 """Rows at first for each vertex of the body that is cut; doubled when they are full."""
 
 
@@ -49,7 +49,7 @@ SPARSE = 0.5
 
 
 class BrokenRim(Exception):
-    """The rim of a cut was not one ring: rounding has broken the surface; another way must be taken."""
+    """The rim of a cut was not one ring: rounding has broken the surface; another method is needed."""
 
 
 @dataclass(frozen=True)
@@ -100,15 +100,15 @@ class Cutting:
         form = body.trivalent
         n = len(form.corner)
         self.task = task
-        self._room(ROOM * n)
+        self._reserve(ROWS_A_VERTEX * n)
         begin(self.spots, self.mesh, task.rows, i_first, form.corner, form.mesh, task.origin)
         self.state = np.array([0, 0, n, i_first, i_first], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
 
-    def _room(self, n_rows: int) -> None:
+    def _reserve(self, n_rows: int) -> None:
         """Working space for so many rows, in one block.
 
-        The allocator keeps what is freed only up to twice its largest block: in four blocks it gave the memory
+        The allocator caches freed memory only up to twice its largest block: in four blocks it gave the memory
         back each time, and the 210 page faults of the next call took 0.5 ms.
         """
         self.block = block = np.empty(12 * n_rows)
@@ -119,18 +119,18 @@ class Cutting:
 
     @property
     def arrays(self) -> Cut:
-        """The polytope as a kernel takes it that is called seldom: 3 us more than its three arrays."""
+        """The polytope as an argument of a kernel that is called seldom: 3 us more than its three arrays."""
         return Cut(self.spots, self.mesh, self.state, self.work, self.rim, self.table)
 
     def _grown(self) -> None:
         spots, mesh, work, used = self.spots, self.mesh, self.work, self.state[N_ROWS]
-        self._room(2 * len(spots))
+        self._reserve(2 * len(spots))
         self.spots[:used], self.mesh[:used] = spots[:used], mesh[:used]
         self.mesh[:used, LOOKED] = 0  # a call that came to no end may have put vertices off
         self.work[FREE, : self.state[N_FREE]] = work[FREE, : self.state[N_FREE]]
 
     def halve(self, side: float) -> None:
-        """Keeps what is on one side of a plane through the origin; `side` is 1 or -1.
+        """Keeps the half on one side of a plane through the origin; `side` is 1 or -1.
 
         Raises:
             Broken: see there.
@@ -140,7 +140,7 @@ class Cutting:
             raise BrokenRim
 
     def by(self, *i_bodies: int) -> bool:
-        """Cuts by bodies in turn, in one call of a kernel; False if nothing is left.
+        """Cuts by bodies in turn, in one call of a kernel; False if nothing remains.
 
         Raises:
             Broken: see there.
@@ -205,7 +205,7 @@ def by_edges(block: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndar
 
 
 def cut_down(task: CuttingTask, side: float = 0.0) -> Cutting | None:
-    """What all bodies share, or its half on one `side` (1 or -1); None if rounding leaves nothing.
+    """The common region of all bodies, or its half on one `side` (1 or -1); None if rounding leaves nothing.
 
     The smallest body is cut by the others, those first whose surface comes nearest to the common point: what
     they leave is small soon.
@@ -225,7 +225,7 @@ def cut_down(task: CuttingTask, side: float = 0.0) -> Cutting | None:
 
 
 def cut_whole(task: CuttingTask) -> Cutting:
-    """What all bodies share, of which the halves are known already.
+    """The common region of all bodies, from its known halves.
 
     Raises:
         Broken: see there; also where rounding leaves nothing of the whole.

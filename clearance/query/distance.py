@@ -11,7 +11,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernels.mesh.convex import seem_convex
 from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
-from clearance.query.one_pair import kept_pair
+from clearance.query.one_pair import cached_pair
 from clearance.query.result import Nearest
 
 METHODS = ("exact", "paper")
@@ -31,7 +31,7 @@ def distance(
     Args:
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
         method: "exact", or "paper" for the first paper's algorithm as published.
-        tolerance: [m] of the paper's rule 1: polygons whose bounding spheres are as far apart or farther are left
+        tolerance: [m] of the paper's rule 1: polygons whose bounding spheres are at least as far apart are left
             out, so that what is farther is not measured. None, as the paper leaves it open, leaves out none.
 
     Raises:
@@ -39,7 +39,7 @@ def distance(
             exact one. BadDimension: a tolerance that is not above 0.
 
     Exactness: searched in float64, the candidates that can win measured in 106 bits, contact decided by
-        exact predicates, for the float vertices and poses as given; `error_bound` holds. Overlap, and a body
+        exact predicates, for the float vertices and poses as given; `error_bound` is proven. Overlap, and a body
         wholly inside a closed one, is contact.
     Ties: the least face indices.
     """
@@ -51,7 +51,7 @@ def distance(
         return distance_paper(
             a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance
         )
-    return kept_pair(a, b).nearest(pose_a, pose_b)
+    return cached_pair(a, b).nearest(pose_a, pose_b)
 
 
 def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> Nearest:

@@ -1,8 +1,8 @@
 """The common region of convex polytopes, with its volume and where each of its faces comes from.
 
-Two ways: cutting the smallest body by the faces of the others ("cut", two threads take the halves on either
+Two methods: cutting the smallest body by the faces of the others ("cut", two threads take the halves on either
 side of a plane), and the paper's duals about the common point with one hull over all half-spaces by Qhull
-("dual"). Cutting is the faster at every size measured (`POLYTOPES.md`); the dual way is what is left where
+("dual"). Cutting is the faster at every size measured (`POLYTOPES.md`); the dual method remains where
 rounding breaks it. Not for: concave bodies.
 """
 
@@ -31,12 +31,12 @@ HALVED_FROM = 20000
 
 @dataclass(frozen=True, eq=False)
 class Intersection:
-    """What bodies share.
+    """The common region of bodies.
 
     Args:
         relation: "overlap", "touch" or "apart".
         volume: [m^3], exactly 0 unless "overlap".
-        centroid: (3,) [m], of the region, polygon, segment or point; None when apart.
+        centroid: (3,) [m], of the region, polygon, segment or point; None when separate.
         common: the common point, or the certificate that there is no inner one.
         method: "cut", "dual", or "none" where nothing solid is shared.
     """
@@ -122,7 +122,7 @@ def intersect(
         raise BadDimension(f"threads is {threads!r}", valid="1 or more")
     bodies = checked_bodies(polytopes)
     met = common_point(bodies)
-    if met.point is None:  # apart
+    if met.point is None:  # separate
         return Intersection("apart", 0.0, None, met, "none")
     if met.relation == "overlap":
         region, moments, used = _region(CuttingTask.about(bodies, met.point), method, threads)
@@ -137,7 +137,7 @@ def intersect(
 def _region(
     task: CuttingTask, method: str, threads: int
 ) -> tuple[list[Cutting] | Region | None, np.ndarray, str]:
-    """(the region, its moments, the way)."""
+    """(the region, its moments, the method)."""
     if method != "dual":
         try:
             found = _cut(task, threads)
@@ -167,7 +167,7 @@ def _cut(task: CuttingTask, threads: int) -> list[tuple[Cutting, np.ndarray] | N
         body.prepared()
     _ = task.order  # once, ahead of both
     other: Future = Future()
-    worker = Thread(target=_answer, args=(other, task))  # a pool takes 50 us longer to start
+    worker = Thread(target=_answer, args=(other, task))  # a pool needs 50 us longer to start
     worker.start()
     try:
         return [_part(task, 1.0), other.result()]
@@ -179,12 +179,12 @@ def _answer(other: Future, task: CuttingTask) -> None:
     """The half on the far side, or why there is none."""
     try:
         other.set_result(_part(task, -1.0))
-    except BaseException as error:  # it is raised where the result is asked for
+    except BaseException as error:  # it is raised where the result is read
         other.set_exception(error)
 
 
 def _part(task: CuttingTask, side: float = 0.0) -> tuple[Cutting, np.ndarray] | None:
-    """What is left on one side, and its moments."""
+    """The part on one side, and its moments."""
     made = cut_down(task, side)
     return None if made is None else (made, made.moments())
 

@@ -1,4 +1,4 @@
-"""Arrays for questions about one pair of solids, which takes longer to make than many an answer."""
+"""Arrays for questions about one pair of solids, which need longer to make than many an answer."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ from clearance.query.result import Nearest
 
 _AT_REST = np.eye(4)
 
-HELD = 256
-"""Pairs that are kept for each thread, a kilobyte each."""
+MOST_PAIRS = 256
+"""Pairs that are cached for each thread, a kilobyte each."""
 
 
 class OnePair:
     """A pair of solids as the search has it, and what it has found; for one thread at a time.
 
     Args:
-        scratch: of `new_scratch`; pairs that are asked in turn may share it.
-        goes_on: False if every question is asked afresh.
+        scratch: of `new_scratch`; pairs that are measured in turn may share it.
+        goes_on: False if every search begins anew.
 
     Attributes:
-        held: of `hold_pair`. It knows nothing of the polyhedra, so that it does not keep them alive.
+        held: of `hold_pair`. It refers to none of the polyhedra, so that it does not keep them alive.
         doubt: what of one may be inside the other, if anything.
     """
 
     def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch, *, goes_on: bool) -> None:
         require_polyhedron(a, "a"), require_polyhedron(b, "b")
-        self.held = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
+        self.arrays = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
         self.doubt = doubt_of(a, b)
         self._how = 0 if goes_on else AFRESH
         self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)
-        self._ask = nearest_at_poses.prepared(self.held, *self._poses, self._how, *self._rows)
+        self._ask = nearest_at_poses.prepared(self.arrays, *self._poses, self._how, *self._rows)
 
     def nearest(self, given_a: np.ndarray | None, given_b: np.ndarray | None) -> Nearest:
         """The answer at one pose of each, (4, 4) or None for the identity."""
@@ -56,7 +56,7 @@ class OnePair:
         if self._ask() != -1:
             validated_pose(pose_a), validated_pose(pose_b)
             how |= POSES_ARE_RIGID
-            nearest_at_poses(self.held, *self._poses, how, *self._rows)
+            nearest_at_poses(self.arrays, *self._poses, how, *self._rows)
         numbers, points, counts = self._rows
         ((distance, error),), (point_a, point_b) = numbers.tolist(), points[0].copy()
         ((face_a, face_b, n_nodes, n_faces, n_exact),) = counts.tolist()
@@ -78,8 +78,8 @@ def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
 
 
-class _KeptPair:
-    """A pair that was asked about; its arrays go when one of the solids does."""
+class _CachedPair:
+    """A cached pair; its arrays go when one of the solids does."""
 
     def __init__(self, a: Polyhedron, b: Polyhedron, pair: OnePair) -> None:
         self.pair: OnePair | None = pair
@@ -93,26 +93,26 @@ class _KeptPair:
 
 
 class _Thread(threading.local):
-    """What a thread has asked about."""
+    """The pairs of a thread."""
 
     def __init__(self) -> None:
-        self.asked: dict[tuple[int, int], _KeptPair] = {}
+        self.pairs: dict[tuple[int, int], _CachedPair] = {}
         self.scratch = new_scratch()
 
 
 _thread = _Thread()
 
 
-def kept_pair(a: Polyhedron, b: Polyhedron) -> OnePair:
+def cached_pair(a: Polyhedron, b: Polyhedron) -> OnePair:
     """Arrays for a pair: those of an earlier question of this thread, if there is one."""
-    asked = _thread.asked.get((id(a), id(b)))
+    found = _thread.pairs.get((id(a), id(b)))
     # a solid that is gone may have had the same address
-    if asked is not None and asked.pair is not None and asked.is_of(a, b):
-        return asked.pair
-    if len(_thread.asked) == HELD:
-        _thread.asked.clear()
+    if found is not None and found.pair is not None and found.is_of(a, b):
+        return found.pair
+    if len(_thread.pairs) == MOST_PAIRS:
+        _thread.pairs.clear()
     pair = OnePair(a, b, _thread.scratch, goes_on=False)
-    _thread.asked[id(a), id(b)] = _KeptPair(a, b, pair)
+    _thread.pairs[id(a), id(b)] = _CachedPair(a, b, pair)
     return pair
 
 

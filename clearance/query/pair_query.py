@@ -1,4 +1,4 @@
-"""Two solids asked about at many poses: an object that keeps what the last answer has found.
+"""Two solids measured at many poses: an object that caches the findings of the last answer.
 
 Not for: single questions (`distance`, which gives the same answers).
 """
@@ -40,7 +40,7 @@ class NearestAtPoses:
     Attributes:
         distances: (n,) [m]; 0 where they touch, overlap, or one is inside the other.
         points: (n, 2, 3) [m] witness points on a and b in the world frame.
-        faces: (n, 2) polygons that hold them; -1 where one body is inside the other.
+        faces: (n, 2) polygons with the witness points; -1 where one body is inside the other.
         error_bounds: (n,) [m].
         undecided: (n,) True where one body may be inside the other, as `Nearest.inside` says.
     """
@@ -55,7 +55,7 @@ class NearestAtPoses:
 class Query:
     """The distance of one pair of polyhedra at many poses.
 
-    The answers are those of `distance`, whatever was asked before; poses near the last ones are answered faster.
+    The answers are those of `distance`, whatever came before; poses near the last ones are answered faster.
     Threads may share a query, but its questions are answered one at a time; give each thread its own.
 
     Args:
@@ -72,7 +72,7 @@ class Query:
         self._pair = OnePair(self.a, self.b, new_scratch(), goes_on=True)
 
     def _alone(self) -> threading.Lock:
-        """The lock under which the pair is asked; both are made anew in a process that was forked off."""
+        """The lock under which the pair is measured; both are made anew in a process that was forked off."""
         if self._process != _processes:
             self._begin()
         return self._lock
@@ -116,12 +116,12 @@ class Query:
             )
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._alone():
-            held = self._pair.held
-            if nearest_at_poses(held, poses_a, poses_b, 0, numbers, points, counts) != -1:
+            arrays = self._pair.arrays
+            if nearest_at_poses(arrays, poses_a, poses_b, 0, numbers, points, counts) != -1:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 how = POSES_ARE_RIGID
-                nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts)
+                nearest_at_poses(arrays, poses_a, poses_b, how, numbers, points, counts)
         distances = numbers[:, 0].copy()
         undecided = _undecided(self._pair, distances, poses_a, poses_b)
         return NearestAtPoses(
@@ -134,13 +134,13 @@ def _undecided(
 ) -> np.ndarray:
     """(n,) `NearestAtPoses.undecided`."""
     found = np.zeros(len(distances), dtype=bool)
-    apart = np.flatnonzero(distances > 0.0)
-    if pair.doubt is not None and len(apart):
+    separate = np.flatnonzero(distances > 0.0)
+    if pair.doubt is not None and len(separate):
         at_a, at_b = (
-            np.resize(poses if len(poses) == 1 else poses[apart], (len(apart), 4, 4))
+            np.resize(poses if len(poses) == 1 else poses[separate], (len(separate), 4, 4))
             for poses in (poses_a, poses_b)
         )
-        found[apart] = pair.doubt.at(at_a, at_b)
+        found[separate] = pair.doubt.at(at_a, at_b)
     return found
 
 

@@ -1,6 +1,6 @@
 """The first paper's distance, as published: `method="paper"`.
 
-Kept to be judged, not to be trusted: what it answers is the distance of two real points of the
+A method to be judged, not to be trusted: it answers the distance of two real points of the
 two surfaces, hence (to rounding) never below their true distance, and often above it; `PAPER.md`
 has the figures. It knows no contact: for overlapping bodies it answers what the iteration ends on,
 0 or more, and often infinity, because rule 2 cuts the faces that have passed each other; for a body
@@ -32,17 +32,17 @@ _bodies: weakref.WeakKeyDictionary[Polyhedron, PaperBody] = weakref.WeakKeyDicti
 
 
 def polygon_distance_paper(p: np.ndarray, q: np.ndarray) -> Nearest:
-    """What the paper's section 3 answers for two convex polygons.
+    """The answer of the paper's section 3 for two convex polygons.
 
     Args:
         p, q: (n, 3), (m, 3) corners in order [m].
 
     Returns:
-        `tally` holds `passes` through step 2 and `not_converged` (0 or 1); `error_bound` is
+        `tally` has `passes` through step 2 and `not_converged` (0 or 1); `error_bound` is
         infinite.
 
     Raises:
-        BadPolygon: all corners on one line; the paper asks for polygons with area.
+        BadPolygon: all corners on one line; the paper needs polygons with area.
     """
     p, q = (np.asarray(corners, dtype=np.float64) for corners in (p, q))
     origin = p[0]  # differenced first, so that places far from the world's origin cost no digits
@@ -71,12 +71,12 @@ def distance_paper(
     rule_1: bool = True,
     rule_2: bool = True,
 ) -> Nearest:
-    """What the paper's section 4 answers for two bodies; cheap enough to call for each pair of
+    """The answer of the paper's section 4 for two bodies; cheap enough to call for each pair of
     each step.
 
     Args:
         pose_a, pose_b: (4, 4) `world_from_body`, valid rotations; the identity if not given.
-        tolerance: [m] of rule 1: face pairs whose bounding spheres are at least so far apart are
+        tolerance: [m] of rule 1: face pairs whose bounding spheres are at least so far from each other are
         cut. rule_1, rule_2: False leaves the rule out.
 
     Returns:

@@ -29,7 +29,7 @@ SEEDS = 96
 
 
 class ConvexCorners(NamedTuple):
-    """What the search needs of a convex body: vertices (n, 3) [m], outward normals (f, 3) of some faces."""
+    """A convex body for the search: vertices (n, 3) [m], outward normals (f, 3) of some faces."""
 
     vertices: np.ndarray
     normals: np.ndarray
@@ -46,9 +46,9 @@ class Penetration:
     """How far `a` must go to leave `b`.
 
     Attributes:
-        depth: [m] length of the shortest translation found; 0 when they touch or are apart.
+        depth: [m] length of the shortest translation found; 0 when they touch or are separate.
         at_least: [m] no shorter translation parts them; equals `depth` to rounding.
-        direction: (3,) unit: `a` moved by `depth * direction` is parted from `b`.
+        direction: (3,) unit: `a` moved by `depth * direction` is separate from `b`.
         rounds: hulls built.
     """
 
@@ -79,7 +79,7 @@ def penetration(a: Polytope | ConvexCorners, b: Polytope | ConvexCorners) -> Pen
 
 
 def depths_at_most(a: Sequence[ConvexCorners], b: Sequence[ConvexCorners]) -> np.ndarray:
-    """(len(a), len(b)) [m] no less than the depth of each of `a` in each of `b`, by 26 directions; 0 if apart."""
+    """(len(a), len(b)) [m] no less than the depth of each of `a` in each of `b`, by 26 directions, or 0."""
     if not a or not b:
         return np.zeros((len(a), len(b)))
     lowest = np.array([(TWENTY_SIX @ body.vertices.T).min(axis=1) for body in a])
@@ -130,7 +130,7 @@ class _Search:
 
 
 def _every(rows: np.ndarray, most: int) -> np.ndarray:
-    """At most `most` of the rows, evenly taken."""
+    """At most `most` of the rows, evenly chosen."""
     return rows[:: max(1, -(-len(rows) // most))]
 
 

@@ -1,4 +1,4 @@
-"""The surface of a common region: its moments at once, its corners, faces and their origin when asked for.
+"""The surface of a common region: its moments at once, its corners, faces and their origin on demand.
 
 A region cut in two halves is sewn together here. Not for: finding the region (`cutting`, `intersection`).
 """
@@ -26,12 +26,12 @@ class Region:
 
     @classmethod
     def of(cls, cutting: Cutting) -> Region:
-        """What is left of one polytope."""
+        """The remaining part of one polytope."""
         return cls(cutting.task, cutting.spots[:, :3], *cutting.rings())
 
     @classmethod
     def sewn(cls, halves: list[Cutting]) -> Region:
-        """What is left of two halves. If rounding has made their seams differ, all is cut again as one."""
+        """The remaining part of two halves. If rounding has made their seams differ, all is cut again as one."""
         one, other = (cls.of(half) for half in halves)
         rings, others = one._rings(), other._rings()
         seam = one.task.seam
@@ -61,24 +61,24 @@ class Region:
     def surface(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
         """(corners (n, 3) [m], corners of each face, (f, 2) body and face each comes from).
 
-        Edges no longer than rounding become a corner; faces left with fewer than three corners go.
+        Edges no longer than rounding become a corner; faces with fewer than three remaining corners go.
         """
         rows, index = np.unique(self.corners, return_inverse=True)
         places = self.places[rows]
         ends = np.column_stack([index, index[rings_of(self.starts).ahead]])
         lengths = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
         merged = _least_of_each_cluster(len(rows), ends[lengths <= 8.0 * self.task.tolerance])
-        kept, number = np.unique(merged, return_inverse=True)
-        rings, kept_planes = [], []
+        corners, number = np.unique(merged, return_inverse=True)
+        rings, planes = [], []
         for name, ring in zip(self.planes, np.split(number[index], self.starts[1:-1]), strict=True):
             ring = ring[ring != np.roll(ring, 1)]
             if len(np.unique(ring)) > 2:
                 rings.append(ring)
-                kept_planes.append(name)
-        names = np.array(kept_planes, dtype=np.int64)
+                planes.append(name)
+        names = np.array(planes, dtype=np.int64)
         owners = np.searchsorted(self.task.bases, names, side="right") - 1
         provenance = np.column_stack([owners, names - self.task.bases[owners]])
-        return places[kept] + self.task.origin, rings, provenance
+        return places[corners] + self.task.origin, rings, provenance
 
 
 def _opened(ring: list[int], on_seam: set[int]) -> list[int] | None:

@@ -1,7 +1,7 @@
-"""What the common region of two bodies says of their depth: directions worth trying, and balls inside it.
+"""Bounds of the depth from the common region of two bodies: directions worth trying, and balls inside it.
 
 Both from above and from below without cutting a body into convex parts. Not for: making the region (`contact`), or
-confirming a way out (`retreat`).
+confirming a separation (`retreat`).
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ MOST_WAYS = 16
 """Normals of the region along which it is measured, both ways each: those of the greatest area."""
 
 CHORDS = 12
-"""Triangles of the region below which a ball is tried, in the middle of the way through."""
+"""Triangles of the region below which a ball is tried, in the middle of the chord."""
 
 SURE = 1.0 - 1e-9
-"""[-] What is taken of a ball's radius: its middle and distances are rounded."""
+"""[-] The share of a ball's radius that counts: its middle and distances are rounded."""
 
 
 def ways_through(region: ClosedMesh) -> list[Ray]:
@@ -57,7 +57,7 @@ def thickness(region: ClosedMesh, directions: np.ndarray) -> np.ndarray:
 def ball_depth(region: ClosedMesh, bodies: list[np.ndarray], lost: float) -> float:
     """[m] no shorter translation parts two bodies that share the region.
 
-    A ball about a point of the region that lies in body a, and one in body b: to part them takes the sum of their
+    A ball about a point of the region that lies in body a, and one in b: to separate them takes the sum of their
     radii. A point's radius is its distance from the body's own triangles.
 
     Args:
@@ -88,7 +88,7 @@ def volume_of_facets(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> 
 
 
 def _middles_of_chords(corners: np.ndarray) -> np.ndarray:
-    """(k, 3) [m] points inside a closed surface (t, 3, 3): half way from a triangle to what is opposite."""
+    """(k, 3) [m] points inside a closed surface (t, 3, 3): half way from a triangle to the opposite one."""
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = np.linalg.norm(sides, axis=1)
     largest = np.argsort(-areas, kind="stable")[: CHORDS // 2]

@@ -14,14 +14,14 @@ class Nearest:
     Attributes:
         distance: [m]; 0 when they touch or overlap.
         point_a, point_b: (3,) witness points [m] in the world frame; equal to within rounding at contact.
-        face_a, face_b: indices of the polygons that hold the witness points; -1 for a body inside another,
+        face_a, face_b: indices of the polygons with the witness points; -1 for a body inside another,
             where the common point is on no face of the outer one.
         contact: True when they touch, overlap, or one is inside the other.
         error_bound: [m] upper bound on |distance - true distance of the given input|.
         tally: counters: node pairs and polygon pairs tested, and for `method="paper"` those cut by each rule
             and the iterations used.
         inside: "yes" where one body is wholly inside the other, "undecided" where it may be, and the other's
-            surface is too open to tell: `distance` is then that of the surfaces alone. Else "no".
+            surface is too open to decide: `distance` is then that of the surfaces alone. Else "no".
     """
 
     distance: float

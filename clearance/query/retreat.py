@@ -1,8 +1,8 @@
-"""The way out of a concave body: short translations that part two bodies, found on their convex parts.
+"""The separation vector of concave bodies: short translations that separate them, found on their convex parts.
 
 Bodies made of parts overlap while the translation lies in one of the Minkowski differences of their parts. On
-a ray each of these is a stretch; the first gap between the stretches is a way out. Rays go along the normals
-of the parts; the best ones are shortened by asking the bodies themselves. What comes out is an upper bound of
+a ray each of these is a stretch; the first gap between the stretches is a separation. Rays go along the normals
+of the parts; the best ones are shortened by the bodies' own distance. The result is an upper bound of
 the depth. Not for: two convex bodies (`penetration`).
 """
 
@@ -21,15 +21,15 @@ MOST_NUMBERS = 2_000_000
 """Numbers in a table of rays, sets and planes: 16 MB."""
 
 RAYS_ASKED = 6
-"""Rays on which the bodies themselves are asked, the shortest first."""
+"""Rays on which the bodies themselves are measured, the shortest first."""
 
 HALVINGS = 10
 """A ray's length is right to this many halvings of what it could be shortened by."""
 
 GOES_ON = 5
-"""How often a ray is made longer until the bodies are parted."""
+"""How often a ray is made longer until the bodies are separate."""
 
-APART = np.cos(np.radians(5.0))
+ALIKE = np.cos(np.radians(5.0))
 """Rays closer to each other than 5 degrees count as one."""
 
 
@@ -48,8 +48,8 @@ def ways_out(
     Args:
         within: [m] none longer is sought. extra: (k, 3) unit directions to try as well.
 
-    Exactness: each part pair's Minkowski difference is held by its support planes along all directions tried,
-        so a way out of these is a way out of the parts.
+    Exactness: each part pair's Minkowski difference lies within its support planes along all directions tried,
+        so a separation of these is a separation of the parts.
     """
     directions = _directions(a, b, extra)
     heights_a = np.array([(-directions @ part.vertices.T).max(axis=1) for part in a])
@@ -75,13 +75,13 @@ def _first_gaps(offsets: np.ndarray, slopes: np.ndarray) -> np.ndarray:
     at = offsets[None] / np.where(up | down, slopes, 1.0)[:, None]
     ends = np.where(up[:, None], at, np.inf).min(axis=2)
     begins = np.where(down[:, None], at, -np.inf).max(axis=2)
-    held = (up | down)[:, None] | (offsets[None] > 0.0)
-    met = (begins < ends) & held.all(axis=2)
+    blocked = (up | down)[:, None] | (offsets[None] > 0.0)
+    met = (begins < ends) & blocked.all(axis=2)
     return np.array([_gap(begins[i, m], ends[i, m]) for i, m in enumerate(met)])
 
 
 def _gap(begins: np.ndarray, ends: np.ndarray) -> float:
-    """Where stretches that begin at 0 or before, and those that follow on them, first leave a gap."""
+    """The first gap after stretches that begin at 0 or before, and those that follow on them."""
     at = 0.0
     while True:
         here = (begins <= at) & (ends > at)
@@ -93,14 +93,14 @@ def _gap(begins: np.ndarray, ends: np.ndarray) -> float:
 def _directions(
     a: Sequence[ConvexCorners], b: Sequence[ConvexCorners], extra: np.ndarray
 ) -> np.ndarray:
-    """(k, 3) unit, no two alike to a tenth: what is asked for, the 26, and the parts' normals in turn."""
+    """(k, 3) unit, no two alike to a tenth: the wanted ones, the 26, and the parts' normals in turn."""
     normals = np.concatenate([*(part.normals for part in b), *(-part.normals for part in a)])
     every = max(1, len(normals) // (4 * MOST_DIRECTIONS))
     rows = np.concatenate([extra, TWENTY_SIX, normals[::every]])
     _, first = np.unique(np.round(rows, 1), axis=0, return_index=True)
-    kept = np.sort(first)
-    fixed = kept[kept < len(extra) + 26]
-    rest = kept[len(fixed) :]
+    chosen = np.sort(first)
+    fixed = chosen[chosen < len(extra) + 26]
+    rest = chosen[len(fixed) :]
     return rows[np.concatenate([fixed, rest[:: max(1, -(-len(rest) // MOST_DIRECTIONS))]])]
 
 
@@ -108,13 +108,13 @@ def shortened(rays: Sequence[Ray], is_clear: Callable[[np.ndarray], bool]) -> Ra
     """The shortest translation along one of the rays that the bodies themselves confirm; None if none is.
 
     Args:
-        is_clear: True if the bodies are apart after a translation (3,) [m].
+        is_clear: True if the bodies are separate after a translation (3,) [m].
     """
     best: Ray | None = None
     for ray in _different(rays):
-        asked = ray.length if best is None else min(ray.length, 0.99 * best.length)
-        if is_clear(asked * ray.direction):
-            best = Ray(_halved(asked, ray.direction, is_clear), ray.direction)
+        length = ray.length if best is None else min(ray.length, 0.99 * best.length)
+        if is_clear(length * ray.direction):
+            best = Ray(_halved(length, ray.direction, is_clear), ray.direction)
     return best
 
 
@@ -147,7 +147,7 @@ def shortened_through(
 def _different(rays: Sequence[Ray]) -> list[Ray]:
     chosen: list[Ray] = []
     for ray in rays:
-        if all(ray.direction @ other.direction < APART for other in chosen):
+        if all(ray.direction @ other.direction < ALIKE for other in chosen):
             chosen.append(ray)
         if len(chosen) == RAYS_ASKED:
             break

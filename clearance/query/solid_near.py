@@ -1,4 +1,4 @@
-"""What of a large solid another body can reach: the same region is shared with a part of the triangles.
+"""The part of a large solid that another body can reach: the common region is the same with its triangles alone.
 
 Not for: the region itself (`contact`).
 """
@@ -17,7 +17,7 @@ from clearance.geometry.polyhedron import Polyhedron
 LARGE = 5000
 """Triangles from which on it is worth to cut a solid down: one boolean, 0.1 s at 490,000."""
 
-ROOM = 0.5
+MARGIN = 0.5
 """[-] Of the other body's diagonal, all round: it is moved a little when ways out are sought."""
 
 
@@ -28,7 +28,7 @@ class SolidNear:
     solid: Any
     box: np.ndarray
 
-    def holds(self, other: Polyhedron, own_from_other: np.ndarray) -> bool:
+    def contains(self, other: Polyhedron, own_from_other: np.ndarray) -> bool:
         """True if the other body lies in the box, so that all it shares with the solid is here."""
         low, high = box_at(other, own_from_other)
         return bool((low >= self.box[0]).all() and (high <= self.box[1]).all())
@@ -41,8 +41,8 @@ def solid_near(
     if parts.solid is None or body.n_triangles < LARGE:
         return None
     boxes = np.array([box_at(other, pose) for pose in own_from_other])
-    room = ROOM * float(np.linalg.norm(np.ptp(other.bounds, axis=0)))
-    box = np.array([boxes[:, 0].min(axis=0) - room, boxes[:, 1].max(axis=0) + room])
+    margin = MARGIN * float(np.linalg.norm(np.ptp(other.bounds, axis=0)))
+    box = np.array([boxes[:, 0].min(axis=0) - margin, boxes[:, 1].max(axis=0) + margin])
     return SolidNear(boolean.evaluated(parts.solid ^ boolean.block(box)), box)
 
 
@@ -52,9 +52,9 @@ def solid_for(
     """manifold3d's solid to share with the other body: the part near it, else the whole, else the convex part.
 
     Raises:
-        ClearanceError: manifold3d cannot take the convex part.
+        ClearanceError: manifold3d refuses the convex part.
     """
-    if near is not None and near.holds(other, own_from_other):
+    if near is not None and near.contains(other, own_from_other):
         return near.solid
     return parts.solid if parts.solid is not None else solid_of(parts.outer[0])
 

@@ -1,7 +1,7 @@
 """The volume of a thin common region, to the last digits: cut again in a frame that makes it round.
 
 Only faces whose planes come near the region take part, each as the planes of the exact hull of its corners,
-because a merged face is flat only to rounding, and that is much against a thin region. Not for: finding the
+because a merged face is flat only to rounding, and that is large compared with a thin region. Not for: finding the
 region (`cutting`).
 """
 
@@ -117,7 +117,7 @@ def _cut_box(planes: np.ndarray):
 
 @functools.cache
 def _box() -> tuple[np.ndarray, np.ndarray]:
-    """(places, mesh) of the cube [-1, 1]^3 as the kernels take it."""
+    """(places, mesh) of the cube [-1, 1]^3 as arguments of kernels."""
     cube = Polytope(_CUBE)
     return cube.vertices[cube.trivalent.corner], cube.trivalent.mesh
 

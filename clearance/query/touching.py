@@ -37,14 +37,14 @@ def _cut(ring: np.ndarray, normal: np.ndarray, offset: float, slack: float) -> n
     heights = ring @ normal - offset
     if not len(ring) or heights.max() <= slack:
         return ring
-    kept = []
+    inside = []
     for i, high in enumerate(heights):
         j = (i + 1) % len(ring)
         if high <= slack:
-            kept.append(ring[i])
+            inside.append(ring[i])
         if (high < -slack and heights[j] > slack) or (high > slack and heights[j] < -slack):
-            kept.append(ring[i] + (ring[j] - ring[i]) * (high / (high - heights[j])))
-    return np.array(kept).reshape(-1, 2)
+            inside.append(ring[i] + (ring[j] - ring[i]) * (high / (high - heights[j])))
+    return np.array(inside).reshape(-1, 2)
 
 
 def _distinct(ring: np.ndarray, slack: float) -> np.ndarray:
@@ -55,11 +55,11 @@ def _distinct(ring: np.ndarray, slack: float) -> np.ndarray:
     for corner in ring[1:]:
         if min(np.linalg.norm(corner - other) for other in corners) > slack:
             corners.append(corner)
-    kept = np.array(corners)
-    if len(kept) < 2:
-        return kept
-    far = kept[np.linalg.norm(kept - kept[0], axis=1).argmax()]
-    end = kept[np.linalg.norm(kept - far, axis=1).argmax()]
+    inside = np.array(corners)
+    if len(inside) < 2:
+        return inside
+    far = inside[np.linalg.norm(inside - inside[0], axis=1).argmax()]
+    end = inside[np.linalg.norm(inside - far, axis=1).argmax()]
     along = (far - end) / np.linalg.norm(far - end)
-    off = (kept - end) @ np.array([-along[1], along[0]])
-    return kept if np.abs(off).max() > slack else np.stack([end, far])
+    off = (inside - end) @ np.array([-along[1], along[0]])
+    return inside if np.abs(off).max() > slack else np.stack([end, far])

@@ -21,7 +21,7 @@ from clearance.world.cell import once_a_cell
 from clearance.world.kinematics import (
     all_links,
     floating_links,
-    links_from,
+    links_of_robot,
     poses_by_link,
     standing_link,
 )
@@ -205,8 +205,9 @@ class _Planter:
         placed = self.case.robots[i_robot]
         with at(f"robot {placed.robot.name!r}: base.on"), self._without_ring(placed.robot.name):
             parent, pose = self._stands_on(placed.mount)
-        base = placed.world_from_base if placed.mount is None else pose
-        links = links_from(base, placed.robot)
+        links = links_of_robot(placed.robot)
+        fixed = links.parent_from_joint.copy()
+        fixed[0] = placed.world_from_base if placed.mount is None else pose
         self.robot_starts[i_robot] = self.n_links
         first, column = self.n_links, self.robot_columns[i_robot]
         inside = links.parents != NO_PARENT
@@ -214,6 +215,7 @@ class _Planter:
             links._replace(
                 parents=np.where(inside, links.parents + first, parent),
                 columns=np.where(links.columns == NO_COLUMN, NO_COLUMN, links.columns + column),
+                parent_from_joint=fixed,
             )
         )
 

@@ -151,7 +151,7 @@ def test_growing_on_the_way_forgets_no_vertex(monkeypatch):
         [Polytope(CUBE), Polytope(2.9 * np.vstack([np.eye(3), -np.eye(3)]))]
     )  # cuts one corner
     plain = [intersect(bodies) for bodies in families]
-    monkeypatch.setattr(cutting, "ROOM", 1)
+    monkeypatch.setattr(cutting, "ROWS_A_VERTEX", 1)
     grown = []
     monkeypatch.setattr(
         cutting.Cutting,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.query.one_pair import HELD, kept_pair
+from clearance.query.one_pair import MOST_PAIRS, cached_pair
 from tests.made_cases import at, ball
 from tests.strategies import rotations
 
@@ -52,7 +52,7 @@ def test_threads_do_not_disturb_each_other():
 
 @pytest.mark.slow
 def test_more_pairs_than_are_held_are_answered():
-    boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(HELD + 3)]
+    boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(MOST_PAIRS + 3)]
     for _ in range(2):
         found = [cl.distance(boxes[0], other, pose_b=at(0.0, 0.0, 3.0)).distance for other in boxes]
         assert np.allclose(
@@ -62,8 +62,8 @@ def test_more_pairs_than_are_held_are_answered():
 
 def test_a_solid_that_is_let_go_takes_its_arrays_along():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((2.0, 1.0, 1.0))
-    pair = kept_pair(a, b)
-    assert kept_pair(a, b) is pair and kept_pair(b, a) is not pair
+    pair = cached_pair(a, b)
+    assert cached_pair(a, b) is pair and cached_pair(b, a) is not pair
     gone, solid = weakref.ref(pair), weakref.ref(b)
     del b, pair
     gc.collect()

@@ -125,21 +125,21 @@ def test_a_moved_body_is_the_hull_of_the_moved_corners():
     )
 
 
-@pytest.mark.parametrize("room", [cutting.ROOM, 1])
-def test_bodies_cut_in_one_call_are_cut_as_one_by_one(room, monkeypatch):
+@pytest.mark.parametrize("rows", [cutting.ROWS_A_VERTEX, 1])
+def test_bodies_cut_in_one_call_are_cut_as_one_by_one(rows, monkeypatch):
     bodies = cluster(12, 100, 4, spread=0.05)
     task = CuttingTask.about(bodies, common_point(bodies).point)
     one_by_one = Cutting(task, task.order[0])
     assert all(one_by_one.by(k) for k in task.order[1:])
     monkeypatch.setattr(
-        cutting, "ROOM", room
+        cutting, "ROWS_A_VERTEX", rows
     )  # 1: the call stops where the rows are full, and goes on
     at_once = Cutting(task, task.order[0])
     n_first = len(at_once.spots)
     assert at_once.by(*task.order[1:])
-    assert (len(at_once.spots) > n_first) == (room == 1)
+    assert (len(at_once.spots) > n_first) == (rows == 1)
     assert at_once.moments()[0] == pytest.approx(one_by_one.moments()[0], rel=4e-15)
-    if room == cutting.ROOM:
+    if rows == cutting.ROWS_A_VERTEX:
         assert at_once.moments().tobytes() == one_by_one.moments().tobytes()
 
 
