@@ -63,7 +63,7 @@ def _load(path: str | PathLike[str]) -> object:
     return plain_data(file.read_bytes())
 
 
-def _from_document(document) -> Curve:
+def _from_document(document: object) -> Curve:
     if not isinstance(document, dict) or not isinstance(document.get("curves"), list):
         raise MissingKey("no list of curves", where="curves", valid="a mapping `curves: [...]`")
     for key in document:
@@ -76,7 +76,7 @@ def _from_document(document) -> Curve:
     )
 
 
-def _curve(entry, place: str) -> Curve:
+def _curve(entry: object, place: str) -> Curve:
     with at(place):
         if not isinstance(entry, dict) or len(entry) != 1:
             raise BadSyntax(
@@ -93,7 +93,7 @@ def _curve(entry, place: str) -> Curve:
             return _made(form, values)
 
 
-def _made(form: str, values) -> Curve:
+def _made(form: str, values: object) -> Curve:
     make, needed, optional = _FORMS[form]
     if not isinstance(values, dict):
         raise BadInput(f"{values!r:.60}", valid=f"a mapping of {', '.join((*needed, *optional))}")

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, at
+from clearance.errors import BadDimension, BadInput, BadShape, at
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.carrier_error import CarrierError
 from clearance.world.mount import Mount
-from clearance.world.padding import checked_padding
 from clearance.world.pose_table import PoseTable
 
 
@@ -104,3 +104,14 @@ class Obstacle:
     def name(self) -> str:
         """The body's name."""
         return self.body.name
+
+
+def checked_padding(padding: float) -> float:
+    """The padding [m]: by how much a clearance is lessened, as a distance, not by moving a surface.
+
+    Raises:
+        BadDimension: it is not a number, or below 0.
+    """
+    if not (isinstance(padding, int | float) and 0.0 <= padding < math.inf):
+        raise BadDimension(f"padding is {padding!r:.60}", valid="0 m or more")
+    return float(padding)

@@ -19,7 +19,7 @@ from clearance.errors import (
     at,
 )
 from clearance.geometry.pose import validated_pose
-from clearance.world.body import Obstacle
+from clearance.world.body import Obstacle, checked_padding
 from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
@@ -34,7 +34,6 @@ from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice
-from clearance.world.padding import checked_padding
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording
 from clearance.world.robot import Robot

@@ -21,7 +21,7 @@ from clearance.world.cell import once_a_cell
 from clearance.world.kinematics import (
     all_links,
     floating_links,
-    links_of_robot,
+    links_from,
     poses_by_link,
     standing_link,
 )
@@ -205,9 +205,8 @@ class _Planter:
         placed = self.case.robots[i_robot]
         with at(f"robot {placed.robot.name!r}: base.on"), self._without_ring(placed.robot.name):
             parent, pose = self._stands_on(placed.mount)
-        links = links_of_robot(placed.robot)
-        fixed = links.parent_from_joint.copy()
-        fixed[0] = placed.world_from_base if placed.mount is None else pose
+        base = placed.world_from_base if placed.mount is None else pose
+        links = links_from(base, placed.robot)
         self.robot_starts[i_robot] = self.n_links
         first, column = self.n_links, self.robot_columns[i_robot]
         inside = links.parents != NO_PARENT
@@ -215,7 +214,6 @@ class _Planter:
             links._replace(
                 parents=np.where(inside, links.parents + first, parent),
                 columns=np.where(links.columns == NO_COLUMN, NO_COLUMN, links.columns + column),
-                parent_from_joint=fixed,
             )
         )
 

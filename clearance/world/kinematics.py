@@ -17,7 +17,6 @@ from clearance.kernels.motion.kinematics import (
     SLIDING,
     TURNING,
     Links,
-    forward,
     place_each,
 )
 from clearance.ordered import parents_first
@@ -42,20 +41,12 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
     Returns:
         (n, n_links, 4, 4) `world_from_link` [m], links as in `Robot.link_names`.
     """
-    robot = placed.robot
-    poses = np.empty((len(positions), len(robot.link_names), 4, 4))
-    forward(
-        np.ascontiguousarray(placed.world_from_base, dtype=np.float64),
-        *kinematic_tree_arrays(robot),
-        positions_by_link(robot, positions),
-        poses,
-    )
-    return poses
+    return poses_by_link(links_from(placed.world_from_base, placed.robot), positions)
 
 
 @lru_cache(maxsize=8)  # asked for again for every part of a motion
 def kinematic_tree_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Parents, kinds, parent_from_joint and axes of all links, as `motion.kinematics.forward` takes them."""
+    """Parents, kinds, parent_from_joint and axes of all links."""
     n_links = len(robot.link_names)
     index = {name: i for i, name in enumerate(robot.link_names)}
     parents = np.zeros(n_links, dtype=np.int64)
@@ -176,11 +167,20 @@ def links_of_robot(robot: Robot) -> Links:
     parents[0] = NO_PARENT
     columns = np.full(len(parents), NO_COLUMN)
     factors, offsets = np.ones(len(parents)), np.zeros(len(parents))
-    links, followed, mimics = _moving_links(robot)
-    columns[links] = followed
-    for link, column, factor, offset in mimics:
-        columns[link], factors[link], offsets[link] = column, factor, offset
+    index = {name: i for i, name in enumerate(robot.link_names)}
+    column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
+    for joint, master, factor, offset in followers(robot):
+        link = index[joint.child]
+        columns[link], factors[link], offsets[link] = column_of[master], factor, offset
     return Links(parents, kinds, axes, fixed_parts, columns, factors, offsets)
+
+
+def links_from(base: np.ndarray, robot: Robot) -> Links:
+    """The links of one robot whose root stands at a pose (4, 4) [m]."""
+    links = links_of_robot(robot)
+    fixed = links.parent_from_joint.copy()
+    fixed[0] = base
+    return links._replace(parent_from_joint=fixed)
 
 
 def moving_positions(
@@ -233,32 +233,3 @@ def _column(columns: dict[str, int], name: str) -> int:
     if name not in columns:
         raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, columns))
     return columns[name]
-
-
-def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
-    """(n, n_links) the position of the joint above each link; 0 for the root and for fixed joints."""
-    links, columns, mimics = _moving_links(robot)
-    values = np.zeros((len(moving), len(robot.link_names)))
-    values[:, links] = moving[:, columns]
-    for link, column, factor, offset in mimics:
-        values[:, link] = factor * moving[:, column] + offset
-    return values
-
-
-@lru_cache(maxsize=8)
-def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, int, float, float]]]:
-    """(links, columns, mimics): which link a column of the moving joints moves, and which links follow a column.
-
-    Those that follow have a factor and an offset, of all the joints between together.
-    """
-    index = {name: i for i, name in enumerate(robot.link_names)}
-    column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
-    links, columns, mimics = [], [], []
-    for joint, master, factor, offset in followers(robot):
-        link = index[joint.child]
-        if joint.mimic is not None:
-            mimics.append((link, column_of[master], factor, offset))
-        else:
-            links.append(link)
-            columns.append(column_of[joint.name])
-    return links, columns, mimics

@@ -15,7 +15,7 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box_along,
 )
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import link_poses, positions_by_link
+from clearance.world.kinematics import link_poses, links_of_robot, values_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
@@ -57,10 +57,10 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     aside[0] = 0.0
     poses = link_poses(placed, middle + shares[:, None] * half + aside)
     chain = links_of([standing(robot)])
-    swing = positions_by_link(robot, half[None])[0]
+    swing = values_by_link(links_of_robot(robot), half[None])[0]
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)  # in the frame of the link
-    bends = positions_by_link(robot, bend[None])[0]
+    bends = values_by_link(links_of_robot(robot), bend[None])[0]
     bound, bound_along = drifts(
         surface_of(SHAPE), chain, n_joints, poses[0], swing, bends, direction
     )

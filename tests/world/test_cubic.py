@@ -12,8 +12,8 @@ from clearance.world.cubic import extremes_between, positions_along
 from clearance.world.kinematics import (
     links_of_robot,
     moving_velocities,
-    positions_by_link,
     rates_by_link,
+    values_by_link,
 )
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
@@ -71,8 +71,9 @@ def test_mimics_move_at_their_multiple_and_fixed_joints_rest():
     placed = PlacedRobot(robot, asked, fixed_positions={"c": 0.7})
     velocities = moving_velocities(placed, asked.joint_names, asked.velocities)
     assert velocities.tolist() == [[3.0, 0.0]]
-    assert rates_by_link(links_of_robot(robot), velocities).tolist() == [[0.0, 3.0, -6.0, 0.0]]
-    assert positions_by_link(robot, np.array([[0.5, 0.7]])).tolist() == [[0.0, 0.5, 4.0, 0.7]]
+    links = links_of_robot(robot)
+    assert rates_by_link(links, velocities).tolist() == [[0.0, 3.0, -6.0, 0.0]]
+    assert values_by_link(links, np.array([[0.5, 0.7]])).tolist() == [[0.0, 0.5, 4.0, 0.7]]
 
 
 def test_velocities_that_fit_no_motion_are_refused():
