@@ -1,11 +1,16 @@
 """DXF files: the header's unit is obeyed, and whatever is wrong in them ends with a message."""
 
+import math
+
 import ezdxf
 import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax, ClearanceError, MissingFile
+from clearance.planar.curve import Curve
 from clearance.planar.dxf import read_dxf
+from clearance.planar.hausdorff import hausdorff
+from clearance.planar.minimum import minimum_distance
 
 
 def drawing(tmp_path, unit, draw=lambda space: space.add_line((0, 0), (2, 1))):
@@ -44,3 +49,74 @@ def test_arcs_from_angles_of_many_turns_end_with_a_message(tmp_path, start):
 def test_arcs_from_angles_of_a_few_turns_are_read(tmp_path):
     path = drawing(tmp_path, 6, lambda space: space.add_arc((0, 0), 1, 720, 90))
     assert read_dxf(path).box == pytest.approx(np.array([[0, 0], [1, 1]]), abs=1e-12)
+
+
+def test_dxf_entities_become_one_curve(tmp_path):
+    made = ezdxf.new()
+    space = made.modelspace()
+    space.add_line((0, 0), (2, 0))
+    space.add_arc((2, 1), 1, -90, 0)
+    space.add_circle((10, 0), 2)
+    space.add_lwpolyline([(0, 5, 1.0), (2, 5, 0.0)], format="xyb")
+    space.add_open_spline([(0, 9), (1, 11), (2, 8), (3, 9)])
+    made.saveas(tmp_path / "part.dxf")
+    curve = read_dxf(str(tmp_path / "part.dxf"))
+    known = Curve.contours(
+        [
+            Curve.chain([Curve.line([0, 0], [2, 0]), Curve.arc([2, 1], 1, -math.pi / 2, 0)]),
+            Curve.circle([10, 0], 2),
+            Curve.arc([1, 5], 1, math.pi, 2 * math.pi),
+            Curve.bspline([[0, 9], [1, 11], [2, 8], [3, 9]]),
+        ]
+    )
+    assert hausdorff(curve, known).distance <= 1e-14 * known.size
+    assert curve.contour.max() == 3
+    space.add_text("no curve")
+    made.saveas(tmp_path / "text.dxf")
+    with pytest.raises(ClearanceError, match="an entity TEXT"):
+        read_dxf(str(tmp_path / "text.dxf"))
+    (tmp_path / "bad.dxf").write_text("hello")
+    with pytest.raises(ClearanceError, match=r"bad\.dxf: not a DXF"):
+        read_dxf(str(tmp_path / "bad.dxf"))
+
+
+def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
+    made = ezdxf.new()
+    space = made.modelspace()
+    space.add_lwpolyline(
+        [(0, 0, 1.0), (2, 0, 0.0), (2, 3, 0.0), (0, 3, -0.5)], format="xyb", close=True
+    )
+    space.add_polyline2d([(5, 0, 0.4), (6, 1, 0), (7, 0, 0)], format="xyb", close=True)
+    space.add_arc((10, 0), 2, 350, 20)  # through the angle 0
+    space.add_rational_spline([(0, 9), (1, 11), (2, 8), (3, 9)], [1, 2, 0.5, 1])
+    made.saveas(tmp_path / "part.dxf")
+    curve = read_dxf(str(tmp_path / "part.dxf"))
+    assert curve.contour.max() == 3 and curve.is_closed is False
+    half = Curve.arc(
+        [1, 0], 1, math.pi, 2 * math.pi
+    )  # a bulge of 1 is a half turn, to the right of the chord
+    gap = minimum_distance(half, curve)
+    assert gap.distance <= 1e-15 and hausdorff(half, curve).directed["a_to_b"].distance <= 1e-14
+    arc = Curve.arc([10, 0], 2, math.radians(-10), math.radians(20))
+    assert hausdorff(arc, curve).directed["a_to_b"].distance <= 1e-14
+    spline = Curve.bspline([[0, 9], [1, 11], [2, 8], [3, 9]], weights=[1, 2, 0.5, 1])
+    assert hausdorff(spline, curve).directed["a_to_b"].distance <= 1e-14
+    for add, said in [
+        (
+            lambda: space.add_spline(fit_points=[(0, 9), (1, 10), (3, 9)]),
+            "a spline of fit points alone",
+        ),
+        (lambda: space.add_ellipse((0, 0), (3, 0), 0.5), "an entity ELLIPSE"),
+        (
+            lambda: space.add_circle((0, 0), 1, dxfattribs={"extrusion": (0, 1, 0)}),
+            "extrusion (0.0, 1.0, 0.0)",
+        ),
+        (lambda: space.add_line((1, 1), (1, 1)), "a curve of zero length"),
+    ]:
+        entity = add()
+        made.saveas(tmp_path / "bad.dxf")
+        with pytest.raises(ClearanceError) as caught:
+            read_dxf(str(tmp_path / "bad.dxf"))
+        assert said in str(caught.value) and "bad.dxf" in str(caught.value)
+        assert "\n" not in str(caught.value)
+        space.delete_entity(entity)
