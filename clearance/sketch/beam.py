@@ -2,9 +2,9 @@
 
 A point at given distances from two others has two places. The drawing has the wrong one where its triangle is
 flatter than the drawing is off, and later circles do not meet. So the steps are run for many branches at once.
-After each step those are kept whose points, set down where they fit best, are off least from the drawing. A wrong
+After each step those survive whose points, set down where they fit best, are off least from the drawing. A wrong
 choice moves all that hangs on it, hence it falls behind, or its circles miss each other. A point on which nothing
-hangs takes the nearer of its two places at once. Not for: steps that place other things (`folds`).
+hangs gets the nearer of its two places at once. Not for: steps that place other things (`folds`).
 Source: Lowerre 1976 (beam search); the fit is Schönemann's (`solve.fit`), summed up step by step.
 """
 
@@ -22,7 +22,7 @@ from clearance.sketch.problem import Problem
 from clearance.sketch.solve.loci import GRAZING
 
 WIDTHS = (64, 256, 1024)
-"""Branches that are kept at first, and when none of them finds its places: 0.1, 0.3 and 1 s at n = 1000."""
+"""Branches that survive at first, and when none of them finds its places: 0.1, 0.3 and 1 s at n = 1000."""
 
 
 class _Placing(NamedTuple):
@@ -38,7 +38,7 @@ class _Placing(NamedTuple):
 def nearest_branch(problem: Problem, part: int, sketch: np.ndarray) -> np.ndarray | None:
     """Numbers (n,) on the branch of a part that is nearest to the sketch (n,), all else as there.
 
-    None where the part is no construction of points from distances, or none of the branches kept finds its places.
+    None where the part is no construction of points from distances, or no surviving branch finds its places.
 
     Raises:
         OutOfTime: the problem's limit has passed.
@@ -75,7 +75,7 @@ def _placings(problem: Problem, part: int, sketch: np.ndarray) -> dict[int, _Pla
         i, near = s.root[step.vertex], []
         for e in equations:
             other = e.qx if e.px == i else e.px
-            if other not in found:  # it is held where it is drawn
+            if other not in found:  # it is fixed where it is drawn
                 order[other] = len(found)
                 found[other] = _Placing(sketch[other : other + 2], [], [], True)
             found[other] = found[other]._replace(bears=True)
@@ -126,7 +126,7 @@ class _Beam:
 
     def place(self, placing: _Placing, limit: TimeLimit) -> bool:
         """Places one more point in every branch and keeps the nearest branches; False where none finds a place."""
-        limit.require_left()
+        limit.require_time()
         found, good = _candidates(self.places, placing)
         (x, y), (bx, by) = np.moveaxis(found, -1, 0), placing.drawn
         drawn = np.broadcast_to([bx, by, bx * bx + by * by], (*x.shape, 3))
@@ -141,13 +141,13 @@ class _Beam:
         if not placing.bears:
             every = every[np.arange(len(off)), np.argmin(off, axis=1)]
         price = off.ravel()[every.ravel()]
-        kept = every.ravel()[np.argsort(price, kind="stable")][: self.width]
-        kept = kept[np.isfinite(off.ravel()[kept])]
-        self.sums = self.sums[kept]
-        self.places = self.places[kept // off.shape[1]]
-        self.places[:, self.count] = found.reshape(-1, 2)[kept]
+        best = every.ravel()[np.argsort(price, kind="stable")][: self.width]
+        best = best[np.isfinite(off.ravel()[best])]
+        self.sums = self.sums[best]
+        self.places = self.places[best // off.shape[1]]
+        self.places[:, self.count] = found.reshape(-1, 2)[best]
         self.count += 1
-        return bool(kept.size)
+        return bool(best.size)
 
 
 def _candidates(places: np.ndarray, placing: _Placing) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The branches of ruler-and-compass steps: every closed step that takes one of two points has another.
+"""The branches of ruler-and-compass steps: every closed step with two possible points has another.
 
 Tried where the sketch's own branch does not do: to satisfy a `same_side`, and to prove that a small
 construction has no place at all. Not for: numeric clusters (`roots`).
@@ -79,7 +79,7 @@ def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
     for count in range(1, len(steps) + 1):
         best = []
         for chosen in combinations(steps, count):
-            problem.limit.require_left()
+            problem.limit.require_time()
             best.append(run(problem, before, sides, turned=frozenset(chosen)))
         yield from best
         if any(o.broken == -1 for o in best):
@@ -109,7 +109,7 @@ def _by_roots(problem: Problem, sides: Sides, outcome) -> list:
 def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
     """Whether the problem is a ruler-and-compass construction of which no branch is a solution.
 
-    False when that cannot be decided: freedom is left, a cluster is numeric, or there are too many branches.
+    False when that cannot be decided: freedom remains, a cluster is numeric, or there are too many branches.
     """
     steps, kind = choices(problem), problem.system.kind
     undecided = any(
@@ -129,7 +129,7 @@ def _closing(
     every = bytes([1]) * problem.system.kind.size
     allowed = DEPENDENT if problem.plan.dependent.size else RESIDUAL
     for mask in sorted(range(2 ** len(steps)), key=int.bit_count):
-        problem.limit.require_left()
+        problem.limit.require_time()
         turned = frozenset(k for bit, k in enumerate(steps) if mask >> bit & 1)
         x = start.copy()
         fates = execute(

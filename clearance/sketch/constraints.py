@@ -46,15 +46,15 @@ class Constraint:
 
     @property
     def valency(self) -> int:
-        """How many degrees of freedom it takes."""
+        """The degrees of freedom that it removes."""
         return self.n_rows
 
 
 class Form(NamedTuple):
-    """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's
+    """A form of a kind: the entities it is for, how it becomes rows, and its dimension's
     unit."""
 
-    takes: tuple[type[Entity], ...]
+    types: tuple[type[Entity], ...]
     rows: Callable[..., list[Row]]
     unit: str = ""
     spans: bool = False
@@ -95,7 +95,7 @@ KINDS: dict[str, tuple[Form, ...]] = {
 
 
 def form_of(kind: str, entities: Sequence[Entity]) -> tuple[Form, tuple[Entity, ...]]:
-    """The form of `kind` that takes these entities, and the entities in its order.
+    """The form of `kind` that is for these entities, and the entities in its order.
 
     Raises:
         BadConstraint: no such kind, entities of the wrong kinds, or an entity with itself.
@@ -106,14 +106,14 @@ def form_of(kind: str, entities: Sequence[Entity]) -> tuple[Form, tuple[Entity, 
     if len({id(e) for e in entities}) < len(entities):
         raise BadConstraint(f"{kind} of {names}", valid="different entities")
     for form in KINDS[kind]:
-        if len(form.takes) != len(entities):
+        if len(form.types) != len(entities):
             continue
-        if len(entities) == 2 and form.takes[0] is not form.takes[1]:
-            entities = sorted(entities, key=lambda e: not isinstance(e, form.takes[0]))
-        if all(isinstance(e, t) for e, t in zip(entities, form.takes, strict=True)):
+        if len(entities) == 2 and form.types[0] is not form.types[1]:
+            entities = sorted(entities, key=lambda e: not isinstance(e, form.types[0]))
+        if all(isinstance(e, t) for e, t in zip(entities, form.types, strict=True)):
             _check_spans(kind, form, entities)
             return form, tuple(entities)
-    valid = " or ".join("-".join(t.what for t in form.takes) for form in KINDS[kind])
+    valid = " or ".join("-".join(t.what for t in form.types) for form in KINDS[kind])
     raise BadConstraint(f"{kind} between {names}", valid=f"{kind} takes {valid}")
 
 

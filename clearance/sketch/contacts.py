@@ -2,8 +2,8 @@
 
 Such a point is a double root of the equations as they are counted: an error of 1e-13 in the radius moves it by
 4e-7 along the line. The same is said by an equation that is regular there: its radius is perpendicular to the
-line, or the point lies on the line of the centres. Plans and counts keep the equations of touching; what is
-asked or mended at a solution takes the regular ones. Not for: contacts in no point of the sketch: those are
+line, or the point lies on the line of the centres. Plans and counts use the equations of touching; questions and
+repairs at a solution use the regular ones. Not for: contacts in no point of the sketch: those are
 regular.
 """
 

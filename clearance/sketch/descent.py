@@ -1,6 +1,6 @@
 """A whole part solved from the drawing: least squares with exact second derivatives, sparse, any size.
 
-The sum of squared errors goes down by Newton's method in a trust region. Two things set it apart from the damped
+The sum of squared errors goes down by Newton's method in a trust region. Two things distinguish it from the damped
 descent of numeric clusters (`solve.damped`): the second derivatives of the equations, which
 lead away from where slivers lie flat, and corrections of second order, which follow the curved valleys that
 slivers make, with the factors that are at hand. Not for: the other minima that it may end in (`folds`).
@@ -21,7 +21,7 @@ from clearance.sketch.solve.columns import Columns
 from clearance.sketch.steps import FLOOR
 
 LONGEST = 200
-"""Steps of a descent; patches of 1000 slivered triangles take 30 to 140."""
+"""Steps of a descent; patches of 1000 slivered triangles need 30 to 140."""
 
 CORRECTIONS = 3
 """Corrections of second order for a step: with none 3 to 5 times the steps, beyond 3 no more is gained."""
@@ -116,7 +116,7 @@ def descend(
     longest: int = LONGEST,
     corrections: int = CORRECTIONS,
 ) -> Iterate:
-    """Where the sum of squares ends that goes down from x: a root, or another minimum.
+    """The end of a descent of the sum of squares from x: a root, or another minimum.
 
     Raises:
         OutOfTime: with the numbers that it had come to.

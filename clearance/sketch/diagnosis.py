@@ -32,7 +32,7 @@ BRANCHES = "every branch of their construction was tried"
 
 
 class Diagnosis:
-    """A minimal conflict; its repairs, the least first, are worked out when asked for.
+    """A minimal conflict; its repairs, the least first, are computed on demand.
 
     `proof` says why it is one; empty when a search only failed. `searched` are the constraints of the
     clusters in which it failed.

@@ -16,10 +16,10 @@ import numpy as np
 from clearance.errors import BadDimension
 
 SECONDS = 5.0
-"""[s] Default limit of processor time; sketches of a thousand points take a fraction of it."""
+"""[s] Default limit of processor time; sketches of a thousand points need a fraction of it."""
 
 SHOWN_AFTER, SHOWN_EVERY = 1.0, 0.2
-"""[s] When a terminal begins to show the time that a solve has taken, and how often."""
+"""[s] When a terminal begins to show the time of a solve, and how often."""
 
 
 class OutOfTime(Exception):
@@ -35,11 +35,11 @@ class OutOfTime(Exception):
 
 
 class TimeLimit:
-    """The moment at which searches stop; as a context, a terminal is left clean.
+    """The moment at which searches stop; as a context, it cleans the terminal at the end.
 
     Args:
         seconds: [s] from now on; infinite for none.
-        clock: tells the time [s]: the processor time of this thread, so that a busy machine stops no more than an
+        clock: the time [s]: the processor time of this thread, so that a busy machine stops no more than an
             idle one.
 
     Raises:
@@ -58,15 +58,15 @@ class TimeLimit:
         return TimeLimit(self.seconds, self._clock)
 
     def is_over(self) -> bool:
-        """Whether no time is left; a terminal shows how much was taken."""
-        taken = self._clock() - self._begin
-        if self._shown <= taken < self.seconds:
-            self._shown = taken + SHOWN_EVERY
-            _show(f"solving the sketch: {taken:.1f} of at most {self.seconds:g} s")
-        return taken >= self.seconds
+        """Whether the time is up; a terminal shows the time used."""
+        used = self._clock() - self._begin
+        if self._shown <= used < self.seconds:
+            self._shown = used + SHOWN_EVERY
+            _show(f"solving the sketch: {used:.1f} of at most {self.seconds:g} s")
+        return used >= self.seconds
 
-    def require_left(self) -> None:
-        """Nothing, if time is left.
+    def require_time(self) -> None:
+        """Refuses to go on when the time is up.
 
         Raises:
             OutOfTime: none is.

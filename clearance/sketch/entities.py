@@ -14,7 +14,7 @@ import numpy as np
 
 
 class Numbers(Protocol):
-    """What an entity needs of its sketch: part of the flat vector of all numbers, and their origin."""
+    """An entity's share of its sketch: part of the flat vector of all numbers, and their origin."""
 
     @property
     def origin(self) -> np.ndarray:
@@ -27,7 +27,7 @@ class Numbers(Protocol):
 
 
 class Entity:
-    """What all entities have: a name, unique in the sketch, and the place of their numbers."""
+    """The base of all entities: a name, unique in the sketch, and the place of their numbers."""
 
     what = "entity"
 

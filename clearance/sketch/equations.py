@@ -92,8 +92,8 @@ class CircleCircle(NamedTuple):
     s: Any
 
     def residual(self, m, coef, value) -> Any:
-        apart = m.hypot(self.ax - self.bx, self.ay - self.by)
-        return apart - coef[0] * self.r - coef[1] * self.s - value
+        between = m.hypot(self.ax - self.bx, self.ay - self.by)
+        return between - coef[0] * self.r - coef[1] * self.s - value
 
     def slopes(self, coef, value) -> list:
         return [*_span_slopes(self.ax - self.bx, self.ay - self.by), -coef[0], -coef[1]]
@@ -246,7 +246,7 @@ def places(kind: Any, var: np.ndarray) -> Any:
 
 
 class Rows:
-    """Some equations, block by block of one kind, each evaluated at once. They may be asked at several places.
+    """Some equations, block by block of one kind, each evaluated at once. They may be evaluated at several places.
 
     Args:
         code: (m,) the kinds. var: (m, 8) the places of their numbers, -1 pads.

@@ -1,6 +1,6 @@
 """Runs a problem's plan and sets the result down with least movement; falls back on numbers.
 
-Order: numbers that are merged agree; parts that already hold are left bit for bit; the plan places
+Order: numbers that are merged agree; parts that already hold stay bit for bit; the plan places
 the rest; what it could not place is tried numerically; rigid parts are set down where the sketch has
 them; parts with freedom move least as a whole.
 """
@@ -22,7 +22,7 @@ from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.execute import FAILED, KEPT, Run, execute
+from clearance.sketch.solve.execute import FAILED, SKIPPED, Run, execute
 from clearance.sketch.solve.fit import set_down
 from clearance.sketch.solve.search import BANDED, RESTARTS, solve_cluster
 from clearance.sketch.solve.system import System
@@ -39,8 +39,8 @@ WRONG_SIDE = -2
 
 
 class ExecutionResult:
-    """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do); whether its limit
-    has stopped it. `best` are the numbers of least error, where it was stopped; else its numbers."""
+    """The outcome of a run: numbers, the steps' fates, the worst row that does not hold (-1: all do), and whether
+    its limit has stopped it. `best` are the numbers of least error, where it was stopped; else its numbers."""
 
     def __init__(
         self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float, stopped: bool = False
@@ -54,13 +54,13 @@ class ExecutionResult:
 
 
 def stopped(problem: Problem, before: np.ndarray, found: np.ndarray | None) -> ExecutionResult:
-    """What stands for a run that was stopped by its limit: the numbers `before` (n,), nothing solved.
+    """The outcome of a run that its limit stopped: the numbers `before` (n,), nothing solved.
 
     Its best numbers are those found by then, where their error is less.
     """
     places = [x[problem.alias] for x in (before, found) if x is not None]
     residual, row, best = min((*residual_of(problem, x), k) for k, x in enumerate(places))
-    fates = np.full(len(problem.plan.steps), KEPT)
+    fates = np.full(len(problem.plan.steps), SKIPPED)
     out = ExecutionResult(before.copy(), fates, max(row, 0), residual, stopped=True)
     out.best = places[best]
     return out
@@ -80,7 +80,7 @@ def run(
 
     Args:
         effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
-        turned: the closed steps that take the branch opposite to the sketch.
+        turned: the closed steps on the branch opposite to the sketch.
 
     Raises:
         OutOfTime: the problem's limit has passed.
@@ -130,7 +130,7 @@ def _run_at_unit(
     active = _unsettled(problem, problem.regular, x, SETTLED * size)
     for k in turned:
         active[problem.part[problem.plan.steps[k].vertex]] = True
-    fates = np.full(len(problem.plan.steps), KEPT)
+    fates = np.full(len(problem.plan.steps), SKIPPED)
     if active.any():
         try:
             fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
@@ -181,7 +181,7 @@ def _solve_parts(
         return fates, x
     broken = _unsettled(problem, s, x, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part).tolist():
-        problem.limit.require_left()
+        problem.limit.require_time()
         if effort < 2 or not _from_drawing(problem, p, x, start):
             _numeric_part(problem, p, x, start, effort)
     if effort < 2:
@@ -206,13 +206,13 @@ def _nearest(
 ) -> np.ndarray:
     """Sets rigid parts down nearest to the sketch, and moves those with freedom least."""
     s, rigid = problem.system, problem.is_rigid
-    settle = np.where(rigid & (active > 0) & (problem.hold < 2), 3 - problem.hold, 0)
+    settle = np.where(rigid & (active > 0) & (problem.fixing < 2), 3 - problem.fixing, 0)
     if settle.any():
         weight = np.ones(s.kind.shape[0])
         weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
         x = set_down(s, problem.part, settle, x, sketch, weight)
     for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)).tolist():
-        problem.limit.require_left()
+        problem.limit.require_time()
         moved = least_movement(problem, p, x, sketch, problem.weight, start)
         if moved is not None:
             x = moved
@@ -237,7 +237,7 @@ def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
 def _numeric_part(
     problem: Problem, part: int, x: np.ndarray, start: np.ndarray, effort: int
 ) -> bool:
-    """Solves one whole part at once, from the start and from where the plan came; True when it holds."""
+    """Solves one whole part at once, from the start and from the end of the plan; True when it holds."""
     s = problem.system
     vertices = np.flatnonzero(problem.part == part)
     rows = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
@@ -247,7 +247,7 @@ def _numeric_part(
     rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
     mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
-        problem.limit.require_left()
+        problem.limit.require_time()
         found = solve_cluster(columns, np.where(mine, origin, x), rule)  # other parts stay
         if found is not None:
             x[:] = found

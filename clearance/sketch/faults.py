@@ -1,4 +1,4 @@
-"""What can be wrong with a sketch, besides the package's common errors."""
+"""Faults of a sketch, besides the package's common errors."""
 
 from __future__ import annotations
 

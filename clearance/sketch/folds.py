@@ -1,9 +1,9 @@
-"""Ways out of a minimum of the errors: flat triangles folded over, which the drawing may have the wrong way.
+"""Ways out of a minimum of the errors: flat triangles folded over, which the drawing may have mirrored.
 
 A sliver's height is less than the drawing is off, so the sketch does not determine its side; a descent from the
 wrong side ends where the last errors pull against each other, a stress. A fold moves a point to its mirror
 image in the line through two points that it has distances from. To the first order all of the part gives
-way except along the stress, so what a fold would leave is the stress's share of the errors behind it. Folds
+way except along the stress, so a fold would leave the stress's share of the errors behind it. Folds
 that leave less, and move little for that, are tried first, each by a descent. Not for: the descent (`descent`).
 """
 
@@ -26,9 +26,9 @@ TRIED, ALTOGETHER = 16, 40
 """Folds tried in one minimum, and in all of them."""
 
 LOWER = 0.9
-"""[-] Share of the sum below which another minimum is taken for a better one."""
+"""[-] Share of the sum below which another minimum counts as a better one."""
 
-BESIDE = 1e-4
+FIRST_DAMPING = 1e-4
 """[-] First damping after a fold: what is right elsewhere must not be thrown about."""
 
 
@@ -59,10 +59,10 @@ def solve_from(problem: Problem, part: int, x: np.ndarray, tolerance: float) -> 
 
 def _descended(work: ProblemPart, place: Iterate | None, tolerance: float) -> Iterate | None:
     """The root that is reached from a minimum over folds; None for none."""
-    left = ALTOGETHER
+    remaining = ALTOGETHER
     while place is not None and np.abs(place.error).max() > tolerance:
-        place, used = _unfolded(work, place, min(left, TRIED))
-        left -= used
+        place, used = _unfolded(work, place, min(remaining, TRIED))
+        remaining -= used
     return place
 
 
@@ -72,7 +72,7 @@ def _unfolded(work: ProblemPart, place: Iterate, most: int) -> tuple[Iterate | N
         start = place.x.copy()
         start[fold.variable : fold.variable + 2] = fold.goal
         try:
-            other = descend(work, start, BESIDE)
+            other = descend(work, start, FIRST_DAMPING)
         except OutOfTime:
             raise OutOfTime(place.x) from None
         if other.total < LOWER * place.total:

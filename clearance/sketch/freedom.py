@@ -42,7 +42,7 @@ CLEAR = 1e-6
 def equations_of(problem: Problem, part: int, x: np.ndarray, *, regular: bool = True) -> Equations:
     """The equations of a part that are edges of the graph; those implied by the count come last.
 
-    The regular ones are for freedoms. What follows from what is asked of the equations as they were given: a
+    The regular ones are for freedoms. Implied equations are found among the equations as they were given: a
     regular equation says what it says only together with the incidences of its point.
     """
     system = problem.regular if regular else problem.system
@@ -67,7 +67,7 @@ def rigid_motions(problem: Problem, x: np.ndarray, columns: Columns) -> np.ndarr
 
 
 def freedom_of(problem: Problem, x: np.ndarray) -> int:
-    """Degrees of freedom left beyond placing the whole."""
+    """Remaining degrees of freedom beyond placing the whole."""
     problem, x = _begun(problem, x)
     suspicious = suspicious_parts(problem, x)
     total = sum(_part_freedom(problem, x, p, suspicious[p]) for p in range(problem.n_parts))
@@ -75,7 +75,7 @@ def freedom_of(problem: Problem, x: np.ndarray) -> int:
 
 
 def _begun(problem: Problem, x: np.ndarray) -> tuple[Problem, np.ndarray]:
-    """The problem and numbers at a size near 1; what is asked may take as long as the solve."""
+    """The problem and numbers at a size near 1; a question may take as long as the solve."""
     return at_unit(replace(problem, limit=problem.limit.again()), x)
 
 
@@ -136,7 +136,7 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
     """The constraints (by index) that follow from the others: all their equations do, by merges, by the
     graph's count or at the solution.
 
-    Of constraints that follow from one another those are named that have one equation only and are no part
+    If constraints follow from one another, those are named that have one equation only and are no part
     of how an entity is drawn, as far as there are such; then the last.
     """
     problem, x = _begun(problem, x)
@@ -156,9 +156,9 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
 
 
 def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
-    """The equations of a part that follow from its others; those of the count where more takes too long.
+    """The equations of a part that follow from its others; those of the count where more would need too long.
 
-    None where the regular ones are independent: they say the same, so that each takes a freedom.
+    None where the regular ones are independent: they say the same, so that each removes a freedom.
     """
     counted = [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
     equations = equations_of(problem, part, x, regular=False)
@@ -173,7 +173,7 @@ def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
 
 
 def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
-    """Degrees of freedom of every entity while the initial cluster of its part is held."""
+    """Degrees of freedom of every entity while the initial cluster of its part is fixed."""
     out = {}
     problem, x = _begun(problem, x)
     moving = ~problem.is_rigid | suspicious_parts(problem, x)
@@ -206,7 +206,7 @@ def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
 
 
 def _loose_motions(problem: Problem, x: np.ndarray, part: int):
-    """(basis of the motions left (n, k), first columns) with the part's initial cluster held."""
+    """(basis of the remaining motions (n, k), first columns) with the part's initial cluster fixed."""
     equations = equations_of(problem, part, x)
     motions = _motions(equations)
     held = motions.basis[_gauge(problem, part, equations, motions.place)]
@@ -216,9 +216,9 @@ def _loose_motions(problem: Problem, x: np.ndarray, part: int):
 
 
 def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> list[int]:
-    """The columns of vertices placed first that hold a part: as many as rigid motions are left to it."""
+    """The columns of vertices placed first that fix a part: as many as its remaining rigid motions."""
     vertices, first = equations.vertices, equations.first
-    motions = rigid_motions(problem, x, equations.columns)[:, : (3, 2, 0)[problem.hold[part]]]
+    motions = rigid_motions(problem, x, equations.columns)[:, : (3, 2, 0)[problem.fixing[part]]]
     inside = set(map(int, vertices))
     columns: list[int] = []
     placed = [v for step in problem.plan.steps for v in step.vertices if v in inside]

@@ -20,7 +20,7 @@ others."""
 
 
 class FlatLists:
-    """What the solver reads: one entry a variable, a line, a row or a constraint.
+    """The solver's input: one entry a variable, a line, a row or a constraint.
 
     Attributes:
         numbers: the value of every variable, counted from the origin.
@@ -69,7 +69,7 @@ class FlatLists:
         return first
 
     def append_rows(self, constraint: Constraint, rows: Iterable[Row]) -> None:
-        """Appends a constraint's equations; coincident points are listed apart."""
+        """Appends a constraint's equations; coincident points are listed separately."""
         first, rows = len(self.rows), list(rows)
         self.rows += rows
         for row in rows:
@@ -86,7 +86,7 @@ class FlatLists:
         return [0.0 if math.isnan(c.number) else c.number for c in self.constraints]
 
     def append_constraint(self, constraint: Constraint) -> None:
-        """Gives a constraint its place among all; its rows come apart."""
+        """Gives a constraint its place among all; its rows come separately."""
         self.constraints.append(constraint)
         if constraint.kind == "same_side" and not constraint.driven:
             self._same_sides.append(constraint)

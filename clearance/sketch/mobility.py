@@ -1,7 +1,7 @@
-"""The motions that a solution really has: the local dimension of the set of solutions, and what keeps it.
+"""The motions that a solution really has: the local dimension of the set of solutions, and its causes.
 
 The derivative's kernel at a solution is too large where constraints only touch: a point at the tangent point of
-a line and a circle is held, though not in the first order. The kernel at a place aside of the solution is too
+a line and a circle is fixed, though not in the first order. The kernel at a place aside of the solution is too
 small where dependencies hold on the solutions alone (theorems, mirror images). So both are asked at solutions:
 from the solution a short walk along a random motion of the kernel, then back on the equations by least-norm
 steps, ends at a generic solution nearby. There a motion of the kernel counts unless the second derivative
@@ -23,7 +23,7 @@ from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.system import System
 
 SINGULAR = 1e-9
-"""[-] Ratio to the largest below which a singular value is taken for 0: dimensions are scaled to
+"""[-] Ratio to the largest below which a singular value counts as 0: dimensions are scaled to
 one size."""
 
 STRAIGHT = 1e-6
@@ -33,10 +33,10 @@ STEP, LEAST_STEP = 1e-3, 1e-5
 """[-] How far a walk goes, relative to the smallest length of a part, and at least, relative to the size."""
 
 WALKS = 3
-"""Walks from a singular solution: several branches may meet there, the largest is asked for."""
+"""Walks from a singular solution: several branches may meet there, the largest counts."""
 
 SURVIVES = 0.3
-"""[-] Share of a walk that must be left after coming back to the equations: a motion that is ended by
+"""[-] Share of a walk that must remain after coming back to the equations: a motion that is ended by
 contact of fourth order leaves 0.1, by second order 1e-5."""
 
 
@@ -50,7 +50,7 @@ class Motions(NamedTuple):
 class Equations:
     """Some equations of one part at a solution: derivatives scaled to lengths, walks on the solutions.
 
-    What is left of their errors at the solution (an implied dimension may be off by a rounding) counts as
+    Their remaining errors at the solution (an implied dimension may be off by a rounding) count as
     right. The order of the rows says which are named where some follow from others: the last.
     """
 
@@ -92,11 +92,11 @@ class Equations:
         return self.columns.moved(x, self.unit * step)
 
     def walked(self, x: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """(numbers, way in columns) after a step and the least-norm way back to the equations, if it is
+        """(numbers, path in columns) after a step and the least-norm return to the equations, if it is
         found."""
-        way, place = step.copy(), self.moved(x, step)
+        path, place = step.copy(), self.moved(x, step)
         for _ in range(40):
-            self.problem.limit.require_left()
+            self.problem.limit.require_time()
             f, matrix = self.at(place)
             if np.abs(f).max(initial=0.0) <= 2e-16:
                 break
@@ -105,10 +105,10 @@ class Equations:
                 break
             if np.linalg.norm(back) > 2.0 * np.linalg.norm(step):
                 return None
-            way, place = way + back, self.moved(place, back)
+            path, place = path + back, self.moved(place, back)
         allowed = 1e-13 + 1e-2 * np.abs(self.error).max(initial=0.0)
         good = np.abs(self.at(place)[0]).max(initial=0.0) <= allowed
-        return (place, way) if good else None
+        return (place, path) if good else None
 
     @property
     def reach(self) -> float:
@@ -176,8 +176,8 @@ def _surviving(equations: Equations, x: np.ndarray, motions: np.ndarray, random)
     step = _stride(equations, motions, random)
     walked = equations.walked(x, step)
     if walked is not None:
-        left = motions.T @ (walked[1] - step)
-        if np.linalg.norm(left) <= SURVIVES * np.linalg.norm(step):
+        rest = motions.T @ (walked[1] - step)
+        if np.linalg.norm(rest) <= SURVIVES * np.linalg.norm(step):
             return motions
     ways = []
     for motion in motions.T:
@@ -197,7 +197,7 @@ def are_independent(equations: Equations) -> bool:
 def implied(equations: Equations, *, walk: bool = True) -> list[int]:
     """The equations (rows) that follow from the others: without them the solutions near x are as many.
 
-    Of equations that follow from one another the last are named.
+    If equations follow from one another, the last are named.
     """
     if are_independent(equations):
         return []
@@ -207,7 +207,7 @@ def implied(equations: Equations, *, walk: bool = True) -> list[int]:
         return [int(equations.rows[k]) for k in dependent(equations.at(motions.place)[1])]
     out = []
     for row in equations.rows[np.abs(left).max(axis=1, initial=0.0) > STRAIGHT][::-1]:
-        equations.problem.limit.require_left()
+        equations.problem.limit.require_time()
         fewer = equations.without(row)
         if motions_of(fewer, motions.place).basis.shape[1] == motions.basis.shape[1]:
             equations = fewer

@@ -37,7 +37,7 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
     best = _best(_Work(problem, part, target, weight), x, start)
     if (
         best is None and problem.contacts is not None
-    ):  # what is regular may lead to a line's other side
+    ):  # a regular equation may lead to a line's other side
         plain = replace(problem, contacts=None)
         return _best(_Work(plain, part, target, weight), x, start)
     return best
@@ -134,7 +134,7 @@ class _Work:
         size = self.problem.size
         multipliers = np.zeros(self.rows.size)
         for k in range(30):
-            self.problem.limit.require_left()
+            self.problem.limit.require_time()
             f, entries = self.columns.errors(x), self.columns.entries(x)
             rows, cols = self.columns.pattern
             gap = self.offsets(x)
@@ -142,9 +142,9 @@ class _Work:
             step, fresh = self._step(f, rows, cols, entries, gap, bent)
             if step is None:
                 return None
-            moved, taken = self._search(x, f, gap, step, fresh)
+            moved, length = self._search(x, f, gap, step, fresh)
             x, multipliers = moved, fresh
-            if taken * np.abs(step).max() <= 1e-9 * size:
+            if length * np.abs(step).max() <= 1e-9 * size:
                 break
         return self.restored(x)
 

@@ -1,4 +1,4 @@
-"""What a sketch draws: its segments, arcs and circles as one planar curve."""
+"""The drawing of a sketch: its segments, arcs and circles as one planar curve."""
 
 from __future__ import annotations
 
@@ -41,27 +41,27 @@ def chains(sketch, parts: list) -> list[list[tuple[object, bool]]]:
     for k, e in enumerate(parts):
         for p in ends_of(e):
             at.setdefault(int(alias[p.variable]), []).append(k)
-    left, out = set(range(len(parts))), []
+    unused, out = set(range(len(parts))), []
     for first in sorted(
-        left,
+        unused,
         key=lambda k: (min(len(at[int(alias[p.variable])]) == 2 for p in ends_of(parts[k])), k),
     ):
-        if first in left:
-            out.append(_chain(parts, first, left, at, alias))
+        if first in unused:
+            out.append(_chain(parts, first, unused, at, alias))
     return out
 
 
-def _chain(parts, first: int, left: set[int], at: dict[int, list[int]], alias) -> list:
-    left.discard(first)
+def _chain(parts, first: int, unused: set[int], at: dict[int, list[int]], alias) -> list:
+    unused.discard(first)
     start, end = (int(alias[p.variable]) for p in ends_of(parts[first]))
     back = len(at[start]) == 2 and len(at[end]) != 2
     chain, tip = [(parts[first], back)], start if back else end
     while len(at[tip]) == 2:
-        following = [k for k in at[tip] if k in left]
+        following = [k for k in at[tip] if k in unused]
         if not following:
             break
         k = following[0]
-        left.discard(k)
+        unused.discard(k)
         a, b = (int(alias[p.variable]) for p in ends_of(parts[k]))
         chain.append((parts[k], a != tip))
         tip = b if a == tip else a

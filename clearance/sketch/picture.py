@@ -73,8 +73,8 @@ def _drawn(e, low, high, scale: float) -> str:
             1.6,
         )
     x, y = at(e.center.position).split()
-    look = 'fill="none" stroke="black" stroke-width="1.6"'
-    return f'<circle cx="{x}" cy="{y}" r="{e.radius * scale:.2f}" {look}/>'
+    style = 'fill="none" stroke="black" stroke-width="1.6"'
+    return f'<circle cx="{x}" cy="{y}" r="{e.radius * scale:.2f}" {style}/>'
 
 
 def _path(d: str, color: str, width: float) -> str:

@@ -26,11 +26,11 @@ class Step:
         kind: "preprocess", "initial", "a", "b", "c", "d" or "extended".
         places: the entities that it merges or places.
         uses: the constraints that it satisfies.
-        cluster: number of the body or cluster that it works in; 0 is the one that takes in all in
+        cluster: number of the body or cluster that it works in; 0 is the one that adds all in
         the end.
         method: "assumed", "algebraic" or "numeric".
-        assumptions: how many conditions are missing and taken from the sketch (initial placement
-        apart).
+        assumptions: how many conditions are missing and come from the sketch (initial placement
+        excluded).
         outcome: "done", "kept" (it held already) or "failed".
     """
 
@@ -70,7 +70,7 @@ OUTCOMES = ("done", "failed", "failed", "kept")
 
 
 class _Names:
-    """Names of vertices: the entities whose numbers a vertex holds."""
+    """Names of vertices: the entities whose numbers a vertex has."""
 
     def __init__(self, sketch, problem) -> None:
         self.of: dict[int, list[str]] = {}
@@ -109,11 +109,11 @@ class _ClosedStepReading:
         self.names = names
         self.problem = problem
         self.plan = problem.plan
-        self.base = {int(b) for b in np.flatnonzero(self.plan.held)}
+        self.base = {int(b) for b in np.flatnonzero(self.plan.fixed)}
         inside = np.isin(self.plan.body_of, list(self.base))
         self.based = set(problem.part[inside].tolist())
         self.placed = {v for step in problem.plan.steps for v in step.vertices}
-        self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
+        self.spare = {p: [3, 2, 0][problem.fixing[p]] for p in range(problem.n_parts)}
         self.spare.update(dict.fromkeys(self.based, 0))  # its base places the part
         self.spare_of_body: dict[int, int] = {}
         self.size: dict[int, int] = {}
@@ -122,7 +122,7 @@ class _ClosedStepReading:
         vertices, rows = list(step.vertices), step.rows
         inside, body = step.origin == IN_BODY, int(self.plan.body_of[step.vertex])
         kind, assumed = self._kind(vertices, rows, inside, body)
-        if inside and len(rows) == 1:  # an edge whose other end is held without a step of its own
+        if inside and len(rows) == 1:  # an edge whose other end is fixed without a step of its own
             ends = [int(v) for v in self.problem.system.ends[rows[0]] if v > 0]
             vertices = [*(v for v in ends if v not in self.placed), *vertices]
         places = self.names.vertices(vertices) or tuple(f"direction {v}" for v in vertices)
@@ -142,7 +142,7 @@ class _ClosedStepReading:
             self.spare_of_body[body] -= granted
         else:
             self.spare[part] -= granted
-        fresh = inside or (self.problem.hold[part] < 2 and part not in self.based)
+        fresh = inside or (self.problem.fixing[part] < 2 and part not in self.based)
         self.size[key] = self.size.get(key, 0) + 1
         if granted:
             return "initial", missing - granted

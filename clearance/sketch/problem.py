@@ -39,7 +39,7 @@ RESIDUAL = 1e-12
 coordinate."""
 
 SETTLED = 2e-13
-"""[-] Equations that hold to this, relative to the size, are left alone: a solved sketch solves to
+"""[-] Equations that hold to this, relative to the size, stay untouched: a solved sketch solves to
 itself."""
 
 DEPENDENT = 1e-9
@@ -109,7 +109,7 @@ class Problem:
     """Everything about a sketch that a solve needs and that does not depend on where it starts.
 
     `alias` (n,) is the variable that stands for each; `weight` (n,) how many variables it stands
-    for (0 for those stood for). `free` (parts,) are the freedoms left, `hold` how each part hangs
+    for (0 for those stood for). `free` (parts,) are the remaining freedoms, `fixing` how each part hangs
     on the ground. `limit` is when searches stop.
     """
 
@@ -123,7 +123,7 @@ class Problem:
     plan: ConstructionPlan
     part: np.ndarray
     n_parts: int
-    hold: np.ndarray
+    fixing: np.ndarray
     free: np.ndarray
     row_part: np.ndarray
     length_scale: np.ndarray
@@ -139,7 +139,7 @@ class Problem:
     @property
     def is_rigid(self) -> np.ndarray:
         """(parts,) whether nothing is free in a part beyond placing it as a whole."""
-        return self.free == np.array([3, 2, 0])[self.hold]
+        return self.free == np.array([3, 2, 0])[self.fixing]
 
 
 def entities_of(sketch, problem: Problem) -> dict[str, Entity]:
@@ -249,12 +249,12 @@ def _fresh(tables, same: _NumberAliases, merged: Merged, var, coef, value, size,
         start, member, vertex_of, ends,
     )  # fmt: skip
     plan = make_plan(graph_of(kind, ends, ground, theta_of))
-    part, n_parts, hold = components(kind, ends, theta_of, ground)
+    part, n_parts, fixing = components(kind, ends, theta_of, ground)
     row_part = _row_parts(var, part, vertex_of)
-    free = _freedoms_left(kind, ends, part, n_parts, plan.dependent)
+    free = _remaining_freedoms(kind, ends, part, n_parts, plan.dependent)
     plain = (tables.scale == 0.0) & (tables.offset == 0.0)
     return Problem(
-        tables, *same, system, merged.fate, ground, plan, part, n_parts, hold,
+        tables, *same, system, merged.fate, ground, plan, part, n_parts, fixing,
         free, row_part, length_scale, size,
         contacts_of(tables.code, var, plain, ~np.isin(row_part, row_part[plan.dependent])),
     )  # fmt: skip
@@ -283,8 +283,8 @@ def _row_parts(var, part, vertex_of) -> np.ndarray:
     return np.where(named > 0, part[np.maximum(named, 0)], -1)
 
 
-def _freedoms_left(kind, ends, part, n_parts: int, dependent) -> np.ndarray:
-    """Degrees of freedom left in every part: those of its vertices less its independent equations."""
+def _remaining_freedoms(kind, ends, part, n_parts: int, dependent) -> np.ndarray:
+    """Remaining degrees of freedom of every part: those of its vertices less its independent equations."""
     out = np.bincount(part[1:], np.array(FREEDOMS)[kind[1:]], n_parts)
     chosen = (ends > 0).any(axis=1)
     chosen[dependent] = False

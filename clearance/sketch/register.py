@@ -1,4 +1,4 @@
-"""What a sketch holds, by name: entities, constraints, parameters; names are checked here.
+"""The contents of a sketch by name: entities, constraints, parameters; names are checked here.
 
 Not for: what they mean (`constraints`), nor their numbers (`lists`).
 """
@@ -65,7 +65,7 @@ class Register:
         return given
 
     def check_free(self, name: str) -> None:
-        """Refuses a name that is taken."""
+        """Refuses a name that is in use."""
         if name in self.entities or name in self.constraints or name in self.parameters:
             raise DuplicateName(f"the name {name!r} is taken", valid="a name used once")
 

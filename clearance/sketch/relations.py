@@ -65,7 +65,7 @@ class Relations:
         """Gives a new constraint its dimension: as asked, or as it is drawn.
 
         Raises:
-            BadDimension: a value for a kind that takes none.
+            BadDimension: a value for a kind that has none.
         """
         if measurable:
             given = value

@@ -1,6 +1,6 @@
 """Repairs of a conflict: which dimensions to change, to what, so that all constraints can hold.
 
-One dimension at a time is left out, everything else solved, and the dimension measured; or all dimensions
+One dimension at a time is dropped, everything else solved, and the dimension measured; or all dimensions
 of the conflict share the change by least squares.
 """
 
@@ -16,7 +16,7 @@ from clearance.sketch.problem import Tables, joined
 from clearance.sketch.trials import Trials
 
 SHARED = 300
-"""Equations up to which a change shared by all dimensions is worked out (a dense least-squares problem)."""
+"""Equations up to which a change shared by all dimensions is computed (a dense least-squares problem)."""
 
 FIRM = 1e3
 """[-] Weight of the equations that may not give way against those of the conflict's dimensions."""
@@ -61,7 +61,7 @@ def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
 
 
 def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[int, float] | None:
-    """The least change of all dimensions at once, the other constraints kept; None if not found."""
+    """The least change of all dimensions at once, with all other constraints; None if not found."""
     from scipy.optimize import least_squares
 
     tables = _smallest(trial, conflict)
@@ -77,7 +77,7 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     def violation(numbers: np.ndarray) -> np.ndarray:
         x = trial.before.copy()
         x[free] = numbers
-        trial.limit.require_left()
+        trial.limit.require_time()
         return weight * rows.errors(x[alias])
 
     fitted = least_squares(

@@ -1,4 +1,4 @@
-"""What a solve found; details are worked out when they are asked for.
+"""The findings of a solve; details are computed on demand.
 
 Not for: the search itself (`solver`), conflicts (`diagnosis`), the plan's wording (`plan`).
 """
@@ -20,7 +20,7 @@ class SketchResult:
     """The outcome of `Sketch.solve` or `Sketch.drag`.
 
     Attributes:
-        residual: [m] the largest equation error that is left at the best placement that was found (directions as
+        residual: [m] the largest equation error of the best placement that was found (directions as
             arcs at the sketch's size).
         movement: [m] root of the summed squares of the points' shifts.
         stopped: the solve's limit of time has passed before it was done; the sketch is as it was.
@@ -54,14 +54,14 @@ class SketchResult:
 
     @cached_property
     def freedom(self) -> int:
-        """Degrees of freedom left beyond placing the whole."""
+        """Remaining degrees of freedom beyond placing the whole."""
         from clearance.sketch.freedom import freedom_of
 
         return freedom_of(self._problem, self._outcome.x)
 
     @cached_property
     def freedom_of(self) -> dict[str, int]:
-        """Degrees of freedom of every entity with the initial cluster held."""
+        """Degrees of freedom of every entity with the initial cluster fixed."""
         from clearance.sketch.freedom import entity_freedoms
 
         return entity_freedoms(self.sketch, self._problem, self._outcome.x)
@@ -158,7 +158,7 @@ class SketchResult:
     def conflicts(self) -> list[str]:
         """A minimal set of constraints that cannot hold together; empty when all hold.
 
-        Of an "unsolved" sketch it is the least set that the search could not solve, and empty where a
+        For an "unsolved" sketch it is the least set that the search could not solve, and empty where a
         cluster is too large to decide: then `searched` lists the cluster's constraints.
         """
         return [] if self.solved else self._diagnosis.names
@@ -185,7 +185,7 @@ class SketchResult:
 
     @property
     def fault(self) -> str:
-        """What keeps the sketch from being drawn, in one line; empty when all hold."""
+        """The obstacle to a drawing of the sketch, in one line; empty when all hold."""
         if self.solved or self.status != "inconsistent":
             return self.reason
         return f"the constraints {', '.join(self.conflicts[:6])} contradict each other"

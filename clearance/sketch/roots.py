@@ -1,6 +1,6 @@
 """All real roots of the small numeric clusters: many starts, one list, nearest to the sketch first.
 
-The starts are spread over the turns and places a cluster can take; roots are told apart by their
+The starts are spread over the turns and places of a cluster; roots are distinguished by their
 distance. It is a search, not a proof: a root with a basin smaller than the spacing of the starts
 may be missed.
 """
@@ -31,11 +31,11 @@ QUICK_STARTS = 60
 """Starts of the search for a nearer root while solving."""
 
 FAR = 0.1
-"""[-] Movement of a cluster relative to its extent above which a nearer root is looked for while solving:
-only a root within that movement can be nearer, and Newton rarely passes one on a shorter way."""
+"""[-] Movement of a cluster relative to its extent above which a nearer root is searched for while solving:
+only a root within that movement can be nearer, and Newton rarely passes one on a shorter path."""
 
 MOST = 64
-"""Roots that are kept: ten entities of two freedoms rarely have more real ones."""
+"""The most roots: ten entities of two freedoms rarely have more real ones."""
 
 
 AT_ONCE = 100
@@ -73,12 +73,12 @@ def roots_of(problem: Problem, step: PlanStep, x: np.ndarray, starts: int = STAR
         scattered = columns.moved(np.repeat(x[None], len(steps), axis=0), steps)
         ends, good = descended(columns, scattered, rule, 40)
         for y in ends[good & (ends[:, sizes] > 0.0).all(axis=1)]:
-            if len(found) < MOST and all(_apart(problem, vertices, y, z) > 1e-6 for z in found):
+            if len(found) < MOST and all(_distance(problem, vertices, y, z) > 1e-6 for z in found):
                 found.append(y)
     return np.array(found)
 
 
-def _apart(problem: Problem, vertices: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
+def _distance(problem: Problem, vertices: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
     """The largest difference of two places of a cluster relative to the size; directions as arcs at it."""
     s = problem.system
     i, turning = s.root[vertices], s.kind[vertices] == TURN
@@ -110,7 +110,7 @@ def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np
         moved = float(np.abs(x[mine] - sketch[mine]).max(initial=0.0))
         if moved <= FAR * _extent(problem, np.array(step.vertices), sketch):
             continue
-        problem.limit.require_left()
+        problem.limit.require_time()
         found = roots_of(problem, step, x, QUICK_STARTS)
         away = np.linalg.norm(found[:, mine] - sketch[mine], axis=1)
         if away.min() < 0.999 * away[0]:

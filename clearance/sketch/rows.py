@@ -1,8 +1,8 @@
 """The equations that each constraint stands for, as rows for `clearance.sketch.equations`.
 
-A function per form takes the sketch's numbers and the entities; whatever an equation leaves open by sign (the
-side of a line, inside or outside, the turn of an angle) it reads from the sketch. Not for: which kinds
-take which entities (`constraints`).
+A function per form takes the sketch's numbers and the entities. Signs that an equation leaves open (the side of a
+line, inside or outside, the turn of an angle) it reads from the sketch. Not for: which kinds are for which
+entities (`constraints`).
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ def shared_end(c, d) -> Point | None:
 
 def circles_touch(x, c, d, inside=None):
     r, q = x[c.variable], x[d.variable]
-    apart = span(x, c.center, d.center)
+    between = span(x, c.center, d.center)
     shared = shared_end(c, d)
     if inside is None and shared is not None:
         (px, py), *centers = (
@@ -146,7 +146,7 @@ def circles_touch(x, c, d, inside=None):
         (ax, ay), (bx, by) = centers
         inside = (ax - px) * (bx - px) + (ay - py) * (by - py) > 0.0
     elif inside is None:
-        inside = abs(apart - abs(r - q)) < abs(apart - (r + q))
+        inside = abs(between - abs(r - q)) < abs(between - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
     place = CircleCircle(*pair(c.center), *pair(d.center), c.variable, d.variable)
     return [Row(place, signs)]

@@ -45,7 +45,7 @@ class Sketch:
     Attributes:
         entities, constraints, parameters: by name.
         polylines: in the order in which they were added.
-        most_seconds: [s] after which a solve stops that is not told otherwise.
+        most_seconds: [s] after which a solve stops, unless it has a limit of its own.
     """
 
     def __init__(self) -> None:
@@ -149,7 +149,7 @@ class Sketch:
         return self._relations.add(kind, own, value=value, name=name, driven=driven, inside=inside)
 
     def fix(self, entity: Given, *, name: str | None = None) -> Constraint:
-        """Holds an entity where it is drawn."""
+        """Fixes an entity where it is drawn."""
         return self.add("fix", entity, name=name)
 
     def distance(
@@ -269,10 +269,10 @@ class Sketch:
     def solve(self, *, seconds: float | None = None) -> SketchResult:
         """Moves the entities least so that every constraint holds; see `SketchResult`.
 
-        An inconsistent sketch is left as it is, and so is one that is not solved in time.
+        An inconsistent sketch stays as it is, and so does one that is not solved in time.
 
         Args:
-            seconds: [s] of processor time after which searches stop, asked for between their steps;
+            seconds: [s] of processor time after which searches stop, checked between their steps;
                 `most_seconds` if not given. What is solved in time does not depend on it.
 
         Raises:

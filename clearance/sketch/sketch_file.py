@@ -10,7 +10,7 @@ arcs: {round: {center: m, start: p, end: q}}
 constraints:
   - {kind: distance, of: [a, b], value: W, name: width}
 ```
-Directions are kept in radians. Not for: anything but sketches.
+Directions are stored in radians. Not for: anything but sketches.
 """
 
 from __future__ import annotations

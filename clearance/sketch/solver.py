@@ -1,4 +1,4 @@
-"""A sketch's solver: the current problem, kept while the structure stays, and its solves and drags.
+"""A sketch's solver: the current problem, cached while the structure stays, and its solves and drags.
 
 Not for: how a problem is solved (`execution`).
 """
@@ -37,7 +37,7 @@ class Solver:
         self.stale = False
 
     def changed(self, constraint: Constraint) -> None:
-        """Takes over a changed dimension; what was found before keeps the old one."""
+        """Adopts a changed dimension; earlier results have the old one."""
         if not self.stale:
             self.tables = replace(self.tables, numbers=self.tables.numbers.copy())
         self.tables.numbers[constraint.index] = constraint.number

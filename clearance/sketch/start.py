@@ -1,4 +1,4 @@
-"""Where a solve starts: coincident points joined, merged numbers made to agree, `same_side` by mirroring.
+"""The start of a solve: coincident points joined, merged numbers made to agree, `same_side` by mirroring.
 
 The rest of the drawing stays as it is. Not for: running the plan (`execution`).
 """
@@ -42,9 +42,11 @@ def _agree(problem: Problem, role: int, x: np.ndarray) -> None:
     merged = s.scale[mine] * total[root] / np.maximum(count[root], 1) + s.shift[mine]
     off = np.zeros(n + 1)
     np.maximum.at(off, root, np.abs(merged - x[mine]))
-    apart = off[root] > SETTLED * problem.size
-    x[mine[apart]] = merged[apart]
-    turned = mine[apart][x[mine[apart]] != drawn[mine[apart]]] if role == DIRECTION else mine[:0]
+    changed = off[root] > SETTLED * problem.size
+    x[mine[changed]] = merged[changed]
+    turned = (
+        mine[changed][x[mine[changed]] != drawn[mine[changed]]] if role == DIRECTION else mine[:0]
+    )
     if turned.size:
         middle = _middles(problem, drawn)[turned]
         x[turned + 1] = np.cos(x[turned]) * middle[:, 1] - np.sin(x[turned]) * middle[:, 0]
@@ -54,8 +56,8 @@ def _join(problem: Problem, x: np.ndarray) -> None:
     """Gives coincident points their mean, unless they already agree."""
     mean = np.bincount(problem.alias, weights=x, minlength=x.size) / np.maximum(problem.weight, 1.0)
     mean = mean[problem.alias]
-    apart = np.abs(mean - x) > SETTLED * problem.size
-    moved = np.isin(problem.alias, problem.alias[apart])
+    changed = np.abs(mean - x) > SETTLED * problem.size
+    moved = np.isin(problem.alias, problem.alias[changed])
     x[moved] = mean[moved]
     x[:] = x[problem.alias]
 

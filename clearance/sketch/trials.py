@@ -1,6 +1,6 @@
 """Trials: can some of the constraints hold together, and which least set of them cannot.
 
-A quick trial starts from the numbers that the failed solve left, where most equations hold already; only
+A quick trial starts from the numbers of the failed solve, where most equations hold already; only
 when it finds nothing are the chosen constraints planned and solved from the sketch. What a trial finds
 solvable is so; what it does not find solvable need not be impossible. Not for: what a conflict means
 (`diagnosis`).
@@ -19,7 +19,7 @@ from clearance.sketch.start import sides_hold
 from clearance.sketch.steps import stopping_rule
 
 AT_ONCE = 64
-"""Constraints up to which each is left out in turn before halving: circuits mostly are minimal already."""
+"""Constraints up to which each is dropped in turn before halving: circuits mostly are minimal already."""
 
 
 class Trials:
@@ -42,7 +42,7 @@ class Trials:
 
     def part(self, chosen: list[int]) -> Problem:
         """The problem of these constraints alone."""
-        self.limit.require_left()
+        self.limit.require_time()
         part = problem_of(self.tables.only(self.marks(chosen)), self.before)
         part.limit = self.limit
         return part
@@ -59,7 +59,7 @@ class Trials:
 
     def solvable(self, chosen: list[int]) -> bool:
         """Whether a trial finds a place where these constraints hold together."""
-        self.limit.require_left()
+        self.limit.require_time()
         if not chosen or self._near(chosen) or self.run(chosen, 0).broken == -1:
             return True
         return self.effort > 0 and self.run(chosen).broken == -1
@@ -83,7 +83,7 @@ class Trials:
         return False
 
     def _descended(self, columns: Columns, x: np.ndarray) -> np.ndarray | None:
-        """Where a descent from x makes some equations hold, with every radius above 0; None for nowhere."""
+        """The end of a descent from x where some equations hold, with every radius above 0; None without one."""
         rule = stopping_rule(self.problem, 1)._replace(limit=self.limit)
         found = solve_cluster(columns, x, rule) if columns.rows.size else x
         good = found is not None and (found[self.tables.role == RADIUS] > 0.0).all()
@@ -108,13 +108,13 @@ class Trials:
         return all(self.solvable(fixed + [i for i in rest if i != drop]) for drop in rest)
 
     def thinned(self, circuit: list[int]) -> list[int]:
-        """What is left of a circuit when all that it conflicts without is dropped, one after another."""
-        left = list(circuit)
+        """The rest of a circuit after dropping, one after another, all constraints that it conflicts without."""
+        remaining = list(circuit)
         for drop in circuit:
-            rest = [i for i in left if i != drop]
+            rest = [i for i in remaining if i != drop]
             if not self.solvable(rest):
-                left = rest
-        return left
+                remaining = rest
+        return remaining
 
     def minimal(self, suspects: list[int]) -> list[int]:
         """A subset that is not solved while every smaller one is; incidences of drawing are tried last."""
@@ -139,5 +139,5 @@ class Trials:
         half = len(rest) // 2
         first, second = rest[:half], rest[half:]
         right = self._explain(fixed + first, second, True)
-        left = self._explain(fixed + right, first, bool(right))
-        return left + right
+        remaining = self._explain(fixed + right, first, bool(right))
+        return remaining + right

@@ -34,7 +34,7 @@ DIMENSION = {"length": 1.7, "angle": 0.8, "ratio": 1.3, "": None}
 def made(kind, k):
     s = Sketch()
     form = KINDS[kind][k]
-    c = s.add(kind, *entities(s, form.takes), value=DIMENSION[form.unit], name="tested")
+    c = s.add(kind, *entities(s, form.types), value=DIMENSION[form.unit], name="tested")
     return s, c, form
 
 
@@ -120,7 +120,7 @@ PAPER = {
 
 @pytest.mark.parametrize(("kind", "takes"), PAPER)
 def test_valencies_are_those_of_table_1(kind, takes):
-    k = next(k for k, f in enumerate(KINDS[kind]) if tuple(t.what for t in f.takes) == takes)
+    k = next(k for k, f in enumerate(KINDS[kind]) if tuple(t.what for t in f.types) == takes)
     _, c, _ = made(kind, k)
     assert c.valency == PAPER[kind, takes]
 

@@ -233,7 +233,7 @@ def test_what_is_no_number_of_seconds_is_refused(seconds):
 
 def test_a_limit_is_passed_once_and_for_all():
     limit = TimeLimit(10.0, Clock(3))
-    limit.require_left()
-    limit.require_left()
+    limit.require_time()
+    limit.require_time()
     with pytest.raises(OutOfTime):
-        limit.require_left()
+        limit.require_time()

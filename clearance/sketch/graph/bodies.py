@@ -1,6 +1,6 @@
 """Rigid bodies: grown along rigid chains, or made of what is assumed to be rigid.
 
-A body starts from two entities with three degrees of freedom and takes in every vertex that hangs
+A body starts from two entities with three degrees of freedom and adds every vertex that hangs
 on it by as many edges as it has freedom (Fig. 8 a and b of the paper). Not for: the clusters of bodies and
 vertices that are solved at once (`sketch.graph.core`).
 Source: Kwon, Lee, Lee 2001, section 3.5.
@@ -49,8 +49,8 @@ class Bodies:
         body = len(self.steps)
         for v in seeds:
             self.body_of[v] = body
-        held = (seeds[1],) if len(seeds) == 2 else (seeds[2], seeds[1])
-        first = [PlanStep(held, (), IN_BODY), PlanStep((seeds[0],), (row,), IN_BODY)]
+        firsts = (seeds[1],) if len(seeds) == 2 else (seeds[2], seeds[1])
+        first = [PlanStep(firsts, (), IN_BODY), PlanStep((seeds[0],), (row,), IN_BODY)]
         grown = self._grown(seeds, body)
         if grown:
             self.steps.append(first + grown)
@@ -59,21 +59,21 @@ class Bodies:
                 self.body_of[v] = -1
 
     def _grown(self, seeds: tuple[int, ...], body: int) -> list[PlanStep]:
-        """The steps that take in what hangs on the seeds, and on what they take in."""
+        """The steps that add the vertices that hang on the seeds, and on added ones."""
         graph, steps, waiting = self.graph, [], list(seeds)
         for u in waiting:
             for row in graph.rows[u]:
                 for v in graph.ends[row] if self.live[row] else ():
                     open_to = v > 0 and self.free[v] and self.body_of[v] < 0
                     if open_to and graph.kind[v] != TURN:
-                        step = self._taken_in(v, body)
+                        step = self._adding(v, body)
                         if step is not None:
                             steps.append(step)
                             waiting += reversed(step.vertices)
         return steps
 
-    def _taken_in(self, v: int, body: int) -> PlanStep | None:
-        """The step that takes v into the body, if it hangs on it by as many edges as it has freedom; an offset
+    def _adding(self, v: int, body: int) -> PlanStep | None:
+        """The step that adds v to the body, if it hangs on it by as many edges as it has freedom; an offset
         may bring its direction."""
         line = -1
         if self.graph.kind[v] == SLIDE and self.body_of[self.graph.theta_of[v]] != body:
@@ -98,7 +98,7 @@ class Bodies:
     def assume(self, order: MergeOrder) -> None:
         """Makes bodies of homes of at least three points, each hung on those before it by at most two edges.
 
-        What they lack is assumed inside (Fig. 13 a and b): `order.lacking` becomes 0 there.
+        Missing conditions are assumed inside (Fig. 13 a and b): `order.lacking` becomes 0 there.
         """
         homes: dict[int, list[int]] = {}
         for v in sorted(range(1, len(order.turn)), key=order.turn.__getitem__):

@@ -1,4 +1,4 @@
-"""The core's parts and nodes: what is held first, what is joined, which equations place what.
+"""The core's parts and nodes: initial fixed bodies, joins, and the equations that place each vertex.
 
 A part is what equations connect; a node is a rigid body or a single vertex. Not for: finding the bodies
 (`sketch.graph.bodies`), nor the order of the rules (`sketch.graph.rules`).
@@ -26,13 +26,13 @@ from clearance.sketch.graph.steps import IN_BODY, IN_CORE, PlanStep
 def plan_core(
     graph: ConstraintGraph, live: bytearray, removed: bytearray
 ) -> tuple[list[PlanStep], list[int], np.ndarray]:
-    """(steps, body of every vertex, marks of the bodies that are held) of what peeling leaves: bodies, the order
-    of the rules, what is held first, clusters."""
+    """(steps, body of every vertex, marks of the fixed bodies) of the graph after peeling: bodies, the order
+    of the rules, initial fixed bodies, clusters."""
     return _Core(graph, live, removed).planned()
 
 
 class _Core:
-    """What peeling leaves of a graph: its live edges, its free vertices, its parts and bodies."""
+    """A graph after peeling: its live edges, its free vertices, its parts and bodies."""
 
     def __init__(self, graph: ConstraintGraph, live: bytearray, removed: bytearray) -> None:
         self.graph, self.live = graph, live
@@ -49,9 +49,9 @@ class _Core:
         order = self._turns_by_rule()
         self.bodies.assume(order)
         steps = [step for body in self.bodies.steps for step in body]
-        held, begun = self._initial_clusters(order.turn)
+        fixed, begun = self._initial_clusters(order.turn)
         steps += [PlanStep((self.graph.ends[row][0],), (row,), IN_BODY) for row in begun]
-        return steps + self._clusters(held, order), self.body_of, np.array(held, bool)
+        return steps + self._clusters(fixed, order), self.body_of, np.array(fixed, bool)
 
     def _components(self) -> Components:
         ends = np.full((len(self.graph.ends), 5), -1)
@@ -62,17 +62,17 @@ class _Core:
         return components(kind, ends, theta_of, np.array(self.graph.absolute))
 
     def _turns_by_rule(self) -> MergeOrder:
-        """The order (by vertex) in which rules A and B take in the vertices of a core with freedom left.
+        """The order (by vertex) in which rules A and B add the vertices of a core with remaining freedom.
 
-        What a node lacks is noted at its first vertex. Turns and conditions are 0 and homes -1 where no freedom
-        is left or the core is too large for the rules.
+        The conditions that a node lacks are noted at its first vertex. Turns and conditions are 0 and
+        homes -1 where no freedom remains or the core is too large for the rules.
         """
         n = len(self.graph.kind)
         out = MergeOrder([0] * n, [0] * n, [-1] * n)
         node, dof = self._nodes()
         rows = [mine for row in self.rows if (mine := self._nodes_of(row, node, len(dof)))]
         parts = {int(self.parts.part[v]) for v in self.vertices}
-        spare = sum(dof) - sum((3, 2, 0)[self.parts.hold[p]] for p in parts)
+        spare = sum(dof) - sum((3, 2, 0)[self.parts.fixing[p]] for p in parts)
         if len(dof) <= RULED and spare > len(rows):
             order = merge_order(rows, [*dof, 3])
             for v, at in node.items():
@@ -102,28 +102,28 @@ class _Core:
         return mine if directed or len(set(mine)) > 1 else []
 
     def _initial_clusters(self, turn: list[int]) -> tuple[list[bool], list[int]]:
-        """(marks of the bodies that are held, edges whose two ends are made a body that is held).
+        """(marks of the fixed bodies, edges whose two ends become a fixed body).
 
-        A part begins with the ground, a body, or an edge's two ends; a part held by directions only holds its
+        A part begins with the ground, a body, or an edge's two ends; a part fixed by directions only fixes its
         first point.
         """
-        held = [False] * len(self.bodies.steps)
+        fixed = [False] * len(self.bodies.steps)
         largest, begun = self._largest_bodies(turn), []
         for b in largest.values():
-            held[b] = True
+            fixed[b] = True
         for p, row in sorted(self._seeds(turn, largest).items()):
             v, u = self.graph.ends[row][:2]
             if self.body_of[v] >= 0 or self.body_of[u] >= 0:
                 continue
-            whole = self.parts.hold[p] == 0
+            whole = self.parts.fixing[p] == 0
             for w in self.graph.ends[row] if whole else (v,):
-                self.body_of[w] = len(held)
+                self.body_of[w] = len(fixed)
             begun += [row] if whole else []
-            held.append(True)
-        return held, begun
+            fixed.append(True)
+        return fixed, begun
 
     def _largest_bodies(self, turn: list[int]) -> dict[int, int]:
-        """The body that begins every part not held: the first by turn, then the largest."""
+        """The body that begins every part that is not fixed: the first by turn, then the largest."""
         early: dict[int, int] = {}
         weight = [0] * len(self.bodies.steps)
         for v in self.vertices:
@@ -134,7 +134,7 @@ class _Core:
         best: dict[int, int] = {}
         for v in self.vertices:
             b, p = self.body_of[v], int(self.parts.part[v])
-            if b >= 0 and self.parts.hold[p] == 0 and turn[v] == early[p]:
+            if b >= 0 and self.parts.fixing[p] == 0 and turn[v] == early[p]:
                 if p not in best or weight[b] > weight[best[p]]:
                     best[p] = b
         return best
@@ -149,30 +149,30 @@ class _Core:
                 continue
             v, u = ends[:2]
             p = int(self.parts.part[v])
-            if not self.free[v] or self.parts.hold[p] == 2 or p in largest:
+            if not self.free[v] or self.parts.fixing[p] == 2 or p in largest:
                 continue
             line = len(ends) == 3 and kind[u] == TURN and kind[ends[2]] == SLIDE
-            if self.parts.hold[p] == 1 or [kind[w] for w in ends] == [POINT, POINT] or line:
+            if self.parts.fixing[p] == 1 or [kind[w] for w in ends] == [POINT, POINT] or line:
                 late = max(turn[v], turn[u])
                 if late < least.get(p, 1 << 30):
                     seed[p], least[p] = row, late
         return seed
 
-    def _clusters(self, held: list[bool], order: MergeOrder) -> list[PlanStep]:
+    def _clusters(self, fixed: list[bool], order: MergeOrder) -> list[PlanStep]:
         """The clusters of a core: the strongly connected parts of its nodes, in the order of placing."""
-        hold, capacity = self._contracted(held)
-        between = [row for row in self.rows if not self._within(row, hold)]
-        owner = self._matched(between, hold, capacity, order)
+        node_of, capacity = self._contracted(fixed)
+        between = [row for row in self.rows if not self._within(row, node_of)]
+        owner = self._matched(between, node_of, capacity, order)
         members: dict[int, list[int]] = {}
-        for v in sorted(hold, key=lambda v: self.body_of[v]):
-            members.setdefault(hold[v], []).append(v)
+        for v in sorted(node_of, key=lambda v: self.body_of[v]):
+            members.setdefault(node_of[v], []).append(v)
         near: dict[int, list[int]] = {}
         rows: dict[int, list[int]] = {}
         for row in between:
             if row in owner:
                 mine = owner[row]
                 rows.setdefault(mine, []).append(row)
-                others = (hold[v] for v in self.graph.ends[row] if v in hold)
+                others = (node_of[v] for v in self.graph.ends[row] if v in node_of)
                 near.setdefault(mine, []).extend(w for w in others if w != mine)
         out = []
         for part in strong_parts(sorted(members), near):
@@ -183,38 +183,38 @@ class _Core:
             out.append(self._step(tuple(placed), tuple(used)))
         return out
 
-    def _contracted(self, held: list[bool]) -> tuple[dict[int, int], list[int]]:
-        """(the contracted node of every vertex that is not held, the freedoms of every node)."""
-        hold, capacity = {}, [0 if h else 3 for h in held]
+    def _contracted(self, fixed: list[bool]) -> tuple[dict[int, int], list[int]]:
+        """(the contracted node of every vertex that is not fixed, the freedoms of every node)."""
+        node_of, capacity = {}, [0 if h else 3 for h in fixed]
         for v in self.vertices:
             b = self.body_of[v]
             if b < 0:
-                hold[v] = len(capacity)
+                node_of[v] = len(capacity)
                 capacity.append(FREEDOMS[self.graph.kind[v]])
-            elif not held[b]:
-                hold[v] = b
-        return hold, capacity
+            elif not fixed[b]:
+                node_of[v] = b
+        return node_of, capacity
 
-    def _within(self, row: int, hold: dict[int, int]) -> bool:
-        """Whether an edge lies inside one body or inside what is held."""
+    def _within(self, row: int, node_of: dict[int, int]) -> bool:
+        """Whether an edge lies inside one body or inside the fixed ones."""
         ends = self.graph.ends[row]
-        if any(v in hold and self.body_of[v] < 0 for v in ends):
+        if any(v in node_of and self.body_of[v] < 0 for v in ends):
             return False
-        return len({hold.get(v, -1) for v in ends}) <= 1
+        return len({node_of.get(v, -1) for v in ends}) <= 1
 
     def _matched(
-        self, between: list[int], hold: dict[int, int], capacity: list[int], order: MergeOrder
+        self, between: list[int], node_of: dict[int, int], capacity: list[int], order: MergeOrder
     ) -> dict[int, int]:
         """The node of every edge: those of rules A and B keep the freedom that they assume, if that works out."""
         turn = order.turn
         later = {row: sorted(self.graph.ends[row], key=lambda v: -turn[v]) for row in between}
         chosen = sorted(between, key=lambda row: turn[later[row][0]])
-        nodes_of = {row: [hold[v] for v in later[row] if v in hold] for row in chosen}
+        nodes_of = {row: [node_of[v] for v in later[row] if v in node_of] for row in chosen}
         if any(order.lacking):
-            left = list(capacity)
-            for v, node in hold.items():
-                left[node] = max(left[node] - order.lacking[v], 0)
-            owner = match(nodes_of, left)
+            remaining = list(capacity)
+            for v, node in node_of.items():
+                remaining[node] = max(remaining[node] - order.lacking[v], 0)
+            owner = match(nodes_of, remaining)
             if len(owner) == len(nodes_of):
                 return owner
         return match(nodes_of, capacity)

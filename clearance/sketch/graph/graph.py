@@ -3,7 +3,7 @@ lists.
 
 Relations that are linear between directions, between offsets of parallel lines, or between radii
 are merged beforehand by a weighted union-find (the paper's preprocessing: edges of valency 2 make
-pseudo entities). What is left is a hypergraph: a vertex is a point (2 degrees of freedom), a class
+pseudo entities). The rest is a hypergraph: a vertex is a point (2 degrees of freedom), a class
 of directions, of offsets or of radii (1 each), or the ground (vertex 0: a rigid body, 3); an edge
 is one equation.
 """
@@ -24,7 +24,7 @@ X, Y, DIRECTION, OFFSET, RADIUS = 0, 1, 2, 3, 4
 GROUND, POINT, TURN, SLIDE, SIZE = 0, 1, 2, 3, 4
 """Kinds of vertices: TURN is a class of directions, SLIDE of offsets, SIZE of radii."""
 IN_GRAPH, MERGED, REPEATED, CONTRADICTED = 0, 1, 2, 3
-"""What became of an equation: an edge, used by a merge, implied by merges, or contrary to them."""
+"""The fate of an equation: an edge, used by a merge, implied by merges, or contrary to them."""
 
 FREEDOMS = (3, 2, 1, 1, 1)
 """Degrees of freedom by kind of vertex."""
@@ -90,7 +90,7 @@ class _Forest:
         return i, a, b
 
     def relate(self, i: int, j: int, c0: float, c1: float, value: float) -> float | None:
-        """Takes in c0 x_i + c1 x_j = value (c1 is 0 without j); its error where it was known already."""
+        """Adds c0 x_i + c1 x_j = value (c1 is 0 without j); its error where it was known already."""
         i, a, b = self.root(i)
         j, p, q = self.root(j) if c1 != 0.0 else (self.n, 0.0, 0.0)
         a, p = c0 * a, c1 * p  # a x_i + p x_j = value - c0 b - c1 q
@@ -190,12 +190,12 @@ class Components(NamedTuple):
     Attributes:
         part: (v,) the part of every vertex; the ground's is -1.
         n_parts: how many there are.
-        hold: (parts,) 0 not at all, 1 by directions only, 2 by position.
+        fixing: (parts,) 0 not at all, 1 by directions only, 2 by position.
     """
 
     part: np.ndarray
     n_parts: int
-    hold: np.ndarray
+    fixing: np.ndarray
 
 
 def components(kind, ends, theta_of, absolute) -> Components:
@@ -209,10 +209,10 @@ def components(kind, ends, theta_of, absolute) -> Components:
     labels = connected_components(links, directed=False)[1][1:n]
     seen, place = np.unique(labels, return_inverse=True)
     part = np.append(-1, place).astype(np.int64)  # labels follow the least vertex of a part
-    hold = np.zeros(seen.size, np.int64)
+    fixing = np.zeros(seen.size, np.int64)
     grounded = (ends == 0).any(axis=1)[row]
     np.maximum.at(
-        hold, part[ends[row, slot]][grounded], np.where(absolute[row] == 1, 2, 1)[grounded]
+        fixing, part[ends[row, slot]][grounded], np.where(absolute[row] == 1, 2, 1)[grounded]
     )
-    np.maximum.at(hold, part[np.flatnonzero((kind == SLIDE) & (theta_of == 0))], 1)
-    return Components(part, seen.size, hold)
+    np.maximum.at(fixing, part[np.flatnonzero((kind == SLIDE) & (theta_of == 0))], 1)
+    return Components(part, seen.size, fixing)

@@ -1,6 +1,6 @@
 """The least sets of nodes that are solvable at once, in the order of placing.
 
-A node is a rigid body of three freedoms or a vertex, and one of them is held. A matching of edges to freedoms and
+A node is a rigid body of three freedoms or a vertex, and one of them is fixed. A matching of edges to freedoms and
 the strongly connected parts of the directed graph give the smallest clusters (Fig. 8 c and d of the paper, and
 extended ones). Not for: finding the bodies (`sketch.graph.bodies`).
 Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for minimal dense subgraphs.
@@ -12,23 +12,25 @@ from collections.abc import Iterable, Mapping
 
 
 def match(nodes_of: Mapping[int, list[int]], capacity: Iterable[int]) -> dict[int, int]:
-    """The node of every edge, each in turn given the first of its nodes with freedom left; edges that find none
+    """The node of every edge, each in turn given the first of its nodes with freedom; edges that find none
     are missing.
 
     Args:
         nodes_of: by edge, in the order in which they choose: the nodes that may own it.
         capacity: the freedoms of every node.
     """
-    left = list(capacity)
+    remaining = list(capacity)
     owner: dict[int, int] = {}
-    paid: list[dict[int, None]] = [{} for _ in left]  # the edges of every node, the newest last
+    paid: list[dict[int, None]] = [
+        {} for _ in remaining
+    ]  # the edges of every node, the newest last
     for edge in nodes_of:
         came, seen, waiting = {edge: -1}, set[int](), [edge]
-        free = _free_node(nodes_of, left, paid, came, seen, waiting)
+        free = _free_node(nodes_of, remaining, paid, came, seen, waiting)
         if free is None:
             continue
         at, node = free
-        left[node] -= 1
+        remaining[node] -= 1
         while at >= 0:  # the node that it leaves goes to the edge before it, and so on to the first
             before = owner.get(at, -1)
             if before >= 0:
@@ -38,14 +40,14 @@ def match(nodes_of: Mapping[int, list[int]], capacity: Iterable[int]) -> dict[in
     return owner
 
 
-def _free_node(nodes_of, left, paid, came, seen, waiting) -> tuple[int, int] | None:
-    """(an edge, a node with freedom left for it) that the first edge reaches by moving others; fills `came`."""
+def _free_node(nodes_of, remaining, paid, came, seen, waiting) -> tuple[int, int] | None:
+    """(an edge, a node with freedom for it) that the first edge reaches by moving others; fills `came`."""
     for edge in waiting:
         for node in nodes_of[edge]:
             if node in seen:
                 continue
             seen.add(node)
-            if left[node] > 0:
+            if remaining[node] > 0:
                 return edge, node
             for other in reversed(paid[node]):
                 came[other] = edge

@@ -1,7 +1,7 @@
 """The pebble game: which equations of the core depend on others by Definitions 1 to 3, and on
 which.
 
-Every vertex holds as many pebbles as degrees of freedom; an equation is independent when four
+Every vertex has as many pebbles as degrees of freedom; an equation is independent when four
 pebbles can be gathered on its vertices, and then one of them pays for it. A dependent equation
 closes a circuit: itself and the equations of the least tight set around it (three pebbles in all),
 found by following payments.
@@ -19,7 +19,7 @@ ENOUGH = 4
 def play(graph: ConstraintGraph, live: bytearray) -> tuple[list[int], list[list[int]]]:
     """(the live edges that depend on others, the circuit of each with itself last).
 
-    Edges that are held by the ground come first: a dimension is the better suspect.
+    Edges at the ground come first: a dimension is the better suspect.
     """
     game = _PebbleGame(graph)
     dependent, circuits = [], []
@@ -35,7 +35,7 @@ def play(graph: ConstraintGraph, live: bytearray) -> tuple[list[int], list[list[
 
 
 class _PebbleGame:
-    """The pebbles left on every vertex, and the edges that every vertex pays for, the newest last.
+    """The remaining pebbles on every vertex, and the edges that every vertex pays for, the newest last.
 
     The last vertex is the known direction of the ground; the last edge ties it to the ground.
     """
@@ -49,7 +49,7 @@ class _PebbleGame:
         self.paid[n][m] = None
 
     def put_in_play(self, row: int) -> None:
-        """Takes in the vertices of an edge; what only refers to directions hangs on the known direction."""
+        """Adds the vertices of an edge; a vertex that only refers to directions hangs on the known direction."""
         ground = 0 if self.graph.absolute[row] == 1 else self.direction
         self.ends[row] = tuple(v or ground for v in self.graph.ends[row])
 

@@ -1,9 +1,9 @@
 """Peeling: a vertex with no more edges than degrees of freedom is placed last, given all the
 others.
 
-Taking such vertices off one after another until none is left orders every ruler-and-compass sketch
+Removing such vertices one after another until none remains orders every ruler-and-compass sketch
 in linear time, without a search for clusters; the reverse order is a plan. What remains (the core)
-has only vertices with more edges than freedom. A vertex taken off with fewer edges leaves freedom:
+has only vertices with more edges than freedom. A vertex removed with fewer edges leaves freedom:
 an assumption.
 Source: Owen 1991 and the inverse of the first Henneberg step; joint vertices (a line's direction
 and offset, a circle's centre and radius) are ours.
@@ -18,20 +18,20 @@ from clearance.sketch.graph.steps import PEELED, PlanStep
 
 
 def peel(graph: ConstraintGraph, live: bytearray, removed: bytearray) -> list[PlanStep]:
-    """Takes off what can be, in the order of taking off; clears `live` and sets `removed` in place."""
+    """Removes the vertices that can be, in order; clears `live` and sets `removed` in place."""
     peeling, steps = _Peeling(graph, live, removed), []
     while peeling.queue:
         v = peeling.queue.popleft()
         peeling.waiting[v] = 0
         found = peeling.found(v)
         if found is not None:
-            peeling.take_off(*found)
+            peeling.remove(*found)
             steps.append(PlanStep(*found, PEELED))
     return steps
 
 
 class _Peeling:
-    """What is left of a graph while it is peeled, and the vertices that wait to be looked at."""
+    """The rest of a graph while it is peeled, and the vertices that wait for a visit."""
 
     def __init__(self, graph: ConstraintGraph, live: bytearray, removed: bytearray) -> None:
         self.graph, self.live, self.removed = graph, live, removed
@@ -45,11 +45,11 @@ class _Peeling:
         self.waiting = bytearray(not r for r in removed)
 
     def rows_of(self, v: int) -> list[int]:
-        """The edges of a vertex that are left."""
+        """The remaining edges of a vertex."""
         return [row for row in self.graph.rows[v] if self.live[row]]
 
     def found(self, v: int) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
-        """The vertices to take off, v and a partner, and the edges that place them; None where v must stay."""
+        """The vertices to remove, v and a partner, and the edges that place them; None where v must stay."""
         kind, degree = self.graph.kind[v], self.degree[v]
         if self.removed[v] or degree > 3:
             return None
@@ -59,32 +59,32 @@ class _Peeling:
             allowed += partner >= 0
         if degree > allowed:
             return None
-        taken = (v,) if partner < 0 else (v, partner)
-        rows = tuple(dict.fromkeys(row for u in taken for row in self.rows_of(u)))
-        if len(rows) > allowed or not self._independent(taken, rows):
+        chosen = (v,) if partner < 0 else (v, partner)
+        rows = tuple(dict.fromkeys(row for u in chosen for row in self.rows_of(u)))
+        if len(rows) > allowed or not self._independent(chosen, rows):
             return None
-        return taken, rows
+        return chosen, rows
 
-    def take_off(self, taken: tuple[int, ...], rows: tuple[int, ...]) -> None:
+    def remove(self, chosen: tuple[int, ...], rows: tuple[int, ...]) -> None:
         """Removes vertices and edges; what they were tied to waits again."""
         graph = self.graph
-        for u in taken:
+        for u in chosen:
             self.removed[u] = 1
-        if graph.kind[taken[0]] == SLIDE:
-            self.n_slides[graph.theta_of[taken[0]]] -= 1
+        if graph.kind[chosen[0]] == SLIDE:
+            self.n_slides[graph.theta_of[chosen[0]]] -= 1
         for row in rows:
             self.live[row] = 0
             for u in graph.ends[row]:
                 self.degree[u] -= 1
-        for u in (*(u for row in rows for u in graph.ends[row]), graph.theta_of[taken[0]]):
+        for u in (*(u for row in rows for u in graph.ends[row]), graph.theta_of[chosen[0]]):
             if u > 0 and not self.removed[u] and not self.waiting[u]:
                 self.waiting[u] = 1
                 self.queue.append(u)
 
-    def _independent(self, taken: tuple[int, ...], rows: tuple[int, ...]) -> bool:
+    def _independent(self, chosen: tuple[int, ...], rows: tuple[int, ...]) -> bool:
         """Whether the count of freedoms allows these edges (3 must remain for the part as a whole)."""
-        graph, seen = self.graph, set(taken)
-        total = sum(FREEDOMS[graph.kind[u]] for u in taken)
+        graph, seen = self.graph, set(chosen)
+        total = sum(FREEDOMS[graph.kind[u]] for u in chosen)
         for row in rows:
             for u in graph.ends[row]:
                 if u not in seen:

@@ -19,7 +19,7 @@ from clearance.sketch.graph.steps import ConstructionPlan, PlanStep
 def make_plan(graph: ConstraintGraph) -> ConstructionPlan:
     """The plan of a constraint graph; see `ConstructionPlan`.
 
-    Dependent edges are left out; where there are some, what hung on them is peeled as well.
+    Dependent edges are omitted; if there are some, vertices that hung on them are peeled as well.
     """
     n = len(graph.kind)
     live, removed = bytearray(map(bool, graph.ends)), bytearray(n)
@@ -33,8 +33,10 @@ def make_plan(graph: ConstraintGraph) -> ConstructionPlan:
             live[row] = 0
         before = peel(graph, live, removed) if dependent else []
     core: list[PlanStep] = []
-    body_of, held = [-1] * n, np.zeros(0, bool)
+    body_of, fixed = [-1] * n, np.zeros(0, bool)
     if any(live):
-        core, body_of, held = plan_core(graph, live, removed)
+        core, body_of, fixed = plan_core(graph, live, removed)
     steps = (*core, *reversed(before), *reversed(last))
-    return ConstructionPlan(steps, np.array(body_of), held, np.array(dependent, np.int64), circuits)
+    return ConstructionPlan(
+        steps, np.array(body_of), fixed, np.array(dependent, np.int64), circuits
+    )

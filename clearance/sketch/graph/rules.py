@@ -1,10 +1,10 @@
 """Rules A and B: in which order the nodes of an under-constrained core are merged.
 
 A node is a rigid body or a single vertex. Basic clusters (Fig. 8 b to d) are merged first; when there is
-none, freedom is left and an under-constrained cluster (Fig. 13) is merged, as many conditions being
+none, freedom remains and an under-constrained cluster (Fig. 13) is merged, as many conditions being
 assumed as it lacks. Rule B takes it from the cycle of least freedom and, among those, of most vertices,
 and starts a body there if the cycle has none; rule A takes any where there is no cycle. The wrong choice
-would leave a rest that no basic cluster takes in (Fig. 14).
+would leave a rest that fits no basic cluster (Fig. 14).
 Source: Kwon, Lee, Lee 2001, section 4.1; candidates for the least cycle: Horton 1987.
 """
 
@@ -18,7 +18,7 @@ RULED = 100
 
 
 class MergeOrder(NamedTuple):
-    """The order in which nodes (or the vertices in them) are taken in.
+    """The order in which nodes (or the vertices in them) are added.
 
     Attributes:
         turn: by node, counted from 0; ties are those merged at once.
@@ -33,7 +33,7 @@ class MergeOrder(NamedTuple):
 
 
 def merge_order(rows: Sequence[Sequence[int]], dof: Sequence[int]) -> MergeOrder:
-    """The order in which the nodes are taken in; see `MergeOrder`.
+    """The order in which the nodes are added; see `MergeOrder`.
 
     Args:
         rows: the distinct nodes of every equation between nodes.
@@ -148,7 +148,7 @@ class _Merging:
         return came, depth
 
     def _freedom(self, inside: Set[int]) -> int:
-        """The freedom left in a set of clusters: their own less the equations among them."""
+        """The remaining freedom of a set of clusters: their own less the equations among them."""
         near = set[int]().union(*(self.at.get(g, ()) for g in inside))
         within = sum(inside >= set(self.labels[k]) for k in near)
         return sum(self.dof[g] for g in inside) - within
@@ -183,7 +183,7 @@ class _Merging:
 
 
 def _up(came: dict[int, int], v: int) -> list[int]:
-    """A cluster and those on the way to the root."""
+    """A cluster and those on the path to the root."""
     out = []
     while v >= 0:
         out.append(v)

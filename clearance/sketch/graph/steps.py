@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 PEELED, IN_BODY, IN_CORE = 0, 1, 2
-"""Where a step comes from: peeled off, inside a body, a cluster of the core."""
+"""The origin of a step: peeled off, inside a body, a cluster of the core."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class PlanStep:
 
     @property
     def partner(self) -> int:
-        """What a closed step places with its vertex; -1 for nothing."""
+        """The vertex that a closed step places with its own; -1 for none."""
         return -1 if self.numeric or len(self.vertices) == 1 else self.vertices[1]
 
 
@@ -40,14 +40,14 @@ class ConstructionPlan:
 
     Attributes:
         body_of: (v,) the body of every vertex, -1 outside bodies.
-        held: (b,) marks the initial clusters.
+        fixed: (b,) marks the initial clusters.
         dependent: (k,) the edges that others imply.
         circuits: the edges of the circuit of each.
     """
 
     steps: tuple[PlanStep, ...]
     body_of: np.ndarray
-    held: np.ndarray
+    fixed: np.ndarray
     dependent: np.ndarray
     circuits: list[list[int]]
 

@@ -1,7 +1,7 @@
 """The freedoms of some vertices as columns: equations by them, their derivatives, and steps.
 
 A body's members share three columns, a shift and a turn about the mean of its points. They move rigidly, so that
-what is already true inside it stays true. Places may be given several at once: numbers (..., n).
+equations that are true inside it stay true. Places may be given several at once: numbers (..., n).
 """
 
 from __future__ import annotations

@@ -51,10 +51,10 @@ class BandedNormal:
         self.place[order] = np.arange(n)
         p, q = columns.pairs
         low, high = self.place[column[p]], self.place[column[q]]
-        keep = low <= high
-        self._p, self._q = p[keep], q[keep]
+        inside = low <= high
+        self._p, self._q = p[inside], q[inside]
         self._half = int((high - low).max(initial=0)) + 1
-        self._target = (high - low)[keep] * n + low[keep]
+        self._target = (high - low)[inside] * n + low[inside]
         self._row, self._column = row, self.place[column]
         self.work = float(n) * self._half**2
 

@@ -1,6 +1,6 @@
 """Runs a construction plan: closed steps by ruler and compass, numeric clusters by search.
 
-A step whose equations already hold is left alone, which makes a second solve after one change cheap.
+A step whose equations already hold is skipped, which makes a second solve after one change cheap.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from clearance.sketch.solve.place import place
 from clearance.sketch.solve.search import BANDED, solve_cluster
 from clearance.sketch.solve.system import System
 
-DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
-"""Fates of a step: placed; no such place found; a cluster left untried; its equations held already."""
+DONE, FAILED, TOO_LARGE, SKIPPED = 0, 1, 2, 3
+"""Fates of a step: placed; no such place found; a cluster not tried; its equations held already."""
 
 FREED = 4
 """How many times more unknowns a cluster may have with its bodies' points free than with bodies."""
 
 
 class StepTolerances(NamedTuple):
-    """When a step is left alone, and when it has found its place.
+    """When a step is skipped, and when it has found its place.
 
     Attributes:
-        settled: [m] a step whose equations hold to this is left alone.
+        settled: [m] a step whose equations hold to this is skipped.
         largest_block: equations up to which a numeric step is tried.
         rule: for numeric steps.
     """
@@ -45,9 +45,9 @@ class Run(NamedTuple):
     """How the steps of a plan are run.
 
     Attributes:
-        sketch: (n,) the numbers whose branches the closed steps take.
+        sketch: (n,) the numbers whose branches the closed steps follow.
         active: (v,) 0 for the vertices of parts that need no work.
-        turned: the steps that take the branch opposite to the sketch.
+        turned: the steps on the branch opposite to the sketch.
     """
 
     sketch: np.ndarray
@@ -63,7 +63,7 @@ def execute(
     Raises:
         OutOfTime: x is as far as the steps came.
     """
-    numbers, sketch, fates = x.tolist(), run.sketch.tolist(), np.full(len(plan.steps), KEPT)
+    numbers, sketch, fates = x.tolist(), run.sketch.tolist(), np.full(len(plan.steps), SKIPPED)
     for k, step in enumerate(plan.steps):
         if not run.active[step.vertex]:
             continue
@@ -75,7 +75,7 @@ def execute(
             fates[k] = DONE if done else FAILED
             continue
         x[:] = numbers
-        limits.rule.limit.require_left()
+        limits.rule.limit.require_time()
         fates[k] = _solve_numeric(s, plan, step, x, run.sketch, limits)
         numbers = x.tolist()
     x[:] = numbers

@@ -53,11 +53,11 @@ def find_freed(
 
 
 def _base_of(s: System, plan: ConstructionPlan, step: PlanStep) -> int:
-    """The initial cluster, if that is all that the step's equations hang on beside its vertices; else -1."""
+    """The initial cluster, if the step's equations hang on nothing else besides its vertices; else -1."""
     around = np.unique(s.ends[list(step.rows)])
     around = np.setdiff1d(around[around > 0], step.vertices)
     bodies = np.unique(plan.body_of[around])
-    return int(bodies[0]) if bodies.size == 1 and bodies[0] >= 0 and plan.held[bodies[0]] else -1
+    return int(bodies[0]) if bodies.size == 1 and bodies[0] >= 0 and plan.fixed[bodies[0]] else -1
 
 
 def _inner_rows(

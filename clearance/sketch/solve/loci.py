@@ -1,6 +1,6 @@
 """Loci of a point: what a condition leaves to it, a line n . p = c or a circle, and where two of them meet.
 
-Two loci meet in at most two points; the one is taken that lies on the same side as in the sketch, so that no
+Two loci meet in at most two points; the one on the same side as in the sketch counts, so that no
 branch ever flips. Not for: placing (`sketch.solve.place`).
 """
 
@@ -51,7 +51,7 @@ def _straight(nx: float, ny: float, c: float) -> Straight | None:
 
 
 def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus | None:
-    """Where the point at variable i may lie for an equation; None for one that does not place it."""
+    """The locus of the point at variable i for an equation; None for one that does not place it."""
     e, coef, value = s.equations[row], s.coef[row], s.value[row]
     match e:
         case Linear():
@@ -83,13 +83,13 @@ def locus(s: PlainSystem, row: int, i: int, x: list[float]) -> Locus | None:
 
 
 def _of_lengths(e: Lengths, k: float, i: int, x: list[float]) -> Locus | None:
-    """Where p may be for |p - q| = k |u - w| or |p - q| = k |p - w| (p at i, in either pair)."""
+    """The locus of p for |p - q| = k |u - w| or |p - q| = k |p - w| (p at i, in either pair)."""
     first, second = [e.px, e.qx], [e.ux, e.wx]
     if first == [i, i] or second == [i, i]:
         return None
     if i in first and i in second:
         q, w = (pair[1 - pair.index(i)] for pair in (first, second))
-        return _apart_in_ratio((x[q], x[q + 1]), (x[w], x[w + 1]), k)
+        return _in_ratio((x[q], x[q + 1]), (x[w], x[w + 1]), k)
     mine, other = (first, second) if i in first else (second, first)
     q, (u, w) = mine[1 - mine.index(i)], other
     length = math.hypot(x[u] - x[w], x[u + 1] - x[w + 1])
@@ -98,8 +98,8 @@ def _of_lengths(e: Lengths, k: float, i: int, x: list[float]) -> Locus | None:
     return Round(x[q], x[q + 1], k * length)
 
 
-def _apart_in_ratio(q: Place, w: Place, k: float) -> Locus | None:
-    """Where the distance from q is k times that from w."""
+def _in_ratio(q: Place, w: Place, k: float) -> Locus | None:
+    """The locus of points k times as far from q as from w."""
     (qx, qy), (wx, wy) = q, w
     if k == 1.0:
         return _straight(wx - qx, wy - qy, 0.5 * (wx * wx + wy * wy - qx * qx - qy * qy))
@@ -185,7 +185,7 @@ def _line_and_circle(
 
 
 def _two_lines(first: Straight, second: Straight) -> Place | None:
-    """Where two lines meet."""
+    """The common point of two lines."""
     det = first.nx * second.ny - second.nx * first.ny
     if abs(det) < 1e-12:
         return None

@@ -15,7 +15,7 @@ from clearance.sketch.graph.graph import TURN
 from clearance.sketch.solve.columns import Columns
 
 AT_ONCE = 20
-"""Starts that go down side by side; the first that ends at a root is taken."""
+"""Starts that go down side by side; the first that ends at a root counts."""
 
 FAR = 1e6
 """[m] at size 1: a longer step is one along which a singular matrix says nothing."""

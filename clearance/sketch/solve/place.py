@@ -1,7 +1,7 @@
 """Ruler and compass: one vertex (or a line) placed in closed form from what already stands.
 
 A point comes from the loci of its conditions (`sketch.solve.loci`), a line from the points that it passes at known
-distances; the sketch's side is kept. Where a condition is missing the sketch is moved least (the paper's
+distances; the sketch's side stays. Where a condition is missing the sketch is moved least (the paper's
 assumptions): the nearest point of a locus, a line's old direction.
 """
 
@@ -22,7 +22,7 @@ def place(
 ) -> bool:
     """Places what a closed step places, in place on x; False when there is no such place.
 
-    `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's.
+    `turned` -1 is the branch on the other side than the sketch's, 1 the sketch's.
     """
     kind = s.kind[step.vertex]
     if kind == POINT:
@@ -71,7 +71,7 @@ def _place_number(s: PlainSystem, step: PlanStep, x: list[float]) -> bool:
 
 
 class _Passes(NamedTuple):
-    """A line keeps the distance w from a point: n . p - d = w."""
+    """A line at the distance w from a point: n . p - d = w."""
 
     px: float
     py: float
@@ -119,7 +119,7 @@ class _Line:
         return self._set(nx, ny, d)
 
     def _condition(self, row: int, x: list[float]) -> _Passes | _Faces:
-        """What an equation says of the line."""
+        """The condition of an equation on the line."""
         s, e, w = self.s, self.s.equations[row], self.s.value[row]
         if isinstance(e, Across):
             ux, uy = x[e.qx] - x[e.px], x[e.qy] - x[e.py]

@@ -3,7 +3,7 @@
 A descent of a large cluster mostly ends either at a root or in a minimum whose error sits in one place, where
 a few vertices lie on the wrong side of each other. Such a minimum is kicked there only: a vertex of a
 violated equation, chosen with the error as weight, and its neighbours up to two equations away are moved
-at random, and the descent goes on; what was right elsewhere stays. A worse minimum is taken if it is
+at random, and the descent goes on; right places elsewhere stay. A worse minimum is accepted if it is
 not much worse. The sequence of random numbers is fixed.
 Source: basin hopping, Wales and Doye 1997, with moves in one place.
 """
@@ -37,10 +37,10 @@ DIGITS, NEAR = 1e-2, 1e14
 
 FROM_SKETCH, FROM_KICK = 1e-2, 1e-4
 """[-] First damping: with the larger one more descents from the sketch end at the root nearest to it (64
-against 50 of 100), with the smaller one a search takes half the steps."""
+against 50 of 100), with the smaller one a search needs half the steps."""
 
 WORSE = 1.5
-"""[-] How much larger the sum of squares may be after a kick that is kept."""
+"""[-] How much larger the sum of squares may be after an accepted kick."""
 
 
 def solve_cluster(columns: Columns, x: np.ndarray, rule: StoppingRule) -> np.ndarray | None:
