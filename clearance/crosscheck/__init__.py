@@ -1,8 +1,8 @@
-"""Our answers held against FCL's: the same bodies, in millimetres, at every step and for every
+"""Our answers compared with FCL's: the same bodies, in millimetres, at every step and for every
 pair.
 
 Nothing here calls our own distance code: the peer measures, numpy bounds what the peer may skip,
-and a winding number says what lies inside a closed body. Not for: measuring (room `simulate`).
+and a winding number shows what lies inside a closed body. Not for: measuring (room `simulate`).
 """
 
 from clearance.crosscheck.compare import cross_check

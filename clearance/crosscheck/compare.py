@@ -1,7 +1,7 @@
-"""Our record held against the peer's answers, step by step, and our witness points against the
+"""Our record compared with the peer's answers, step by step, and our witness points against the
 bodies.
 
-The size of the scene, to which the tolerance is relative, is the diagonal of the box that holds
+The size of the scene, to which the tolerance is relative, is the diagonal of the box that contains
 every measured body at every step.
 """
 
@@ -19,7 +19,7 @@ from clearance.tolerance import CROSS_CHECK
 from clearance.world.pairs import Pair
 
 GIVE_UP = 64
-"""Steps that exact arithmetic looks at, or does not settle, after which the others are not looked at."""
+"""Steps that exact arithmetic examines, or does not settle, after which it examines no others."""
 
 
 def cross_check(
@@ -162,8 +162,8 @@ class _Witnesses:
 
     def _realised(self, step: int) -> float:
         """[m] how far the distance of the witness points is from the clearance."""
-        apart = np.linalg.norm(self._points["link"][step] - self._points["obstacle"][step])
-        return float(abs(apart - self._run.record.clearances[step]))
+        distance = np.linalg.norm(self._points["link"][step] - self._points["obstacle"][step])
+        return float(abs(distance - self._run.record.clearances[step]))
 
     def refute(self, answers: PeerAnswers, step: int, tolerance: float) -> bool:
         """True if exact arithmetic decides for us against the peer at a step."""

@@ -2,7 +2,7 @@
 
 FCL's triangle kernel skips its vertex-face test where |normal|^2 <= 1e-15 and then answers 0: in
 metres that is every triangle with edges of 0.1 mm, a false contact. Triangles that fall under that
-threshold in millimetres (area zero, for all that FCL can see) are left out. In micrometres a
+threshold in millimetres (area zero, for all that FCL can see) are dropped. In micrometres a
 triangle of 0.25 nm stands above it, which is what a point of a cloud is here: FCL has balls, but
 measures them by an iteration with errors of 2 micrometres.
 """
@@ -26,11 +26,11 @@ _CORNERS = np.array([[1.0, 0.0, 0.0], [-0.5, 0.75**0.5, 0.0], [-0.5, -(0.75**0.5
 
 
 class PeerBody:
-    """One body as FCL holds it.
+    """One body in FCL.
 
     Attributes:
-        n_left_out: triangles without area.
-        greatest_left_out: [m] greatest height of those triangles: how far the surface can have
+        n_dropped: triangles without area.
+        greatest_dropped: [m] greatest height of those triangles: how far the surface can have
         moved.
         radius: [m] of the balls of a cloud, which distances are less by; else 0.
         point_size: [m] by how much a point of a cloud can seem nearer than it is; else 0.
@@ -49,7 +49,7 @@ class PeerBody:
     def _points(self, soup: TriangleSoup) -> tuple[np.ndarray, np.ndarray]:
         """A triangle about each point, all that FCL sees of it."""
         n = len(soup.vertices)
-        self._kept, self.n_left_out, self.greatest_left_out = np.arange(n), 0, 0.0
+        self._with_area, self.n_dropped, self.greatest_dropped = np.arange(n), 0, 0.0
         self.point_size = max(_POINT, _POINT_SHARE * float(np.abs(soup.vertices).max()))
         corners = soup.vertices[:, None] + self.point_size * _CORNERS
         return corners.reshape(-1, 3), np.arange(3 * n).reshape(-1, 3)
@@ -58,11 +58,11 @@ class PeerBody:
         """The triangles that FCL can see."""
         corners = soup.corners * _MM_PER_M
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        kept = (normals * normals).sum(axis=1) > _LEAST_NORMAL_SQ
-        self._kept = np.flatnonzero(kept)
-        self.n_left_out = int((~kept).sum())
-        self.greatest_left_out = _greatest_height(corners[~kept], normals[~kept]) / _MM_PER_M
-        return soup.vertices, soup.triangles[kept]
+        has_area = (normals * normals).sum(axis=1) > _LEAST_NORMAL_SQ
+        self._with_area = np.flatnonzero(has_area)
+        self.n_dropped = int((~has_area).sum())
+        self.greatest_dropped = _greatest_height(corners[~has_area], normals[~has_area]) / _MM_PER_M
+        return soup.vertices, soup.triangles[has_area]
 
     def place(self, world_from_body: np.ndarray) -> None:
         """Moves the body to a (4, 4) pose [m]."""
@@ -82,14 +82,14 @@ class PeerBody:
         return max(0.0, answer) / _UM_PER_M
 
     def nearest_triangles(self, other: PeerBody) -> tuple[int, int] | None:
-        """The triangles of both bodies that FCL takes for the nearest; None if it names none."""
+        """The triangles of both bodies that are the nearest for FCL; None if it names none."""
         result = self._fcl.DistanceResult()
         request = self._fcl.DistanceRequest(enable_nearest_points=True)
         self._fcl.distance(self._object, other._object, request, result)
         i, j = result.b1, result.b2
-        if not (0 <= i < len(self._kept) and 0 <= j < len(other._kept)):
+        if not (0 <= i < len(self._with_area) and 0 <= j < len(other._with_area)):
             return None
-        return int(self._kept[i]), int(other._kept[j])
+        return int(self._with_area[i]), int(other._with_area[j])
 
     def collides(self, other: PeerBody) -> bool:
         """True if FCL's collision test, which shares no code with its distance, finds a contact; of

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
 MOST_POINTS = 2_000_000
-"""Of a cloud that FCL is asked about: it takes 1 GB and 6 s for a million."""
+"""Points of a cloud for FCL: it needs 1 GB and 6 s for a million."""
 
 
 def is_too_large(case: Case, pair: Pair) -> bool:
-    """True if a body of a pair is a cloud of more points than FCL is asked about."""
+    """True if a body of a pair is a cloud of too many points for FCL."""
     shapes = (body.body_in(case).shape for body in pair)
     return any(isinstance(shape, PointCloud) and shape.n_points > MOST_POINTS for shape in shapes)
 
@@ -45,7 +45,7 @@ class PeerSide:
 
     @cached_property
     def tree(self) -> cKDTree:
-        """The vertices, to be asked for those about a point."""
+        """The vertices, for queries about a point."""
         from scipy.spatial import cKDTree
 
         return cKDTree(self.soup.vertices)
@@ -100,7 +100,7 @@ def peer_pairs(
         measured: the pairs, where they are not all that the case measures.
     """
     case = record.case
-    left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
+    omitted = {(entry.link, entry.obstacle) for entry in record.unmeasured}
     places: dict[BodyIndex, int] = {}
     movers: list[Mover] = []
 
@@ -112,7 +112,7 @@ def peer_pairs(
 
     pairs: list[PeerPair] = []
     for pair in measured_pairs(case)[0] if measured is None else measured:
-        if (pair.a.name_in(case), pair.b.name_in(case)) in left_out:
+        if (pair.a.name_in(case), pair.b.name_in(case)) in omitted:
             continue
         a, b = place_of(pair.a), place_of(pair.b)
         pairs.append(PeerPair(a, movers[a].side, b, movers[b].side))

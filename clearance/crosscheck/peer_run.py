@@ -21,18 +21,20 @@ from clearance.world.pairs import Pair
 _CORNERS = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
 _STEPS_AT_ONCE = 512
 _CELL = 2.0 / 3.0**0.5 * (1.0 - 1e-6)  # [-] edge of a cell whose diagonal is just below 2
-_ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
+_ROUNDING = (
+    1e-12  # [m] subtracted from every lower bound: far above float64, far below the tolerance
+)
 
 
 @dataclass(frozen=True, eq=False)
 class PeerAnswers:
-    """What the peer found.
+    """The findings of the peer.
 
     Attributes:
         clearances: (n,) [m].
         i_pairs: (n,) index of the pair that attains it.
-        diagonal: [m] of the box along the world axes that holds every measured body at every step.
-        n_queries: distances that FCL was asked for.
+        diagonal: [m] of the box along the world axes that contains every measured body at every step.
+        n_queries: distances that FCL measured.
     """
 
     clearances: np.ndarray
@@ -96,7 +98,7 @@ class PeerRun:
         if pair.radii > 0.0:
             pair.link.peer.place(poses[pair.i_mover][0])
             pair.other.peer.place(poses[pair.i_other][0])
-            return holds_a_point(pair, poses[pair.i_mover][0], poses[pair.i_other][0])
+            return contains_a_point(pair, poses[pair.i_mover][0], poses[pair.i_other][0])
         return bool(nested_steps(pair, poses[pair.i_mover], poses[pair.i_other])[0])
 
     def _measure_chunk(self, poses: np.ndarray, n_new: int) -> tuple[np.ndarray, np.ndarray]:
@@ -110,7 +112,7 @@ class PeerRun:
         )
         self._low = np.minimum(self._low, boxes[:, :, 0].min(axis=(0, 1)))
         self._high = np.maximum(self._high, boxes[:, :, 1].max(axis=(0, 1)))
-        apart = np.array(
+        gap = np.array(
             [
                 lower_bound_boxes(boxes[m], boxes[other])
                 for m, other in zip(self._i_movers, self._i_others, strict=True)
@@ -119,9 +121,7 @@ class PeerRun:
         within = np.array(
             [nested_steps(pair, poses[pair.i_mover], poses[pair.i_other]) for pair in self.pairs]
         ).T
-        found = [
-            self._measure_step(poses[:, k], moved[k], apart[k], within[k]) for k in range(n_new)
-        ]
+        found = [self._measure_step(poses[:, k], moved[k], gap[k], within[k]) for k in range(n_new)]
         return np.array([d for d, _ in found]), np.array([i for _, i in found])
 
     def _displacements(self, poses: np.ndarray) -> np.ndarray:
@@ -137,11 +137,11 @@ class PeerRun:
         return np.vstack([np.full(len(self.movers), np.inf), moved.T])
 
     def _measure_step(
-        self, poses: np.ndarray, moved: np.ndarray, apart: np.ndarray, within: np.ndarray
+        self, poses: np.ndarray, moved: np.ndarray, gap: np.ndarray, within: np.ndarray
     ) -> tuple[float, int]:
         """The least clearance [m] and its pair, nearest lower bound first."""
-        way = moved[self._i_movers] + moved[self._i_others]
-        bounds = np.maximum(self._carried - way, apart) - _ROUNDING
+        motion = moved[self._i_movers] + moved[self._i_others]
+        bounds = np.maximum(self._carried - motion, gap) - _ROUNDING
         self._carried = np.maximum(bounds, 0.0)
         if within.any():
             return 0.0, int(np.argmax(within))
@@ -154,7 +154,7 @@ class PeerRun:
             pair = self.pairs[i_pair]
             distance = pair.link.peer.distance(pair.other.peer)
             if distance > 0.0 and pair.radii > 0.0:
-                if holds_a_point(pair, poses[pair.i_mover], poses[pair.i_other]):
+                if contains_a_point(pair, poses[pair.i_mover], poses[pair.i_other]):
                     distance = 0.0
             self._carried[i_pair] = distance
             self._n_queries += 1
@@ -168,7 +168,7 @@ def nested_steps(
 ) -> np.ndarray:
     """(n,) True at the poses (n, 4, 4) where a part of one body of the pair is inside the other.
 
-    Clouds are left out: their points are asked one by one where the surfaces are known to be apart.
+    Clouds are omitted: their points are tested one by one where the surfaces are known to be separate.
     """
     if pair.radii > 0.0:
         return np.zeros(len(world_from_link), dtype=bool)
@@ -184,15 +184,15 @@ def nested_steps(
     return nested
 
 
-def holds_a_point(
+def contains_a_point(
     pair: PeerPair, world_from_link: np.ndarray, world_from_other: np.ndarray
 ) -> bool:
     """True if a point of a cloud is inside the other body, whose surface no ball meets.
 
-    By FCL no point is nearer to the surface than `apart`: so no surface is between two points less than twice that
-    from each other, and one of each cell so small is asked. Both bodies are placed in FCL.
+    By FCL no point is nearer to the surface than `gap`: so no surface is between two points less than twice that
+    from each other, and one of each cell so small is tested. Both bodies are placed in FCL.
     """
-    apart = pair.link.peer.distance_of_centres(pair.other.peer)
+    gap = pair.link.peer.distance_of_centres(pair.other.peer)
     sides = (pair.link, world_from_link), (pair.other, world_from_other)
     for (cloud, world_from_cloud), (body, world_from_body) in (sides, sides[::-1]):
         if cloud.soup.radius > 0.0 and body.soup.holds:
@@ -201,8 +201,8 @@ def holds_a_point(
             middle = np.linalg.inv(body_from_cloud) @ [*(0.5 * (low + high)), 1.0]
             near = cloud.tree.query_ball_point(middle[:3], 0.5 * np.linalg.norm(high - low) + 1e-9)
             points = cloud.soup.vertices[near]
-            if body.soup.encloses:  # else a way leads from in to out through a hole
-                cells = np.floor(points / (apart * _CELL))
+            if body.soup.encloses:  # else a path leads from in to out through a hole
+                cells = np.floor(points / (gap * _CELL))
                 points = points[np.unique(cells, axis=0, return_index=True)[1]]
             points = points @ body_from_cloud[:3, :3].T + body_from_cloud[:3, 3]
             if is_inside(body.soup, points).any():
@@ -216,7 +216,7 @@ def box_corners(bounds: np.ndarray) -> np.ndarray:
 
 
 def world_boxes(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
-    """(n, 2, 3) [m] boxes along the world axes that hold a body box (2, 3) at poses (n, 4, 4)."""
+    """(n, 2, 3) [m] boxes along the world axes that contain a body box (2, 3) at poses (n, 4, 4)."""
     corners = box_corners(bounds) @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
     return np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1)
 

@@ -24,7 +24,7 @@ def cross_check_sections(
 ) -> CrossCheck:
     """The comparison of every step of all sections with FCL; steps are those of the run.
 
-    Sections whose clocks are not tied are left out: FCL is asked about one time only.
+    Sections whose clocks are not tied are omitted: FCL measures one time only.
 
     Raises:
         Unavailable: python-fcl cannot be imported.

@@ -13,8 +13,8 @@ import numpy as np
 from clearance.crosscheck.exact import placed, point_sq, triangles_sq
 from clearance.crosscheck.pairs import PeerPair, PeerSide
 
-BESIDE = 4
-"""Triangles of each body nearest to our witness point that are asked: a point on an edge is on two."""
+MOST_TRIANGLES = 4
+"""Triangles of each body nearest to our witness point that are tested: a point on an edge is on two."""
 
 
 def peer_is_wrong(
@@ -88,11 +88,11 @@ def _placed_sides(pair: PeerPair, poses: np.ndarray) -> tuple[tuple[PeerSide, np
 
 def _nearest_triangles(side: PeerSide, pose: np.ndarray, point: np.ndarray) -> list[int]:
     distances = side.locator.distances(pose[:3, :3].T @ (point - pose[:3, 3]))
-    return np.argsort(distances, kind="stable")[:BESIDE].tolist()
+    return np.argsort(distances, kind="stable")[:MOST_TRIANGLES].tolist()
 
 
 def _named_by_the_peer(pair: PeerPair, poses: np.ndarray) -> tuple[int, int] | None:
-    """The triangles of the link and the obstacle that the peer takes for the nearest."""
+    """The triangles of the link and the obstacle that are the nearest for the peer."""
     pair.link.peer.place(poses[pair.i_mover])
     pair.other.peer.place(poses[pair.i_other])
     return pair.link.peer.nearest_triangles(pair.other.peer)

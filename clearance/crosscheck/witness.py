@@ -1,6 +1,6 @@
 """How far a witness point is from the body it should lie on, by numpy over all triangles.
 
-FCL is not asked: it measures a point only as a small sphere, by an iteration with errors of 2e-6 m.
+FCL takes no part: it measures a point only as a small sphere, by an iteration with errors of 2e-6 m.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def point_triangle_distances(point: np.ndarray, corners: np.ndarray) -> np.ndarr
     """(n,) [m] the distances of one point (3,) from triangles (n, 3, 3), also those without area.
 
     The nearest point of a triangle is in its plane's interior or on one of its sides; both are
-    measured and the lesser is taken.
+    measured and the lesser counts.
     """
     sides = ((corners[:, k], corners[:, (k + 1) % 3]) for k in range(3))
     on_sides = np.min([_segment_distances(point, *side) for side in sides], axis=0)

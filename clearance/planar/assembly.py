@@ -1,4 +1,4 @@
-"""Bézier pieces put together as a curve holds them: about an origin of their own, those without extent left out.
+"""Bézier pieces joined as in a curve: about an origin of their own, without pieces of no extent.
 
 Not for: what lines, arcs and splines are as pieces (`primitives`).
 """

@@ -1,7 +1,7 @@
 """The one curve type: contours of Bézier pieces, polynomial or rational, open or closed.
 
 Lines, arcs, polylines, B-splines and NURBS all become such pieces when they are made, and everything is
-checked there: a `Curve` that exists is finite, has extent and positive weights. Pieces are held about an
+checked there: a `Curve` that exists is finite, has extent and positive weights. Pieces are stored about an
 origin of the curve's own, so that a curve 1e6 away loses no digits. Not for: distances.
 """
 
@@ -96,8 +96,8 @@ class Curve(CurveFacts):
     def chain(cls, parts: Sequence[Curve]) -> Curve:
         """The parts one after the other as one contour; each must start where the last ended.
 
-        The parameter continues: each part keeps its length of parameter. Ends up to 1e-9 of the size apart
-        are accepted and left as they are.
+        The parameter continues: each part keeps its length of parameter. Gaps between ends up to 1e-9 of the size
+        are accepted and stay.
 
         Raises: BadCurve where two parts do not meet, or there is none.
         """

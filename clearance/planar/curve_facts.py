@@ -1,4 +1,4 @@
-"""What is known of a curve's pieces, and where its points are. Not for: making one (`curve`)."""
+"""Facts about a curve's pieces, and the places of its points. Not for: making one (`curve`)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 HALVINGS = 60
-"""Of control polygons, until what still stands out counts for the box."""
+"""Halvings of control polygons, until the rest that still stands out counts for the box."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ class CurveFacts:
         return float((speed @ weights) @ half)
 
     def point(self, parameter: ArrayLike) -> np.ndarray:
-        """Points (..., 2) at the given parameters; a parameter outside is held to the nearest end."""
+        """Points (..., 2) at the given parameters; a parameter outside becomes the nearest end."""
         return self.derivative(parameter, 0)
 
     def derivative(self, parameter: ArrayLike, order: int = 1) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Curves from files: DXF drawings, or YAML lists of what `Curve`'s constructors take.
+"""Curves from files: DXF drawings, or YAML lists of arguments of `Curve`'s constructors.
 
     curves:
       - polyline: {points: [[0, 0], [1, 0], [1, 1]], closed: true}

@@ -34,7 +34,7 @@ class Deviation:
         beyond: (k, 2) parameter intervals of a, one contour each, where the distance exceeds `limit`; their
             ends are bisected to the last bit. Neither an excursion nor a dip that passes
             the limit by more than `tolerance.EXCURSION` of both curves' size is missed, however few the samples;
-            what is above by rounding alone does not count.
+            an excess by rounding alone does not count.
         limit: the limit, or None.
     """
 
@@ -195,7 +195,7 @@ def _beyond(
 def _crossings(
     a: Curve, b: Curve, inside: np.ndarray, outside: np.ndarray, limit: float
 ) -> np.ndarray:
-    """Where the distance passes `limit` between pairs of parameters, all bisected at once; on the outer side."""
+    """The crossings of `limit` between pairs of parameters, all bisected at once; on the outer side."""
     outside = outside.copy()
     inside, going = inside.copy(), np.arange(len(inside))
     for _ in range(60):

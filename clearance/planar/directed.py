@@ -20,7 +20,7 @@ KINDS = ("end", "common_normal", "self_bisector")
 
 @dataclass(frozen=True)
 class SearchTally:
-    """What a search did.
+    """The work of a search.
 
     Attributes:
         arcs: arcs of the curve searched.
@@ -28,7 +28,7 @@ class SearchTally:
         pixels: pixels of the distance map.
         end_systems, normal_systems, bisector_systems: systems (11), (12), (13) solved.
         intervals: intervals bounded.
-        given_up: intervals left to their bound (0 unless curves are alike without being equal).
+        given_up: intervals with a bound only (0 unless curves are alike without being equal).
     """
 
     arcs: int
@@ -85,7 +85,7 @@ def placed(a: Curve, b: Curve) -> tuple[np.ndarray, float]:
 
 
 def arrays_of(curve: Curve) -> CurveArrays:
-    """The curve as the kernels take it."""
+    """The curve as an argument of kernels."""
     return CurveArrays(curve.pieces, curve.leaves, curve.is_end)
 
 

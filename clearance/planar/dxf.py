@@ -29,7 +29,7 @@ _METRES = {
 """[m] the units of $INSUNITS in the DXF reference; 0 names none."""
 
 _MOST_DEGREES = 36_000.0
-"""An angle of an arc beyond a hundred turns has few digits left, and is damage."""
+"""An angle of an arc beyond a hundred turns has few digits, and is damage."""
 
 
 def read_dxf(path: str | PathLike[str]) -> Curve:
@@ -51,7 +51,7 @@ def read_dxf(path: str | PathLike[str]) -> Curve:
             raise
         except (
             Exception
-        ) as error:  # ezdxf raises whatever its parsing hits, also when an entity is asked
+        ) as error:  # ezdxf raises whatever its parsing hits, also when an entity is read
             raise BadSyntax(f"not a DXF drawing ({error!s:.120})", valid="a DXF file") from None
 
 

@@ -25,11 +25,11 @@ BUDGET = 200_000.0
 """Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
 
 INTERVALS_A_PIECE = 20.0
-"""What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
+"""Further intervals of long curves for each piece of both: up to seven are seen on noisy outlines."""
 
 
 SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE, MOST_SHARP = 250.0, 0.5, 400.0
-"""Intervals until which a search tries for the last bits; after them the tolerance asked for is enough."""
+"""Intervals until which a search tries for the last bits; after them the given tolerance is enough."""
 
 ASKED = 0.25
 """The share of the tolerance that a search may leave open then; the rest is for rounding."""
@@ -100,11 +100,11 @@ def hausdorff(
     Args:
         a, b: curves of any number of contours.
         method: "trimmed" (the default: map, trimming and certificates) or "paper" (as Kim, Oh, Kim publish it:
-            trimming by a page of pixels, the systems (11) to (13) on what is left, the greatest distance of *all*
+            trimming by a page of pixels, the systems (11) to (13) on the rest, the greatest distance of *all*
             roots, which can be above the true one: `planar/PAPER.md`).
         tolerance: the error to reach, relative to the size of both curves together.
 
-    Exactness: `error_bound` holds whatever happened, for every method; by default it is above `tolerance`
+    Exactness: `error_bound` is proven for every method; by default it is above `tolerance`
         only where rounding or the budget of intervals stopped the search.
     Ties: the first found; the direction "a_to_b". Where points of different kinds reach the same distance
         (symmetric curves), the methods may name either, and `kind` and the witnesses with it.

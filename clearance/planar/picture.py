@@ -1,6 +1,6 @@
 """Pictures of a comparison, like Figs. 8, 17 and 18 of the paper: the adapter of matplotlib.
 
-Curve a and b, what trimming left of each (bold), the line of the distance, and on request the distance map
+Curve a and b, the rest of each after trimming (bold), the line of the distance, and on request the distance map
 of b with a colour for each nearest arc. Not for: reports' other figures.
 """
 
@@ -97,13 +97,15 @@ def _draw_field(axes, b: Curve, low: np.ndarray, high: np.ndarray) -> None:
 
 
 def _draw_curve(axes, one: Curve, two: Curve, bound: float, color: str, name: str) -> None:
-    """The whole curve thin, and bold what trimming left at the proven lower bound."""
+    """The whole curve thin, and bold the rest after trimming at the proven lower bound."""
     label = f"{name}, trimmed away"
     axes.plot(*_line(one).T, color=color, linewidth=1.1, label=label, zorder=3)
-    kept = _points(one, *kept_parts(one, two, max(0.0, bound)))
-    width = 5.0 if name == "a" else 3.0  # where both are bold, one shows beside the other
+    remaining = _points(one, *remaining_parts(one, two, max(0.0, bound)))
+    width = 5.0 if name == "a" else 3.0  # where both are bold, one shows next to the other
     label = f"{name}, left to solve"
-    axes.plot(*kept.T, color=color, linewidth=width, solid_capstyle="round", label=label, zorder=4)
+    axes.plot(
+        *remaining.T, color=color, linewidth=width, solid_capstyle="round", label=label, zorder=4
+    )
 
 
 def _draw_distance(axes, found: Hausdorff) -> None:
@@ -130,7 +132,7 @@ def _points(curve: Curve, piece: np.ndarray, local: np.ndarray) -> np.ndarray:
     return np.pad(points, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)
 
 
-def kept_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray, np.ndarray]:
+def remaining_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray, np.ndarray]:
     """The arcs of `a` that may be farther from `b` than a bound: piece (n,) and local parameters (n, 2).
 
     Every point of a outside them is proven to be nearer. Equations (3) to (10) of Kim, Oh, Kim (2010).
@@ -138,8 +140,8 @@ def kept_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray, np.n
     shift, _ = placed(a, b)
     rows, owner = a.leaves.arcs, a.leaves.piece
     pixel = a.length / max(64, 2 * len(rows))
-    kept = kept_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
-    return owner[kept], rows[kept, :2]
+    remaining = kept_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
+    return owner[remaining], rows[remaining, :2]
 
 
 def distance_field(curve: Curve, xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

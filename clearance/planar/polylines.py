@@ -1,6 +1,6 @@
 """The Hausdorff distance where both curves are polylines: straight from the segments, no biarcs, no map.
 
-Ten times as fast as the general way on long outlines, with the same meaning of every number. Not for: curves
+Ten times as fast as the general method on long outlines, with the same meaning of every number. Not for: curves
 with a curved piece.
 """
 
@@ -50,7 +50,7 @@ def _witness(one: Curve, two: Curve, shift: np.ndarray, state: np.void) -> tuple
 
 
 def _kind(here: tuple[Curve, int, float], there: tuple[Curve, int, float], gap) -> float:
-    """The kind of solution at a segment and parameter of each of two curves, `gap` apart."""
+    """The kind of solution at a segment and parameter of each of two curves, at the distance `gap`."""
     if _is_corner(*here):
         return END
     dx, dy = _direction(*here[:2])

@@ -2,7 +2,7 @@
 
 Between weights 1 and 1e30 a piece runs through half its length within 1e-30 of its parameter, nearer to an end
 than floats lie. Weights w_i may be scaled by lambda^i without moving a point: so both ends get the same weight,
-and where those between still stand out the piece is halved, which takes the square root of their ratio.
+and where those between still stand out the piece is halved, which reduces their ratio to its square root.
 Not for: evaluation at a parameter of the caller's (`curve`).
 """
 
@@ -17,7 +17,7 @@ from clearance.planar.curve import Curve
 from clearance.tolerance import WEIGHTS
 
 HALVINGS = 12
-"""Of the ratio of weights each takes the square root: 1e300 is below 2 after ten."""
+"""Halvings: each reduces the ratio of weights to its square root; 1e300 is below 2 after ten."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from clearance.planar.directed import DirectedDistance, arrays_of, directed_of, 
 from clearance.tolerance import LAST_BITS
 
 BUDGET = 4e5
-"""Cells, pairs of cells and roots (40 cells each) of one direction after which the rest is left to its bound."""
+"""Cells, pairs of cells and roots (40 cells each) of one direction after which the rest has its bound only."""
 
 PAGE = 64
 """Pixels along the longer side of the paper's page, which names no number; of 32 to 256 the fastest."""
@@ -55,16 +55,17 @@ def paper(
     both = directions(a, b)
     trimmed = [_trimmed(direction) for direction in both]
     parts = [
-        _parts(direction.one, kept) for direction, (_, kept) in zip(both, trimmed, strict=True)
+        _parts(direction.one, remaining)
+        for direction, (_, remaining) in zip(both, trimmed, strict=True)
     ]
     found = []
     for k, direction in enumerate(both):
         other = parts[1 - k] if literal else whole(direction.two)
-        state, kept = trimmed[k]
+        state, remaining = trimmed[k]
         state = solved(direction, parts[k], other, state)
         if (
-            not kept.all()
-        ):  # what is trimmed is within the reach of (8) to (10) and both biarc errors
+            not remaining.all()
+        ):  # trimmed parts are within the reach of (8) to (10) and both biarc errors
             worst = state["map_bound"] + direction.one.leaves.arcs[:, EPS].max()
             state["upper"] = np.maximum(state["upper"], worst)
         found.append(_published(direction, state))
@@ -84,9 +85,9 @@ def whole(curve: Curve) -> np.ndarray:
     return np.stack([n, np.zeros(len(n)), np.ones(len(n))], axis=1)
 
 
-def _parts(curve: Curve, kept: np.ndarray) -> np.ndarray:
-    """The arcs kept as parts (n, 3) piece, start, end; neighbours as one."""
-    arcs, owner = curve.leaves.arcs[kept, :2], curve.leaves.piece[kept]
+def _parts(curve: Curve, remaining: np.ndarray) -> np.ndarray:
+    """The remaining arcs as parts (n, 3) piece, start, end; neighbours as one."""
+    arcs, owner = curve.leaves.arcs[remaining, :2], curve.leaves.piece[remaining]
     if not len(arcs):
         return np.empty((0, 3))
     new = np.append(True, (owner[1:] != owner[:-1]) | (arcs[1:, 0] != arcs[:-1, 1]))
@@ -95,7 +96,7 @@ def _parts(curve: Curve, kept: np.ndarray) -> np.ndarray:
 
 
 def _trimmed(direction: Direction) -> tuple[np.ndarray, np.ndarray]:
-    """A state with the bound (2), and which arcs of the curve searched are kept (n,)."""
+    """A state with the bound (2), and which arcs of the curve searched remain (n,)."""
     one, two, (shift_x, shift_y) = direction.one, direction.two, direction.shift
     low = np.minimum(one.box[0], two.box[0]) - two.origin
     span = np.maximum(one.box[1], two.box[1]) - two.origin - low
@@ -105,11 +106,11 @@ def _trimmed(direction: Direction) -> tuple[np.ndarray, np.ndarray]:
     page = draw_page(two.leaves, x0, y0, pixel, rows, columns)
     deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, page)
     bound = max(0.0, deepest - two.leaves.arcs[:, EPS].max() - np.sqrt(2.0) * pixel)
-    kept = paper_kept(one.leaves, two.leaves, shift_x, shift_y, page, bound)
+    remaining = paper_kept(one.leaves, two.leaves, shift_x, shift_y, page, bound)
     state = empty_state()
-    state["n_arcs"], state["n_kept"] = len(kept), kept.sum()
+    state["n_arcs"], state["n_kept"] = len(remaining), remaining.sum()
     state["n_pixels"], state["map_bound"] = page.depth.size, bound
-    return state, kept
+    return state, remaining
 
 
 def solved(

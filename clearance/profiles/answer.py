@@ -17,7 +17,7 @@ from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
 from clearance.profiles.profile import Profile
-from clearance.profiles.region import holds
+from clearance.profiles.region import contains
 from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
 from clearance.simulate.record import ProfileAnswer
@@ -83,7 +83,7 @@ def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> ProfileA
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):
     """How far the swept outline is beyond the sketch, at the worst of many samples, negative; and where."""
     along = deviation(swept.curve, sketch.curve, samples=4000)
-    wrong = holds(sketch.region, along.point) != around
+    wrong = contains(sketch.region, along.point) != around
     if not wrong.any():  # the sketch lies in the sweep, or the other way round
         return 0.0, ends
     worst = int(np.argmax(np.where(wrong, along.distance, -1.0)))

@@ -1,7 +1,7 @@
 """The links from a root that stands down to one that carries a body, and where they are at any instant of a phase.
 
 Whatever moves is in it: a robot's own joints, those of what the robot stands on, and the slides and the ball joint
-of an obstacle that moves by itself. Instants are counted in the phase's steps. Not for: what that does to the
+of an obstacle that moves by itself. Instants are counted in the phase's steps. Not for: its effect on the
 points of a body (`chain_bounds`).
 """
 
@@ -112,7 +112,7 @@ class Chain:
         return columns, rates
 
     def _turn(self, i: int, step: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a ball joint from each of some steps to the next: (n, 4, 4) fixed part, (n, 3) axis, (n,) angle."""
+        """Turns of a ball joint from some steps to the next: (n, 4, 4) fixed part, (n, 3) axis, (n,) angle."""
         first = int(self.links.columns[i])
         ahead = np.minimum(step + 1, self.n_steps - 1)
         before, after = (

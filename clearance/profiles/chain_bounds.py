@@ -2,7 +2,7 @@
 
 Between two instants a point of a link follows x(s), |s| <= 1; with x'' = its acceleration at the middle plus at
 most |s| M, the distance from the chord is at most |x''(0)| / 2 + M / 6 (the Green's function of e'' with
-e(-1) = e(1) = 0). x''(0) is an affine map of the body and is taken exactly at the corners of its box, in the
+e(-1) = e(1) = 0). x''(0) is an affine map of the body and is evaluated exactly at the corners of its box, in the
 plane; M bounds the third derivative link by link. Not for: choosing the instants (`chords`).
 """
 
@@ -108,7 +108,7 @@ class ChainBounds:
 
 
 def _across(axis: np.ndarray) -> np.ndarray:
-    """(..., 3, 3) the matrix that takes a vector to the cross product of an axis (..., 3) and it."""
+    """(..., 3, 3) the matrix that maps a vector to the cross product of an axis (..., 3) and it."""
     x, y, z = np.moveaxis(axis, -1, 0)
     none = np.zeros_like(x)
     rows = [[none, -z, y], [z, none, -x], [-y, x, none]]

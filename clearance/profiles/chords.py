@@ -1,4 +1,4 @@
-"""The instants at which a body is looked at, so that between two of them no point leaves its chord by too much.
+"""The instants of a body's poses, so that between two of them no point leaves its chord by too much.
 
 How far it may is bounded by `chain_bounds`. Not for: clearances between the steps (`simulate.certify`).
 """
@@ -27,7 +27,7 @@ class BodyKnots:
         poses: (k, 4, 4) world_from_body [m] there.
         moves: (k - 1,) whether the body moves from each to the next.
         chord: (k - 1,) [m] proven bound of the distance of its points from their chords, in the plane.
-        turn: (k - 1,) [rad] how far the direction of view turns in the body either way from the middle.
+        turn: (k - 1,) [rad] how far the direction of view turns in the body to either side of the middle.
         middle: (k - 1, 4, 4) poses in the middle of each interval.
     """
 
@@ -42,7 +42,7 @@ class BodyKnots:
 def knots_of(
     chain: Chain, shape: Polyhedron, plane: Plane, limit: float, *, solid: bool, first: int = 0
 ) -> BodyKnots:
-    """The steps, and instants between them, so that no chord is left by more than `limit` [m].
+    """The steps, and instants between them, so that no point leaves its chord by more than `limit` [m].
 
     Args:
         chain: down to the link that carries the shape, at the link's own pose.
@@ -76,7 +76,7 @@ def standing(pose: np.ndarray, first: int = 0) -> BodyKnots:
 
 
 def _split(low: np.ndarray, high: np.ndarray, chord: np.ndarray, limit: float):
-    """Each interval in as many equal parts as its bound asks for; the bound falls with the square."""
+    """Each interval in as many equal parts as its bound needs; the bound falls with the square."""
     parts = np.clip(np.ceil(np.sqrt(1.02 * chord / limit)), 2, 64).astype(int)
     rank = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
     low, high, n = np.repeat(low, parts), np.repeat(high, parts), np.repeat(parts, parts)

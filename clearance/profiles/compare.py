@@ -40,7 +40,7 @@ class Exceedance:
 
 @dataclass(frozen=True, eq=False)
 class OutlineComparison:
-    """What differs between outline a and outline b, in their unit (metres for profiles).
+    """Differences of outline a and outline b, in their unit (metres for profiles).
 
     Attributes:
         found: the Hausdorff distance, both ways, with witnesses and proven error.

@@ -1,6 +1,6 @@
 """A closed chain of lines and arcs: what profiles are made of.
 
-Kept as vertices and bulges (the tangent of a quarter of the sweep, positive where the arc turns to the left), as
+Stored as vertices and bulges (the tangent of a quarter of the sweep, positive where the arc turns to the left), as
 DXF polylines do, so that ends meet to the last bit. Not for: free-form curves (`clearance.planar`).
 """
 

@@ -1,4 +1,4 @@
-"""What a body's cut with a plane sweeps: its covered pixels, and the polygons that matter beyond them.
+"""The sweep of a body's cut with a plane: its covered pixels, and the polygons that matter beyond them.
 
 A closed part cuts a filled region, an open surface only its own line. A point of the profile may be where the
 body never quite is: the bound holds in space. Not for: silhouettes.
@@ -31,7 +31,7 @@ class CrossSection:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """That an open surface was cut, once `hulls` has met it."""
+        """True once `hulls` has cut an open surface."""
         return (
             (f"{self._label} is not closed: its cut is that of its surface",)
             if self._open_cut
@@ -45,11 +45,11 @@ class CrossSection:
 
     @property
     def excess(self) -> float:
-        """[m] how far any point of them may be from a swept point in space: beside the plane, and off a chord."""
+        """[m] how far any point of them may be from a swept point in space: off the plane, and off a chord."""
         return 2.0 * self.short
 
     def box(self) -> np.ndarray:
-        """(2, 2) [m] a box in the plane that holds the body at all knots."""
+        """(2, 2) [m] a box in the plane that contains the body at all knots."""
         corners = np.stack(np.meshgrid(*self.shape.bounds.T), axis=-1).reshape(-1, 3)
         seen = self._placed(self.knots.poses, corners)[:, :, :2].reshape(-1, 2)
         return np.stack([seen.min(axis=0), seen.max(axis=0)])
@@ -77,7 +77,7 @@ class CrossSection:
             yield Hulls(corners, count, np.full(len(corners), knots.instant[i]))
 
     def _filled(self) -> Hulls:
-        """What the closed parts fill at the first knot, part by part, as convex polygons."""
+        """The sections of closed parts at the first knot, part by part, as convex polygons."""
         from clearance.profiles.region import convex_parts, union
 
         shape, points = self.shape, self._placed(self.knots.poses[:1], self.shape.vertices)[0]
@@ -98,7 +98,7 @@ class CrossSection:
 
 
 def region_of_cuts(cuts: np.ndarray):
-    """What directed segments (n, 4) enclose that meet end to end to the last bit."""
+    """The region that directed segments (n, 4) enclose that meet end to end to the last bit."""
     from clearance.profiles.region import region_of
 
     following: dict[tuple[float, float], list[tuple[float, float]]] = {}

@@ -1,4 +1,4 @@
-"""What a sketch draws as closed contours of lines and arcs, always of the same pieces however it is dimensioned.
+"""A drawn sketch as closed contours of lines and arcs, always of the same pieces however it is dimensioned.
 
 Not for: curves with free ends (`Sketch.curves`).
 """
@@ -30,7 +30,7 @@ def drawn_chains(sketch: Sketch) -> list[Chain]:
 
 
 def contours_of_chains(found: list[Chain]) -> tuple[Contour, ...]:
-    """What the chains draw now."""
+    """The drawing of the chains now."""
     contours = []
     for chain in found:
         vertices: list[np.ndarray] = []

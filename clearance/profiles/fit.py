@@ -3,7 +3,7 @@
 All constraints of the sketch hold throughout, since every shape tried is a solved sketch. The search linearises
 many distances and solves linear programs in a trust region, from several starts in a fixed order; the answer's
 distance and containment are certified by `clearance.planar` whatever the search did. Local optima: the best of the
-starts is kept, no claim is made beyond. Not for: sketches without closed outlines.
+starts wins, no claim is made beyond. Not for: sketches without closed outlines.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
 from clearance.profiles.fit_bounded import BoundedFit
 from clearance.profiles.fit_nearest import NearestFit
-from clearance.profiles.fit_report import held_rates, sensitivities, touching
+from clearance.profiles.fit_report import rates_of_fixed, sensitivities, touching
 from clearance.profiles.fit_result import Fit
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import FitCandidate, FitTarget
@@ -29,7 +29,7 @@ MODES = ("nearest", "outside", "inside")
 
 
 class NoFit(BadShape):
-    """No start of the search led to a sketch that does what was asked."""
+    """No start of the search led to a sketch that meets the request."""
 
 
 def fit(
@@ -41,14 +41,14 @@ def fit(
     margin: float = 0.0,
     starts: int = 8,
 ) -> Fit:
-    """The sketch whose free dimensions, and place where nothing holds it, suit an outline best.
+    """The sketch whose free dimensions, and place unless it is fixed, suit an outline best.
 
     Args:
-        sketch: left as it is; it draws closed contours. Free are its driven dimensions.
+        sketch: stays as it is; it draws closed contours. Free are its driven dimensions.
         profile: a swept profile, or any closed outline.
         mode: "nearest": least Hausdorff distance. "outside": least area that contains the outline. "inside":
-            largest area that stays clear of it: in a hole, or beside it; of a drawn outline (not a sweep) that
-            the sketch is drawn within, the inside is the room.
+            largest area that stays clear of it: in a hole, or outside it, or inside a drawn outline (not a sweep)
+            about the sketch.
         free: names of dimensions or parameters instead.
         margin: [m] least gap for outside and inside.
         starts: how many starting shapes are tried.
@@ -73,7 +73,7 @@ def fit(
     best, tried = _best(search, starts_of(shape, outline, mode, starts))
     if best is None:
         raise _no_fit(search, mode, margin, tried)
-    return _told(sketch, shape, search, best, tried)
+    return _answer(sketch, shape, search, best, tried)
 
 
 def _no_fit(search: NearestFit | BoundedFit, mode: str, margin: float, tried: int) -> NoFit:
@@ -115,7 +115,7 @@ def _best(
     return best, tried
 
 
-def _told(
+def _answer(
     sketch: Sketch,
     shape: SketchShape,
     search: NearestFit | BoundedFit,
@@ -137,7 +137,7 @@ def _told(
         area=here.area,
         margin=target.margin,
         clearance=best.clearance,
-        active=held_rates(shape, target, best),
+        active=rates_of_fixed(shape, target, best),
         sensitivity=sensitivities(shape, target, best),
         ends=np.stack([seen.point_b, seen.point_a]),
         touching=touching(shape, target, best),

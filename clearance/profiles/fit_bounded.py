@@ -1,6 +1,6 @@
 """The search for the least sketch around an outline, or the largest clear of it, from one start.
 
-Linear programs in a trust region, each answer certified; what is certified too small is asked for with more
+Linear programs in a trust region, each answer certified; where it is too small, the next program asks for more
 margin. Not for: choosing starts (`fit`), or the nearest sketch (`fit_nearest`).
 """
 
@@ -15,26 +15,26 @@ from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
 from clearance.profiles.fit_target import FitCandidate, Places
 
 MOST_NEAR = 60
-"""Places of the outline whose pieces are looked at more closely once the shape is near them."""
+"""Places of the outline whose pieces get more rows once the shape is near them."""
 
 ENDLESS = 3.0
 """[-] A shape still growing after all steps, and so many times the outline's size, has nothing to stop it."""
 
 ROUNDS = 7
-"""Times that a search is taken up again with the certified witnesses."""
+"""Times that a search is resumed with the certified witnesses."""
 
 
 class BoundedFit(FitSearch):
     """The search for the least (outside) or greatest (inside) area with every gap at least the margin.
 
     Attributes:
-        endless: whether a shape grew beside the outline without end.
+        endless: whether a shape grew outside the outline without end.
     """
 
     endless = False
 
     def run(self, start: np.ndarray, beat: float = np.inf) -> FitCandidate | None:
-        """The shape that the search ends with; None where it is not what was asked, or no better than the
+        """The shape that the search ends with; None where it does not meet the request, or is no better than the
         score `beat` once it has come near.
         """
         here = self.shape.at(start)
@@ -92,12 +92,12 @@ class BoundedFit(FitSearch):
                 reach *= 0.25
         else:
             far = here.pieces.size > ENDLESS * target.pieces.size
-            return here, rows, found.marginals, (samples, given, chosen), far and self._beside
+            return here, rows, found.marginals, (samples, given, chosen), far and self._outside
         return here, rows, found.marginals, (samples, given, chosen), False
 
     @property
-    def _beside(self) -> bool:
-        return self.target.mode == "inside" and not self.target.room
+    def _outside(self) -> bool:
+        return self.target.mode == "inside" and not self.target.within
 
     def _rows(self, here: PlacedShape, gaps: Gaps) -> tuple[FitRows, np.ndarray, np.ndarray]:
         """The rows nearest to mattering, which they are, and the change of the score by each number."""

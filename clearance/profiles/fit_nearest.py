@@ -47,10 +47,10 @@ class NearestFit(FitSearch):
 
     def _minimax(self, here: PlacedShape) -> FitCandidate:
         """Linear programs for the least greatest distance; the distance itself is certified each time."""
-        whole, reach, looked = self._distance(here), 0.05, (self.samples, self.target.given)
+        whole, reach, places = self._distance(here), 0.05, (self.samples, self.target.given)
         slopes = self.shape.slopes(here)
-        looked = self._with_witness(here, whole, *looked)
-        rows, chosen = self._chosen_rows(here, slopes, *looked)
+        places = self._with_witness(here, whole, *places)
+        rows, chosen = self._chosen_rows(here, slopes, *places)
         for _ in range(STEPS):
             if whole.distance <= self.tiny or reach < 1e-9:
                 break
@@ -62,7 +62,7 @@ class NearestFit(FitSearch):
             gained, there = -1.0, whole
             if moved is not None:
                 there = self._distance(moved)
-                looked = self._with_witness(moved, there, *looked)
+                places = self._with_witness(moved, there, *places)
                 gained = (whole.distance - there.distance) / hoped
             if moved is not None and gained > 0.0:
                 here, whole = moved, there
@@ -70,9 +70,9 @@ class NearestFit(FitSearch):
                 reach *= 2.0 if gained > 0.7 else 1.0 if gained > 0.2 else 0.4
             else:
                 reach *= 0.25
-            rows, chosen = self._chosen_rows(here, slopes, *looked)
+            rows, chosen = self._chosen_rows(here, slopes, *places)
         last = least_greatest(rows, self.shape.scale, *self.bounds(here, 1e-6))
-        return FitCandidate(here, whole.distance, None, rows, last.marginals, *looked, chosen)
+        return FitCandidate(here, whole.distance, None, rows, last.marginals, *places, chosen)
 
     def _distance(self, here: PlacedShape) -> Hausdorff:
         return hausdorff(here.curve, self.target.outline.curve)
@@ -80,7 +80,7 @@ class NearestFit(FitSearch):
     def _with_witness(
         self, here: PlacedShape, whole: Hausdorff, samples: Places, given: np.ndarray
     ) -> tuple[Places, np.ndarray]:
-        """The places that are looked at and the certified witnesses: of steps that failed as well."""
+        """The places that give rows and the certified witnesses: of steps that failed as well."""
         own = np.stack([whole.point_a, whole.directed["a_to_b"].point_a])
         theirs = np.stack([whole.point_b, whole.directed["b_to_a"].point_a])
         return self.with_places(here, own, samples), np.vstack([given, theirs])

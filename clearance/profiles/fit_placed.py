@@ -17,7 +17,7 @@ from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import ContourPieces
 
 SHRINK = 0.05
-"""[-] What at least is left of a length after one step."""
+"""[-] The least share of a length that remains after one step."""
 
 FLOOR = 1e-6
 """[-] Lengths are not made shorter than this, relative to the sketch: it could not be drawn at 0."""
@@ -47,7 +47,7 @@ class PlacedShape:
 
     @cached_property
     def area(self) -> float:
-        """[m^2] that the contours enclose, holes taken off where they run the other way."""
+        """[m^2] that the contours enclose, less holes, which run in reverse."""
         return abs(sum(contour.area for contour in self.contours))
 
 

@@ -15,7 +15,7 @@ FIRST = 48
 """Rows that a program begins with: those nearest to mattering."""
 
 BROKEN = 1e-9
-"""[-] How far a row may be broken that is left out; the solver's own tolerance is 1e-7."""
+"""[-] How far an omitted row may be broken; the solver's own tolerance is 1e-7."""
 
 
 class ProgramStep(NamedTuple):
@@ -52,7 +52,7 @@ def least_greatest(
 
 
 class AreaGoal(NamedTuple):
-    """What a step is to make least: the area, and what is missing of a gap.
+    """The objective of a step: the area, and the missing part of a gap.
 
     Attributes:
         change: (n,) of the area by the numbers. wanted: the least gap. price: of each unit that is missing.
@@ -92,12 +92,12 @@ def least_area(
         return ProgramStep(np.zeros(n), 0.0, np.zeros(len(scaled)))
     x, marginals = found
     missing = max(0.0, wanted - float(rows.distance.min()))
-    left = float((change * scale) @ x[:n] + price * size * x[n]) * reach
-    return ProgramStep(x[:n] * reach * scale, price * missing - left, marginals)
+    gained = float((change * scale) @ x[:n] + price * size * x[n]) * reach
+    return ProgramStep(x[:n] * reach * scale, price * missing - gained, marginals)
 
 
 def _least(cost: np.ndarray, matrix: np.ndarray, right: np.ndarray, bounds: list):
-    """Where `cost` is least with matrix x <= right, and the marginals; None where there is no such x."""
+    """The x of least `cost` with matrix x <= right, and the marginals; None where there is no such x."""
     from scipy.optimize import linprog
 
     order = np.argsort(right, kind="stable")

@@ -1,4 +1,4 @@
-"""What holds a fit: where it touches, how each free dimension moves it, and which held ones stop it.
+"""The constraints of a fit: where it touches, how each free dimension moves it, and which fixed ones stop it.
 
 The multipliers are those of the last linear program. Not for: the search (`fit_search`).
 """
@@ -11,7 +11,7 @@ from clearance.profiles.fit_rows import FitRows, FitSlope, rows_of
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import FitCandidate, FitTarget
 
-MOST_TOLD = 32
+MOST_TOUCHING = 32
 """Touching points that are reported."""
 
 
@@ -43,12 +43,12 @@ def touching(shape: SketchShape, target: FitTarget, best: FitCandidate) -> np.nd
     """(k, 2) different points that attain the distance or the gap."""
     points = tight_rows(shape, target, best)[0].point
     _, first = np.unique(np.round(points / (1e-7 * shape.size)), axis=0, return_index=True)
-    return points[np.sort(first)][:MOST_TOLD]
+    return points[np.sort(first)][:MOST_TOUCHING]
 
 
-def held_rates(shape: SketchShape, target: FitTarget, best: FitCandidate) -> dict[str, float]:
-    """How the objective changes with each held dimension that matters, the strongest first."""
-    names, slopes, change = _held_slopes(shape, target, best)
+def rates_of_fixed(shape: SketchShape, target: FitTarget, best: FitCandidate) -> dict[str, float]:
+    """The change of the objective with each fixed dimension that matters, the strongest first."""
+    names, slopes, change = _slopes_of_fixed(shape, target, best)
     if not names:
         return {}
     here, weight, k = best.placed.pieces, best.marginals, len(best.chosen)
@@ -63,11 +63,11 @@ def held_rates(shape: SketchShape, target: FitTarget, best: FitCandidate) -> dic
     return dict(sorted(found.items(), key=lambda item: -abs(item[1])))
 
 
-def _held_slopes(shape: SketchShape, target: FitTarget, best: FitCandidate):
-    """Names, neighbouring shapes and change of the score of the held dimensions that can change."""
+def _slopes_of_fixed(shape: SketchShape, target: FitTarget, best: FitCandidate):
+    """Names, neighbouring shapes and change of the score of the fixed dimensions that can change."""
     names, slopes, change = [], [], []
     step = 1e-6 * shape.size
-    for name in shape.held:
+    for name in shape.fixed:
         behind = shape.changed(name, -step, best.placed.numbers)
         ahead = shape.changed(name, step, best.placed.numbers)
         if ahead is not None and behind is not None:

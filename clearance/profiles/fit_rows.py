@@ -1,7 +1,7 @@
 """Distances between a shape and an outline at many points, with their change by every number of the shape.
 
 A row says: this far inside here (negative: outside), and so much more for each number. The first order is exact,
-since the foot of a shortest line may move along its curve at no cost. Distances are taken at all points, slopes
+since the foot of a shortest line may move along its curve at no cost. Distances are measured at all points, slopes
 only at those that matter. Not for: certified distances.
 """
 
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.profiles.pieces import ContourPieces
-from clearance.profiles.region import Region, holds
+from clearance.profiles.region import Region, contains
 
 
 class FitRows(NamedTuple):
@@ -48,7 +48,7 @@ class Gaps(NamedTuple):
 
 
 class FitSlope(NamedTuple):
-    """Two neighbouring shapes, how far apart one of their numbers is (0 where it cannot change), and the change
+    """Two neighbouring shapes, the difference of one of their numbers (0 where it cannot change), and the change
     of the area for each unit of it."""
 
     behind: ContourPieces
@@ -89,7 +89,7 @@ def sides_of(pieces: ContourPieces, region: Region) -> np.ndarray:
     )
     half = np.full(len(longest), 0.5)
     step = 1e-5 * pieces.size * pieces.left(longest, half)
-    return np.where(holds(region, pieces.point(longest, half) + step), 1.0, -1.0)
+    return np.where(contains(region, pieces.point(longest, half) + step), 1.0, -1.0)
 
 
 def gaps_of_shape(outline: ContourPieces, sides: np.ndarray, here: ContourPieces, samples) -> Gaps:

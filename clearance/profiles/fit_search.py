@@ -1,4 +1,4 @@
-"""What every search for a fitted sketch shares: where it looks, how far it may step, which rows it takes along.
+"""The common part of all searches for a fitted sketch: its places, its step bounds, and its rows.
 
 Not for: the searches themselves (`fit_nearest`, `fit_bounded`).
 """
@@ -18,11 +18,11 @@ SAMPLES = 16
 """Places on each piece of the shape."""
 
 STEPS = 30
-"""Linear programs that one search may take."""
+"""Linear programs that one search may solve."""
 
 
 class FitSearch:
-    """A shape, what it is to be, and the places on it that are looked at."""
+    """A shape, its target, and the places on it that give rows."""
 
     def __init__(self, shape: SketchShape, target: FitTarget, drawn: PlacedShape) -> None:
         self.shape, self.target = shape, target

@@ -1,4 +1,4 @@
-"""A sketch as a shape of numbers: its free dimensions, and where it stands if nothing holds it.
+"""A sketch as a shape of numbers: its free dimensions, and its place unless it is fixed.
 
 Free are the driven dimensions of the sketch (or those named); the constraints hold at every shape, since each is
 solved. Not for: choosing the numbers (`fit`).
@@ -61,8 +61,8 @@ class SketchShape:
         self.scale = np.array(lengths + [self.size] * (2 * self.slides) + [1.0] * self.turns)
 
     @property
-    def held(self) -> list[str]:
-        """Names of the dimensions that keep their value: numbers, not expressions."""
+    def fixed(self) -> list[str]:
+        """Names of the dimensions with a fixed value: numbers, not expressions."""
         given = [
             c.name
             for c in self.sketch.constraints.values()
@@ -91,7 +91,7 @@ class SketchShape:
         )
 
     def changed(self, name: str, change: float, numbers: np.ndarray) -> PlacedShape | None:
-        """The shape with a held dimension changed; it is put back."""
+        """The shape with a fixed dimension changed; it is put back."""
         before = self.sketch.value(name)
         try:
             self.sketch.set(name, before + change)
@@ -159,7 +159,7 @@ class SketchShape:
         return self.sketch.constraint(name).kind
 
     def _stand(self, contours: tuple[Contour, ...]) -> tuple[np.ndarray, float]:
-        """Where the drawing stands: its first vertex, and the direction to the next."""
+        """The place of the drawing: its first vertex, and the direction to the next."""
         first, second = contours[0].vertices[:2]
         along = second - first
         return first, math.atan2(along[1], along[0])

@@ -1,4 +1,4 @@
-"""What a fitted sketch should be to an outline: near, around or clear of it; rows to search by, and the proof.
+"""The relation of a fitted sketch to an outline: near, around or clear of it; rows to search by, and the proof.
 
 Not for: the search (`fit_search`).
 """
@@ -24,10 +24,10 @@ from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline
 from clearance.profiles.pieces import ContourPieces
-from clearance.profiles.region import holds
+from clearance.profiles.region import contains
 
 MOST_GIVEN = 3000
-"""Points of the outline that are looked at."""
+"""Points of the outline that give rows."""
 
 Places = tuple[np.ndarray, np.ndarray]
 """Pieces and shares of places on a shape."""
@@ -57,7 +57,7 @@ class FitTarget:
     """An outline, and what a shape should be to it.
 
     Attributes:
-        room: the shape stays within the outline's inside (a drawn room) instead of clear of it.
+        within: the shape stays inside the outline (a drawn enclosure) instead of clear of it.
     """
 
     def __init__(
@@ -77,16 +77,16 @@ class FitTarget:
         self.given = points[:: max(1, len(points) // MOST_GIVEN)]
         self.shape_sides = sides_of(drawn.pieces, ClosedContours.of(drawn.contours).region)
         free_form = mode == "inside" and outline.profile is None
-        self.room = free_form and bool(holds(self.closed.region, drawn.pieces.start[:1]).all())
+        self.within = free_form and bool(contains(self.closed.region, drawn.pieces.start[:1]).all())
 
     def distances(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
-        """Of the shape's places and of the outline's points, positive inside the other."""
+        """Distances of the shape's places and of the outline's points, positive inside the other."""
         return joined_gaps(*self._pair(here, samples, given))
 
     def gaps(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
         """The same, positive where the shape is on its right side: to be at least the margin."""
         own, theirs = self._pair(here, samples, given)
-        one = 1.0 if self.room else -1.0
+        one = 1.0 if self.within else -1.0
         two = 1.0 if self.mode == "outside" else -1.0
         return joined_gaps(own.signed(one), theirs.signed(two))
 
@@ -103,7 +103,7 @@ class FitTarget:
     def clearance(self, here: PlacedShape) -> tuple[float, Minimum]:
         """Proven lower bound of the gap, -1 where the shape is on the wrong side, and the witnesses."""
         shape = ClosedContours.of(here.contours)
-        return proven_gap(shape, self.closed, around=self.mode == "outside", room=self.room)
+        return proven_gap(shape, self.closed, around=self.mode == "outside", within=self.within)
 
     def better(self, one: FitCandidate, two: FitCandidate) -> bool:
         """True if `one` beats `two` by more than rounding; distance decides between equal areas."""

@@ -15,7 +15,7 @@ from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import FINE, ContourPieces, contours_of
-from clearance.profiles.region import Region, holds, region_of
+from clearance.profiles.region import Region, contains, region_of
 
 CHORD = 1e-7
 """[-] How far chords may stray from arcs where sides are decided, relative to the size."""
@@ -23,7 +23,7 @@ CHORD = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class ClosedContours:
-    """Closed contours in the forms that are asked of them.
+    """Closed contours in the forms that searches need.
 
     Attributes:
         contours: lines and arcs. curve: what is certified.
@@ -49,7 +49,7 @@ class ClosedContours:
 
     @cached_property
     def region(self) -> Region:
-        """What is enclosed, by parity, arcs as chords within CHORD; for sides, not for bounds."""
+        """The enclosed region, by parity, arcs as chords within CHORD; for sides, not for bounds."""
         return region_of([c.flattened(CHORD * self.curve.size) for c in self.contours])
 
     @property
@@ -59,22 +59,22 @@ class ClosedContours:
 
 
 def proven_gap(
-    sketch: ClosedContours, outline: ClosedContours, *, around: bool, room: bool = False
+    sketch: ClosedContours, outline: ClosedContours, *, around: bool, within: bool = False
 ) -> tuple[float, Minimum]:
     """Lower bound of the gap, -1 where one is on the wrong side of the other, and the witnesses.
 
-    Where the curves are apart by more than nothing, each contour is wholly on one side of the other curve, so
+    Where the distance of the curves is above 0, each contour is wholly on one side of the other curve, so
     that one point of it decides.
 
     Args:
         around: the outline is to lie inside the sketch; else outside it.
-        room: the sketch is to lie inside the outline; else outside it.
+        within: the sketch is to lie inside the outline; else outside it.
     """
     least = minimum_distance(sketch.curve, outline.curve)
     lower = least.distance - least.error_bound
-    theirs = holds(sketch.region, outline.starts)
-    ours = holds(outline.region, sketch.starts)
+    theirs = contains(sketch.region, outline.starts)
+    ours = contains(outline.region, sketch.starts)
     right = (theirs.all() if around else not theirs.any()) and (
-        ours.all() if room else not ours.any()
+        ours.all() if within else not ours.any()
     )
     return (lower if right else -1.0), least

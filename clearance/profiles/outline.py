@@ -20,8 +20,8 @@ from clearance.profiles.contour import Contour, joined
 from clearance.profiles.region import (
     Region,
     boundary_distance,
+    contains,
     grown,
-    holds,
     inner_points,
     region_of,
     rings_of,
@@ -29,7 +29,7 @@ from clearance.profiles.region import (
 )
 
 ROUNDING = 1e-8
-"""[m] Taken off every tolerance for what unions move vertices by: ten times `region.GRID`."""
+"""[m] Subtracted from every tolerance, since unions move vertices: ten times `region.GRID`."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,10 @@ def outline_of(region: Region, inner: float, tolerance: float) -> Outline:
     """Lines and arcs around all points within `inner` [m] of the region, none beyond `tolerance` [m] of it.
 
     Raises:
-        BadDimension: the tolerance leaves no room beside `inner`.
+        BadDimension: the tolerance is too small for `inner`.
     """
-    room = (tolerance - ROUNDING - 1.04 * (inner + ROUNDING)) / 2.1
-    if not room > 1e-3 * tolerance:
+    slack = (tolerance - ROUNDING - 1.04 * (inner + ROUNDING)) / 2.1
+    if not slack > 1e-3 * tolerance:
         raise BadDimension(
             f"a tolerance of {tolerance:g} m beside {inner:g} m of motion between samples",
             where="tolerance",
@@ -62,10 +62,10 @@ def outline_of(region: Region, inner: float, tolerance: float) -> Outline:
         )
     boundary = Curve.contours([Curve.polyline(ring, closed=True) for ring, _ in rings_of(region)])
     for _ in range(4):
-        offset = inner + ROUNDING + room
+        offset = inner + ROUNDING + slack
         contours = tuple(
-            _fitted(ring, 0.85 * room)
-            for ring, _ in rings_of(smoothed(grown(region, offset), 0.1 * room))
+            _fitted(ring, 0.85 * slack)
+            for ring, _ in rings_of(smoothed(grown(region, offset), 0.1 * slack))
         )
         height = 1e-3 * tolerance
         chords = [contour.flattened(height) for contour in contours]
@@ -74,15 +74,15 @@ def outline_of(region: Region, inner: float, tolerance: float) -> Outline:
             far = hausdorff(joined(contours), boundary).directed["a_to_b"].upper
             # Holes narrower than twice the offset are filled: their points are within the offset.
             return Outline(contours, gap, max(far, 1.03 * offset) + ROUNDING)
-        room *= 0.6
+        slack *= 0.6
     raise AssertionError("no outline within its tolerance around a region of finite extent")
 
 
 def _fitted(ring: np.ndarray, tolerance: float) -> Contour:
-    kept = np.any(ring != np.roll(ring, 1, axis=0), axis=1)
-    points = np.ascontiguousarray(ring[kept])
+    distinct = np.any(ring != np.roll(ring, 1, axis=0), axis=1)
+    points = np.ascontiguousarray(ring[distinct])
     starts, bulges = arcs_of_ring(points, tolerance)
-    if len(starts) < 3:  # a ring no larger than the tolerance: keep it as it is
+    if len(starts) < 3:  # a ring no larger than the tolerance stays as it is
         starts, bulges = np.arange(len(points)), np.zeros(len(points))
     return Contour(points[starts], bulges)
 
@@ -91,5 +91,6 @@ def _encloses(contours: tuple[Contour, ...], chords: list[np.ndarray], region: R
     """True if the contours, none of which comes near the region's boundary, have all of it inside."""
     starts = np.array([contour.vertices[0] for contour in contours])
     return bool(
-        holds(region_of(chords), inner_points(region)).all() and not holds(region, starts).any()
+        contains(region_of(chords), inner_points(region)).all()
+        and not contains(region, starts).any()
     )

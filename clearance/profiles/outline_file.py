@@ -1,4 +1,4 @@
-"""Outlines from any file that holds one: a profile, a sketch, a list of curves, a DXF drawing.
+"""Outlines from any file that has one: a profile, a sketch, a list of curves, a DXF drawing.
 
 Not for: writing (`profile_file`).
 """
@@ -46,7 +46,7 @@ class DrawnOutline:
 
     @cached_property
     def region(self) -> Region:
-        """What the contours enclose, by parity; for areas and pictures, not for bounds.
+        """The region that the contours enclose, by parity; for areas and pictures, not for bounds.
 
         Raises: BadShape (an open contour).
         """
@@ -146,7 +146,7 @@ def require_solved(sketch: Sketch) -> None:
 
 
 def yaml_of(path: Path) -> object:
-    """What a YAML file holds.
+    """The content of a YAML file.
 
     Raises: MissingFile, BadSyntax, DuplicateName.
     """

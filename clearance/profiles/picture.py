@@ -99,7 +99,7 @@ def _page(a: DrawnOutline, b: DrawnOutline) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
-    """Frames the distance line on the right, and shows on the left where that is."""
+    """Frames the distance line on the right, and shows its place on the left."""
     reach = max(1.6 * float(np.hypot(*(ends[1] - ends[0]))), 0.004 * page)
     middle = ends.mean(axis=0)
     near.set(

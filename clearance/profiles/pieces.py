@@ -1,6 +1,6 @@
 """Lines and arcs as flat arrays: points, normals and nearest points of many at once, in closed form.
 
-For searches that ask again and again; a place on them is a piece and the share of its length. Not for: certified
+For searches with many evaluations; a place on them is a piece and the share of its length. Not for: certified
 distances (`clearance.planar`).
 """
 
@@ -36,7 +36,7 @@ class ContourPieces:
         self.arrays = self._arrays()
 
     def _arrays(self) -> FlatPieces:
-        """As the kernels take them."""
+        """As arguments of kernels."""
         bulge = np.where(self._flat, 1.0, self.bulge)
         along = self.end - self.start
         left = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -99,8 +99,8 @@ def contours_of(curve: Curve, tolerance: float) -> tuple[Contour, ...]:
     half = 0.5 * np.hypot(*along.T) / np.where(flat, 1.0, arcs.radius)
     bulge = np.tan(0.5 * np.arcsin(np.clip(np.where(flat, 0.0, half), 0.0, 1.0)))
     bulge = np.where(arcs.counter_clockwise, bulge, -bulge) * ~flat
-    keep = np.hypot(*along.T) > 0.0
+    has_length = np.hypot(*along.T) > 0.0
     return tuple(
         Contour(arcs.start[chosen], bulge[chosen])
-        for chosen in (keep & (owner == k) for k in range(int(owner[-1]) + 1))
+        for chosen in (has_length & (owner == k) for k in range(int(owner[-1]) + 1))
     )

@@ -21,7 +21,7 @@ class Plane:
     """A plane with its own coordinates.
 
     Attributes:
-        name: as it was asked for.
+        name: as it was given.
         origin: (3,) [m] world point at the coordinates (0, 0).
         axes: (2, 3) unit world directions of the two coordinates.
         normal: (3,) unit.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Origin:
-    """What part of a motion made each piece of a profile.
+    """The part of a motion that made each piece of a profile.
 
     Attributes:
         links: names; `link` counts in them.
@@ -35,21 +35,21 @@ class Origin:
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """What a motion sweeps in a plane, or any set of closed outlines.
+    """The sweep of a motion in a plane, or any set of closed outlines.
 
     Attributes:
         contours: outer ones counter-clockwise, holes clockwise.
         name: the case, or the file.
-        plane: as asked for: "xy", "xz", "yz" or a point and a normal.
+        plane: as given: "xy", "xz", "yz" or a point and a normal.
         plane_origin: (3,) [m] world point of the coordinates (0, 0). plane_axes: (2, 3) their directions.
         section: [m] the height of the cut, or None for the silhouette.
-        tolerance: [m] that was asked for.
+        tolerance: [m] that was given.
         bound: [m] the profile contains everything that is swept, and no point of it is farther than this from
             something that is (for a section: in space). 0 for drawn outlines.
         facets: [m] how far the polygons of round shapes stand outside the shapes; not in `bound`.
         n_steps: steps of the motion.
         origin: which link and step made each piece, or None.
-        parts: profiles of single links by name, if asked for.
+        parts: profiles of single links by name, on request.
         notes: what had to be assumed, one line each.
     """
 
@@ -74,7 +74,7 @@ class Profile:
 
     @cached_property
     def region(self) -> Region:
-        """What the contours enclose, arcs as chords within 1e-6 m; for areas and pictures, not for bounds."""
+        """The enclosed region, arcs as chords within 1e-6 m; for areas and pictures, not for bounds."""
         from clearance.profiles.region import region_of
 
         return region_of([contour.flattened(1e-6) for contour in self.contours])
@@ -86,7 +86,7 @@ class Profile:
 
     @property
     def area(self) -> float:
-        """[m^2] enclosed, holes taken off."""
+        """[m^2] enclosed, less holes."""
         return sum(contour.area for contour in self.contours)
 
     @property

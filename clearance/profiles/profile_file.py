@@ -1,4 +1,4 @@
-"""Profiles as files: our YAML, which holds everything, DXF and SVG for CAD and eyes, GeoJSON for others.
+"""Profiles as files: our YAML, which has everything, DXF and SVG for CAD and eyes, GeoJSON for others.
 
     format: clearance-profile-1
     name: hot_cell
@@ -180,7 +180,7 @@ def dxf_text(profile: Profile) -> str:
         import ezdxf
 
     before = ezdxf.options.write_fixed_meta_data_for_testing
-    try:  # else the file would hold the time of writing and fresh GUIDs
+    try:  # else the file would have the time of writing and fresh GUIDs
         ezdxf.options.write_fixed_meta_data_for_testing = True
         return _text_of(ezdxf.new("R2010", setup=False), profile)
     finally:

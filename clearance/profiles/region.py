@@ -18,7 +18,7 @@ Region: TypeAlias = shapely.Geometry
 """A polygon or several, possibly empty."""
 
 GRID = 1e-9
-"""[m] Where GEOS fails in floating point, unions are taken on a grid of this width instead."""
+"""[m] Where GEOS fails in floating point, unions are computed on a grid of this width instead."""
 
 
 def polygons(corners: np.ndarray, n_corners: np.ndarray) -> np.ndarray:
@@ -98,7 +98,7 @@ def rings_of(region: Region) -> list[tuple[np.ndarray, bool]]:
 
 
 def region_of(rings: Sequence[np.ndarray]) -> Region:
-    """What a set of closed rings encloses, by parity."""
+    """The region that a set of closed rings encloses, by parity."""
     found = shapely.Polygon()
     for ring in rings:
         polygon = shapely.make_valid(shapely.Polygon(ring))
@@ -112,11 +112,11 @@ def area(region: Region) -> float:
 
 
 def difference(one: Region, two: Region) -> Region:
-    """What is in `one` and not in `two`."""
+    """The points of `one` outside `two`."""
     return _areas(shapely.difference(one, two))
 
 
-def holds(region: Region, points: np.ndarray) -> np.ndarray:
+def contains(region: Region, points: np.ndarray) -> np.ndarray:
     """(n,) whether points (n, 2) lie in the region."""
     shapely.prepare(region)
     return shapely.contains_xy(region, points[:, 0], points[:, 1])

@@ -1,9 +1,9 @@
-"""What a body's projection sweeps: its covered pixels, and the polygons that matter beyond them.
+"""The sweep of a body's projection: its covered pixels, and the polygons that matter beyond them.
 
 A face counts 1 where it is seen from the front, -1 from behind; an edge whose faces cancel bounds nothing.
-What is left are loops whose winding number is the number of layers over a point, for any soup of faces,
+The rest are loops whose winding number is the number of layers over a point, for any soup of faces,
 closed or not. A moving region sweeps where it is at first and what its boundary sweeps, so that beyond the
-faces at the first instant only edges that may bound something need be looked at. Not for: sections.
+faces at the first instant only edges that may bound something count. Not for: sections.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ CHUNK = 64
 """Instants that are worked on at once: memory does not grow with their number."""
 
 DOUBT = 1e-5
-"""[-] Cosine to the direction of view below which a face's side is left open: slivers' normals are right to
+"""[-] Cosine to the direction of view below which a face's side is undecided: slivers' normals are right to
 2^-18."""
 
 
@@ -67,7 +67,7 @@ class Silhouette:
         return SweptEdges(np.ascontiguousarray(ends), use.starts, ring.face[use.order], ways)
 
     def box(self) -> np.ndarray:
-        """(2, 2) [m] a box in the plane that holds the body at all knots."""
+        """(2, 2) [m] a box in the plane that contains the body at all knots."""
         low, high = self.shape.bounds
         corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1)
         seen = self._seen(self.knots.poses, corners.reshape(-1, 3)).reshape(-1, 2)
@@ -126,7 +126,7 @@ class Silhouette:
 
     @property
     def excess(self) -> float:
-        """[m] how far any point of them may be from a swept point, beside `slack`."""
+        """[m] how far any point of them may be from a swept point, besides `slack`."""
         return self.short
 
     notes: tuple[str, ...] = ()

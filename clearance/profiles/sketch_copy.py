@@ -1,4 +1,4 @@
-"""A sketch again as a new one, some dimensions driving that were driven or the other way round, moved if asked.
+"""A sketch again as a new one, some driven dimensions driving or the reverse, moved on request.
 
 Not for: solving (`clearance.sketch`), or shapes of numbers (`fit_shape`).
 """

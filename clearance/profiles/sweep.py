@@ -44,13 +44,13 @@ WIDTH = 1e-7
 """[m] What polygons without area are widened by to either side; part of the bound."""
 
 SHARE = 0.22
-"""Of the tolerance: how far points may leave their chords. It counts twice; the arcs take what is left."""
+"""Of the tolerance: how far points may leave their chords. It counts twice; the rest is for the arcs."""
 
-MOST_KEPT = 20_000
-"""Polygons that are held before those inside the outline so far are let go."""
+MOST_POLYGONS = 20_000
+"""Polygons that are collected before those inside the outline so far are dropped."""
 
 TWIST = 0.08
-"""Of the tolerance: how far hulls of what turns may exceed what it sweeps."""
+"""Of the tolerance: how far hulls of turning edges may exceed their sweep."""
 
 CUT_SHARE = 0.15
 """The same for sections, where it counts three times."""
@@ -199,7 +199,7 @@ def _page(views: Sequence[Silhouette | CrossSection]) -> Raster:
 
 
 class PolygonCollection:
-    """The polygons kept so far; those that no longer come to the outline are let go now and then."""
+    """The polygons so far; those that no longer reach the outline are dropped now and then."""
 
     def __init__(self, covered: Region) -> None:
         self._whole = covered
@@ -213,7 +213,7 @@ class PolygonCollection:
         self._parts = np.concatenate([self._parts, made])
         self._makers = np.concatenate([self._makers, makers])
         self._fresh += len(made)
-        if self._fresh > MOST_KEPT:
+        if self._fresh > MOST_POLYGONS:
             self.region()
 
     def region(self) -> Region:
@@ -221,8 +221,12 @@ class PolygonCollection:
         if self._fresh:
             fresh = self._parts[len(self._parts) - self._fresh :]
             self._whole = union([self._whole, union(fresh)])
-            keep = touching(self._whole, self._parts)
-            self._parts, self._makers, self._fresh = self._parts[keep], self._makers[keep], 0
+            reaching = touching(self._whole, self._parts)
+            self._parts, self._makers, self._fresh = (
+                self._parts[reaching],
+                self._makers[reaching],
+                0,
+            )
         return self._whole
 
     def origin(self, contours: Sequence[Contour], labels: tuple[str, ...]) -> Origin:

@@ -38,7 +38,7 @@ class CaseOverTime(Protocol):
 
 
 class RecordHolder(Protocol):
-    """What has a record, as a run."""
+    """Anything with a record, as a run."""
 
     @property
     def record(self) -> CaseOverTime: ...
@@ -63,7 +63,7 @@ class SweptBody:
     pose: np.ndarray | None = None
 
     def knots(self, plane: Plane, limit: float, *, solid: bool) -> BodyKnots:
-        """The instants at which it is looked at, in steps of the run."""
+        """The instants of its poses, in steps of the run."""
         if self.chain is None:
             assert self.pose is not None, "what nothing carries stands at a pose"
             return standing(self.pose, self.first)
@@ -104,7 +104,7 @@ def swept_bodies(
                 found += _over_phases(run, index, partial(_has_robot, i))
     for i, obstacle in enumerate(case.obstacles):
         if obstacle.name not in named:
-            found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_is_held_by, chosen, i))
+            found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_is_carried_by, chosen, i))
     places = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
     for name in named:
         i = places[name]
@@ -130,12 +130,12 @@ def _has_obstacle(i_obstacle: int, phase: Phase) -> bool:
     return i_obstacle not in phase.absent_obstacles
 
 
-def _is_held_by(links: Collection[str], i_obstacle: int, phase: Phase) -> bool:
+def _is_carried_by(links: Collection[str], i_obstacle: int, phase: Phase) -> bool:
     return _holder(phase, i_obstacle) in links
 
 
 def _chosen_links(run: CaseOverTime, links: Sequence[str] | None) -> Collection[str]:
-    """Names of links as in tables: those with a shape, and those that hold a part that is carried."""
+    """Names of links as in tables: those with a shape, and those that carry a part."""
     case = run.case
     bodies = [
         BodyIndex(i, k) for i, p in enumerate(case.robots) for k in range(len(p.robot.bodies))
@@ -177,10 +177,10 @@ def _chosen_obstacles(case: Case, patterns: Sequence[str]) -> list[str]:
 
 def _holder(phase: Phase, i_obstacle: int) -> str | None:
     """The name as in tables of the robot's link that a carried part is on in the end, or None."""
-    held = holding_link(phase, i_obstacle)
-    if held is None:
+    carrying = holding_link(phase, i_obstacle)
+    if carrying is None:
         return None
-    i_robot, link = held
+    i_robot, link = carrying
     case = phase.case
     robot = case.robots[i_robot].robot
     name = robot.link_names[link]

@@ -129,7 +129,7 @@ def main() -> None:
     tell("more memory at the most for it", (after - before) / 1024.0, "MiB")
     outline, sketch = busy_outline(2000), stepped_sketch()
     shape = SketchShape(sketch, None)
-    tell("dimensions of the sketch", len(shape.free) + len(shape.held), "")
+    tell("dimensions of the sketch", len(shape.free) + len(shape.fixed), "")
     tell("of these free", len(shape.free), "")
     ring = outline.contours[0]  # larger, as a drawn room, for the largest plate inside
     room = Contour(3.0 * ring.vertices, ring.bulges).curve()

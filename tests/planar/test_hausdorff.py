@@ -13,7 +13,7 @@ from clearance.kernels.hausdorff.state import SearchGoal
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
-from clearance.planar.picture import kept_parts
+from clearance.planar.picture import remaining_parts
 from tests.examples import examples, first_fast, some_slow
 from tests.oracle import planar_hausdorff as oracle
 
@@ -333,7 +333,7 @@ def test_trimming_is_safe(one, two):
     a, b = curve_of(one), curve_of(two)
     directed = hausdorff(a, b).directed["a_to_b"]
     bound = 0.9 * directed.distance
-    piece, local = kept_parts(a, b, bound)
+    piece, local = remaining_parts(a, b, bound)
     low, high = a.limits[piece].T[:, :, None]
     kept = low + local * (high - low)
     u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)

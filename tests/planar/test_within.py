@@ -7,7 +7,7 @@ from click.testing import CliRunner
 from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
 from clearance.kernels.hausdorff.state import SearchGoal
-from clearance.planar import hausdorff as room
+from clearance.planar import hausdorff as searched
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import Undecided, hausdorff, within
@@ -29,8 +29,8 @@ def test_no_budget_makes_a_wrong_answer(monkeypatch, pair, budget):
     """Whatever the search may spend: True and False are right, all else is `Undecided`."""
     a, b = pair
     found, slack = hausdorff(a, b), 1e-13 * max(c.size for c in pair)
-    monkeypatch.setattr(room, "BUDGET", budget)
-    monkeypatch.setattr(room, "INTERVALS_A_PIECE", 0.0)
+    monkeypatch.setattr(searched, "BUDGET", budget)
+    monkeypatch.setattr(searched, "INTERVALS_A_PIECE", 0.0)
     for share in (0.0, 0.5, 0.727, 0.999, 1.001, 2.0, 1e3, 1e6):
         limit = share * found.distance
         try:
@@ -44,8 +44,8 @@ def test_no_budget_makes_a_wrong_answer(monkeypatch, pair, budget):
 
 
 def test_undecided_is_an_error_of_ours_in_one_line(monkeypatch):
-    monkeypatch.setattr(room, "BUDGET", 0.0)
-    monkeypatch.setattr(room, "INTERVALS_A_PIECE", 0.0)
+    monkeypatch.setattr(searched, "BUDGET", 0.0)
+    monkeypatch.setattr(searched, "INTERVALS_A_PIECE", 0.0)
     a, b = NEAR[0]
     with pytest.raises(Undecided, match=r"a distance between .* against the limit 3e-11") as caught:
         within(a, b, 3e-11)
@@ -58,7 +58,7 @@ def test_within_does_not_refine_beyond_the_limit():
     a, b = NEAR[1]
     shift, size = placed(a, b)
     aims = [SearchGoal(2.0**-50 * size, 0.0, np.inf, enough, np.inf, 1e5) for enough in (1e-3, 0.0)]
-    few, many = (int(room._solve(a, b, shift, aim)[0]["n_cuts"].sum()) for aim in aims)
+    few, many = (int(searched._solve(a, b, shift, aim)[0]["n_cuts"].sum()) for aim in aims)
     assert few <= 24 and few * 8 < many
     assert within(a, b, 1e-3) and within(a, b, 1e-9)
 
@@ -69,8 +69,8 @@ def test_compare_calls_what_is_undecided_by_its_name(monkeypatch, tmp_path):
     for budget, limit, verdict in [
         (200_000.0, 1e-10, "within"), (200_000.0, 1e-11, "beyond"), (0.0, 1e-9, "undecided"),
     ]:  # fmt: skip
-        monkeypatch.setattr(room, "BUDGET", budget)
-        monkeypatch.setattr(room, "INTERVALS_A_PIECE", 0.0)
+        monkeypatch.setattr(searched, "BUDGET", budget)
+        monkeypatch.setattr(searched, "INTERVALS_A_PIECE", 0.0)
         found = compare(DrawnOutline("a", a), DrawnOutline("b", b), limit=limit)
         assert found.verdict == verdict and found.within_limit == (verdict == "within")
     assert found.found.lower <= 1e-9 < found.found.upper
