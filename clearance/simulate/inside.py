@@ -54,11 +54,12 @@ def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
             if k not in waiting:
                 continue
             place = waiting[k]
-            step = _first_in_doubt(case, pairs[place], open_pairs.doubts[k], poses, span)
+            pair, doubt = pairs[place], open_pairs.doubts[k]
+            step = next(_in_doubt(case, pair, doubt, poses, span, along_a_way=True), None)
             if step is not None:
                 step += start
                 when = float(section.phase.times[step])
-                one, other = (body.name_in(case) for body in pairs[place])
+                one, other = (body.name_in(case) for body in pair)
                 text = _text(one, other, step + section.phase.first, when)
                 yield int(section.places[place]), Notice(Severity.SUSPECT, "inside", text)
                 del waiting[k]
@@ -97,7 +98,8 @@ def _open_pairs(case: Case, pairs: Sequence[Pair]) -> _OpenPairs:
 
 @once_a_cell(16)
 def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
-    doubts = _doubts_of(case, pairs)
+    all_doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
+    doubts = {i: doubt for i, doubt in all_doubts.items() if doubt is not None}
     bodies = sorted({body for i in doubts for body in pairs[i]})
     number = {body: k for k, body in enumerate(bodies)}
     standing = [
@@ -112,12 +114,6 @@ def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
     of_bodies = [[number[body] for body in pairs[i]] for i in doubts]
     numbered = np.array(of_bodies, dtype=np.int64).reshape(-1, 2)
     return _OpenPairs(tuple(doubts), tuple(doubts.values()), boxes, numbered)
-
-
-def _doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, PossibleContainment]:
-    """What can be in doubt, by the pairs of which something can be."""
-    doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
-    return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
 
 class DoubtfulPairs:
@@ -204,13 +200,6 @@ class BodyPoses:
         return self._of[body]
 
 
-def _first_in_doubt(
-    case: Case, pair: Pair, doubt: PossibleContainment, poses: BodyPoses, span: slice
-) -> int | None:
-    """The first of some steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
-    return next(_in_doubt(case, pair, doubt, poses, span, along_a_way=True), None)
-
-
 def _in_doubt(
     case: Case,
     pair: Pair,
@@ -219,6 +208,7 @@ def _in_doubt(
     span: slice,
     along_a_way: bool = False,
 ) -> Iterator[int]:
+    """The steps of some, of which `poses` are given, at which a pair is in doubt and not in contact."""
     of_one, of_other = poses.of(pair.a)[span], poses.of(pair.b)[span]
     open_at = doubt.at(of_one, of_other, along_a_way)
     if not open_at.any():
