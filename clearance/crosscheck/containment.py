@@ -12,8 +12,8 @@ import numpy as np
 
 from clearance.crosscheck.triangles import TriangleSoup
 
-DOUBTFUL = 0.25
-"""[turns] Caps that are seen under more leave it open whether a point is inside."""
+MARGIN = 0.25
+"""[turns] A point is inside where its winding number is no farther from a whole one, and that is not 0."""
 
 _MOST_ANGLES = 2_000_000  # solid angles held at once: about 150 MB of temporaries
 
@@ -22,8 +22,8 @@ def is_inside(soup: TriangleSoup, points: np.ndarray) -> np.ndarray:
     """(n,) True where a point (n, 3) [m] in the body frame is inside the closed surface.
 
     Exactness: the winding number of a closed surface is an integer; float64 rounding is far below
-    the threshold of one half for points that are not on the surface. Where the surface is closed but for a
-    few faults, points that see more than a quarter of all directions through its caps are not said to be inside.
+    the margin for points that are not on the surface. Where the surface is closed but for a few faults,
+    points from which more than a quarter of all directions is open are not said to be inside.
     """
     inside = np.zeros(len(points), dtype=bool)
     if not soup.holds:
@@ -35,23 +35,14 @@ def is_inside(soup: TriangleSoup, points: np.ndarray) -> np.ndarray:
     for start in range(0, len(candidates), chunk):
         chosen = candidates[start : start + chunk]
         number = np.abs(winding_number(corners, points[chosen], turns))
-        inside[chosen] = number > 0.5
-        if turns is not None and len(soup.caps):
-            open_turns = np.abs(_parts_of_turns(soup.caps, points[chosen])).sum(axis=1)
-            inside[chosen] &= open_turns <= DOUBTFUL
+        inside[chosen] = number >= 1.0 - MARGIN
     return inside
 
 
 def winding_number(
     corners: np.ndarray, points: np.ndarray, turns: np.ndarray | None = None
 ) -> np.ndarray:
-    """(n,) how often the triangles (m, 3, 3), each counted `turns` (m,) times, go round each point (n, 3)."""
-    parts = _parts_of_turns(corners, points)
-    return parts.sum(axis=1) if turns is None else (parts * turns).sum(axis=1)
-
-
-def _parts_of_turns(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(n, m) the solid angle of each triangle from each point, as a part of all directions.
+    """(n,) how often the triangles (m, 3, 3), each counted `turns` (m,) times, go round each point (n, 3).
 
     Source: van Oosterom & Strackee 1983, equation 8 (solid angle of a triangle).
     """
@@ -60,4 +51,5 @@ def _parts_of_turns(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     volume = np.einsum("nmk,nmk->nm", a, np.cross(b, c))
     ab, bc, ca = (np.einsum("nmk,nmk->nm", u, v) for u, v in ((a, b), (b, c), (c, a)))
     spread = la * lb * lc + ab * lc + bc * la + ca * lb
-    return np.arctan2(volume, spread) / (2.0 * np.pi)
+    parts = np.arctan2(volume, spread) / (2.0 * np.pi)
+    return parts.sum(axis=1) if turns is None else (parts * turns).sum(axis=1)

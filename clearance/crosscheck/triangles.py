@@ -25,14 +25,12 @@ class TriangleSoup:
         triangles: (m, 3) indices, counter-clockwise as in the faces they come from.
         turns: (m,) how often each counts in a winding number where the surface has a rim: those of closed
             components once, of components that are closed but for a few faults as `geometry.closing` says.
-        caps: (k, 3, 3) [m] the triangles that close the latter.
         radius: [m] of the balls about the points of a cloud, each of which is a triangle of one corner; else 0.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     turns: np.ndarray
-    caps: np.ndarray
     radius: float = 0.0
 
     @property
@@ -84,22 +82,20 @@ def triangle_soup(shape: Polyhedron) -> TriangleSoup:
     if isinstance(shape, PointCloud):
         each = np.repeat(np.arange(shape.n_points)[:, None], 3, axis=1)
         turns = np.zeros(shape.n_points, dtype=np.int64)
-        return TriangleSoup(shape.vertices, each, turns, np.empty((0, 3, 3)), shape.ball_radius)
+        return TriangleSoup(shape.vertices, each, turns, shape.ball_radius)
     vertices, index = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)
     sizes = np.diff(shape.face_starts)
     firsts = np.repeat(shape.face_starts[:-1], sizes - 2)
     fan_starts = np.cumsum(sizes - 2) - (sizes - 2)
     nth = np.arange(len(firsts)) - np.repeat(fan_starts, sizes - 2)
     corners = np.stack([firsts, firsts + nth + 1, firsts + nth + 2], axis=1)
-    turns, caps = _rimmed(shape)
     faces = np.repeat(np.arange(shape.n_faces), sizes - 2)
-    return TriangleSoup(vertices, index.ravel()[shape.face_vertices[corners]], turns[faces], caps)
+    triangles = index.ravel()[shape.face_vertices[corners]]
+    return TriangleSoup(vertices, triangles, _turns(shape)[faces])
 
 
-def _rimmed(shape: Polyhedron) -> tuple[np.ndarray, np.ndarray]:
-    """(f,) how often each face counts, and (k, 3, 3) [m] the caps."""
+def _turns(shape: Polyhedron) -> np.ndarray:
+    """(f,) how often each face counts."""
     turns = shape.component_closed[shape.face_component].astype(np.int64)
     closing = closing_of(shape)
-    return (
-        (turns, np.empty((0, 3, 3))) if closing is None else (turns + closing.turns, closing.caps)
-    )
+    return turns if closing is None else turns + closing.turns

@@ -29,36 +29,32 @@ lid has (a sixth), or a tube 4.5 times as long as it is wide without its ends (a
 RIM = 1.0 / 4.0
 """[-] Of a component's edges, those that may be open: beyond that it is a sheet or loose faces."""
 
-LONG = 256
-"""Corners of a loop beyond which its cap is a fan, which takes less time to find."""
-
 
 class Closing(NamedTuple):
     """How components that are not closed would close.
 
     Attributes:
         turns: (f,) how often each face counts in a winding number, of the components that are taken; else 0.
-        caps: (k, 3, 3) [m] the triangles between the corners of the loops, which count once.
-        loops: (h + 1,) where those of each loop begin in `caps`.
+        caps: (k, 3, 3) [m] triangles that close these, which count once.
     """
 
     turns: np.ndarray
     caps: np.ndarray
-    loops: np.ndarray
 
 
 class _OpenComponents(NamedTuple):
-    """The components that are not closed.
+    """The components that are not closed, or hold nothing because they have two sides.
 
     Attributes:
-        ways: (f,) how each face counts; 0 where it is a copy, or its component is closed.
-        component: (h,) of each loop. loops: (n, 3) corners [m] of each.
-        share: (c,) of each component's area and its holes', what its holes have; infinite where it is not asked.
+        ways: (f,) how each face counts; 0 where it is a copy, or its component holds something.
+        caps: (k, 3, 3) [m] triangles that close them. component: (k,) of each cap.
+        share: (c,) of each component's area and its holes', what its holes have; infinite for those that would not
+            close, -1 for those that hold something.
     """
 
     ways: np.ndarray
+    caps: np.ndarray
     component: np.ndarray
-    loops: list[np.ndarray]
     share: np.ndarray
 
 
@@ -73,13 +69,8 @@ def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Clo
     taken = (found.share > least) & (found.share <= most)
     if not taken.any():
         return None
-    loops = [loop for loop, i in zip(found.loops, found.component, strict=True) if taken[i]]
-    caps = [np.empty((0, 3, 3)), *map(_cap, loops)]
-    return Closing(
-        np.where(taken[shape.face_component], found.ways, 0),
-        np.concatenate(caps),
-        np.cumsum([len(cap) for cap in caps]),
-    )
+    turns = np.where(taken[shape.face_component], found.ways, 0)
+    return Closing(turns, found.caps[taken[found.component]])
 
 
 def loose_triangles(shape: Polyhedron) -> np.ndarray:
@@ -87,25 +78,19 @@ def loose_triangles(shape: Polyhedron) -> np.ndarray:
 
     Together they may yet have an inside: patches that meet with a crack, or faces that are there for each side.
     """
-    loose = ~shape.component_closed
-    if loose.any():
-        loose &= ~(_open_of(shape).share <= SOME)
-    back_to_back = shape.component_closed & (np.bincount(shape.face_component) == 2)
-    loose |= shape.component_two_sided | back_to_back
-    if not loose.any():
+    if not _hold_nothing(shape).any():
         return np.empty((0, 3, 3))
-    starts = shape.face_starts
-    corners, ring = distinct_vertices(shape.vertices)[1][shape.face_vertices], rings_of(starts)
-    ways = each_once(corners, starts, shape.face_component, loose, also_two_sided=True)
-    used = np.flatnonzero((ways[ring.face] != 0) & (corners != corners[ring.ahead]))
-    if len(used):
-        ways = ways * _alike(
-            corners[used], corners[ring.ahead][used], ring.face[used], shape.n_faces
-        )
-    way = ways[shape.triangle_faces]
+    found = _open_of(shape)
+    way = np.where(found.share[shape.face_component] > SOME, found.ways, 0)[shape.triangle_faces]
     triangles = shape.triangles()
     triangles = np.where(way[:, None] < 0, triangles[:, ::-1], triangles)
     return np.ascontiguousarray(shape.vertices[triangles[way != 0]])
+
+
+def _hold_nothing(shape: Polyhedron) -> np.ndarray:
+    """(c,) True for the components that are not closed, or have two sides."""
+    back_to_back = np.bincount(shape.face_component) == 2
+    return ~shape.component_closed | shape.component_two_sided | back_to_back
 
 
 def _open_of(shape: Polyhedron) -> _OpenComponents:
@@ -118,27 +103,28 @@ def _open_components(shape: Polyhedron) -> _OpenComponents:
     starts, component = shape.face_starts, shape.face_component
     firsts, kinds = distinct_vertices(shape.vertices)
     corners, ring = kinds[shape.face_vertices], rings_of(starts)
-    asked = ~shape.component_closed
-    ways = each_once(corners, starts, component, asked)
+    asked = _hold_nothing(shape)
+    ways, two_sided = each_once(corners, starts, component, asked)
+    share = np.where(asked, np.inf, -1.0)
     used = np.flatnonzero((ways[ring.face] != 0) & (corners != corners[ring.ahead]))
-    share = np.full(len(asked), np.inf)
-    if not len(used):
-        return _OpenComponents(ways, np.empty(0, dtype=np.int64), [], share)
-    tails, heads, face = corners[used], corners[ring.ahead][used], ring.face[used]
-    ways = ways * _alike(tails, heads, face, shape.n_faces)
-    tails, heads, of_edge, n_edges = _rim(tails, heads, ways[face], component[face], len(asked))
-    n_open = np.bincount(of_edge, minlength=len(asked))
-    points = shape.vertices[firsts]
-    area = _areas(shape, ways, component, len(asked))
-    of_loop, loops = [], []
-    for i in np.flatnonzero((n_edges > 0) & (n_open <= RIM * n_edges)):
-        mine = of_edge == i
-        found = [points[loop] for loop in _loops(tails[mine].tolist(), heads[mine].tolist())]
-        holes = sum(_area(loop) for loop in found)
-        share[i] = holes / (holes + area[i]) if area[i] > 0.0 else np.inf
-        loops += found
-        of_loop += [i] * len(found)
-    return _OpenComponents(ways, np.array(of_loop, dtype=np.int64), loops, share)
+    caps, n_caps = [np.empty((0, 3, 3))], np.zeros(len(asked), dtype=np.int64)
+    if len(used):
+        tails, heads, face = corners[used], corners[ring.ahead][used], ring.face[used]
+        ways = ways * _alike(tails, heads, face, shape.n_faces)
+        rim = _rim(tails, heads, ways[face], component[face], len(asked))
+        area, points = _areas(shape, ways, component, len(asked)), shape.vertices[firsts]
+        holds = two_sided | shape.component_closed
+        closes = (rim.n_open <= RIM * rim.n_edges) & ~holds & (area > 0.0)
+        for i in np.flatnonzero(closes):
+            mine = rim.component == i
+            loops = _loops(rim.tails[mine].tolist(), rim.heads[mine].tolist())
+            found = [_cap(points[loop]) for loop in loops]
+            holes = sum(float(np.linalg.norm(_normals(cap).sum(axis=0))) for cap in found)
+            share[i], n_caps[i] = holes / (holes + area[i]), sum(map(len, found))
+            caps += found
+    return _OpenComponents(
+        ways, np.concatenate(caps), np.repeat(np.arange(len(asked)), n_caps), share
+    )
 
 
 def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int) -> np.ndarray:
@@ -164,24 +150,34 @@ def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int)
     return np.where(most[piece] < 0, -ways, ways)
 
 
+class _Rim(NamedTuple):
+    """What components lack to be closed.
+
+    Attributes:
+        tails, heads, component: (k,) of edges, as often as they lack.
+        n_open, n_edges: (c,) how many of these, and edges, each component has.
+    """
+
+    tails: np.ndarray
+    heads: np.ndarray
+    component: np.ndarray
+    n_open: np.ndarray
+    n_edges: np.ndarray
+
+
 def _rim(
     tails: np.ndarray, heads: np.ndarray, ways: np.ndarray, component: np.ndarray, n_components: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """What closes: (tails, heads, component) of edges, as often as they lack; how many edges components have."""
+) -> _Rim:
     use = edge_use(tails, heads)
     lacking = np.add.reduceat(np.where(use.forward, 1, -1) * ways[use.order], use.starts[:-1])
     first = use.order[use.starts[:-1]]
     n_edges = np.bincount(component[first], minlength=n_components)
-    low, high = np.minimum(tails, heads)[first], np.maximum(tails, heads)[first]
-    open_edges = np.repeat(np.arange(len(first)), np.abs(lacking))
-    back = lacking[open_edges] > 0
-    low, high = low[open_edges], high[open_edges]
-    return (
-        np.where(back, high, low),
-        np.where(back, low, high),
-        component[first[open_edges]],
-        n_edges,
-    )
+    open_edges = first[np.repeat(np.arange(len(first)), np.abs(lacking))]
+    back = np.repeat(lacking > 0, np.abs(lacking))
+    low, high = np.minimum(tails, heads)[open_edges], np.maximum(tails, heads)[open_edges]
+    component = component[open_edges]
+    n_open = np.bincount(component, minlength=n_components)
+    return _Rim(np.where(back, high, low), np.where(back, low, high), component, n_open, n_edges)
 
 
 def _loops(tails: list[int], heads: list[int]) -> list[list[int]]:
@@ -207,32 +203,23 @@ def _loops(tails: list[int], heads: list[int]) -> list[list[int]]:
 
 
 def _cap(loop: np.ndarray) -> np.ndarray:
-    """(n - 2, 3, 3) triangles that close a loop (n, 3): the least corner is cut off, again and again.
+    """(n - 2, 3, 3) triangles that close a loop (n, 3): a strip between its sides, from the farthest corner on.
 
-    So a crack is sewn up along itself, where a fan from one end would be as large as what the crack goes round.
+    So a crack is sewn up along itself, where a fan would be as large as what the crack goes round.
     """
-    if len(loop) > LONG:
-        return _fan(loop)
-    cut = []
-    while len(loop) > 3:
-        before, after = np.roll(loop, 1, axis=0), np.roll(loop, -1, axis=0)
-        least = int(np.argmin((np.cross(loop - before, after - before) ** 2).sum(axis=1)))
-        cut.append([before[least], loop[least], after[least]])
-        loop = np.delete(loop, least, axis=0)
-    return np.array([*cut, loop])
+    n = len(loop)
+    loop = np.roll(loop, -int(((loop - loop.mean(axis=0)) ** 2).sum(axis=1).argmax()), axis=0)
+    k = np.arange(n)
+    strip = np.where(k % 2, (k + 1) // 2, (n - k // 2) % n)
+    triangles = strip[np.arange(n - 2)[:, None] + [0, 1, 2]]
+    triangles[1::2] = triangles[1::2, ::-1]
+    return loop[triangles]
 
 
-def _fan(loop: np.ndarray) -> np.ndarray:
-    """(n - 2, 3, 3) the triangles from the first corner of a loop (n, 3)."""
-    return np.stack([np.broadcast_to(loop[0], (len(loop) - 2, 3)), loop[1:-1], loop[2:]], axis=1)
-
-
-def _area(loop: np.ndarray) -> float:
-    """[m^2] the greatest area that a loop (n, 3) has in any projection: no surface that closes it has less."""
-    fan = _fan(loop)
-    return 0.5 * float(
-        np.linalg.norm(np.cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]).sum(axis=0))
-    )
+def _normals(triangles: np.ndarray) -> np.ndarray:
+    """(n, 3) [m^2] as long as the areas of triangles (n, 3, 3): their sum is the least that has their rim."""
+    a, b, c = np.moveaxis(triangles, 1, 0)
+    return 0.5 * np.cross(b - a, c - a)
 
 
 def _areas(
@@ -240,8 +227,5 @@ def _areas(
 ) -> np.ndarray:
     """(c,) [m^2] of the faces that count, of each component."""
     counts = ways[shape.triangle_faces] != 0
-    a, b, c = (shape.vertices[shape.triangles()[counts, k]] for k in range(3))
-    doubled = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return 0.5 * np.bincount(
-        component[shape.triangle_faces[counts]], doubled, minlength=n_components
-    )
+    area = np.linalg.norm(_normals(shape.vertices[shape.triangles()[counts]]), axis=1)
+    return np.bincount(component[shape.triangle_faces[counts]], area, minlength=n_components)

@@ -69,24 +69,19 @@ def two_sided(
 
 
 def each_once(
-    corners: np.ndarray,
-    starts: np.ndarray,
-    component: np.ndarray,
-    asked: np.ndarray,
-    also_two_sided=False,
-) -> np.ndarray:
+    corners: np.ndarray, starts: np.ndarray, component: np.ndarray, asked: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """(f,) 1 for the least of the faces with the same corners in components that are `asked` (k,) for, else 0.
 
-    Components that hold most faces as often one way round as the other have no inside to count: 0, unless they are
-    taken as well.
+    And (k,) True for the components that hold most faces as often one way round as the other: they have no inside.
     """
     ways = np.zeros(len(starts) - 1, dtype=np.int32)
     balance = np.zeros(len(asked), dtype=np.int64)
     for faces, least, same, turned in _same_corners(corners, starts, asked[component]):
         ways[faces[least]] = 1
-        two_sided = np.bincount(same, np.where(turned, -1, 1)) == 0
-        np.add.at(balance, component[faces[least]], np.where(two_sided, 1, -1))
-    return ways if also_two_sided else np.where(balance[component] > 0, 0, ways)
+        both_ways = np.bincount(same, np.where(turned, -1, 1)) == 0
+        np.add.at(balance, component[faces[least]], np.where(both_ways, 1, -1))
+    return ways, balance > 0
 
 
 def _same_corners(

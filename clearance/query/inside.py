@@ -1,31 +1,29 @@
 """Whether one solid may be inside another whose surface is too open to tell: where clearance 0 is not known.
 
-The search takes a body for inside where a winding number proves it (`search.containment`). Here it is asked what
-that leaves open: parts that reach through a hole of a surface that is closed but for a few faults, or are so near
-one that its place decides; parts that larger holes leave wholly within a surface; and parts that loose faces go
-round on nearly all sides, as those of a solid with cracks do. Other surfaces with more holes than `closing.SOME`
-have no inside. Not for: the distance, which none of this changes.
+The search takes a body for inside where a winding number proves it (`search.containment`). What it leaves open is
+asked here by the same number: is a part known to be outside? The rule depends on how much of a component is open:
+`FAULTY`, `OPEN`, or loose faces. Not for: the distance, which none of this changes.
 """
 
 from __future__ import annotations
 
 import weakref
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.geometry.closing import Closing
-from clearance.geometry.open_faces import open_faces_of
+from clearance.geometry.closing import FEW, SOME, closing_of, loose_triangles
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.search.containment import DOUBTFUL
-from clearance.kernels.search.doubt import generalized_windings, near_holes, wound_by_loose
+from clearance.kernels.search.containment import MARGIN
+from clearance.kernels.search.doubt import OutsideRule, in_doubt
 from clearance.query.cloud_points import CloudPoints
 
-MOSTLY = 0.5
-"""[turns] A part whose outermost corners are all wound round by more, past large holes, may be inside."""
+WOUND = 0.98
+"""[turns] Loose faces that go round a point by more may be a solid with cracks, seen under 2 % at most."""
 
 PIECES = 16
 """Components of a body that loose faces may go round one by one; of more, only the body as a whole."""
@@ -33,59 +31,38 @@ PIECES = 16
 STRIDE = 1.0 / 16.0
 """[-] Of the diagonal of the bounds of loose faces, how far a part moves in them before it is asked for again."""
 
+FAULTY = OutsideRule(most=MARGIN, by_one=False, near_caps=True, stride=-1.0)
+"""Outside of components that close but for a few faults: the search has decided what is far from these."""
 
-class Shell(NamedTuple):
-    """The components of a body that would close, and where they do not.
+OPEN = OutsideRule(most=0.5, by_one=True, near_caps=False, stride=-1.0)
+"""Outside of components with holes up to `closing.SOME`: an opening, past which a part is within or reaches in."""
+
+
+class Holder(NamedTuple):
+    """The components of a body that are open alike.
 
     Attributes:
-        surface: with the winding number of these components.
-        few: True if they are closed but for a few faults, so that the search decides what it can.
+        surface: with the winding number of these components, but for those of `loose`.
+        loose: (k, 3, 3) [m] triangles of components that do not close one by one.
         bounds: (2, 3) [m] of the body.
-        holes: (1 + h, 5) centres, radii [m] and areas [m^2] of balls about the caps of all holes, and of each.
     """
 
     surface: Surface
-    few: bool
+    loose: np.ndarray
     bounds: np.ndarray
-    holes: np.ndarray
+    rule: OutsideRule
+
+    @property
+    def faces(self) -> tuple[Surface, np.ndarray, np.ndarray]:
+        """As the kernel takes them."""
+        return self.surface, self.loose, self.bounds
 
 
-class LooseFaces(NamedTuple):
-    """The components of a body that would not close one by one.
+_holders: weakref.WeakKeyDictionary[Polyhedron, tuple[Holder, ...]] = weakref.WeakKeyDictionary()
+_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[np.ndarray, ...]] = weakref.WeakKeyDictionary()
 
-    Attributes:
-        triangles: (k, 3, 3) [m] turned alike where they hang together.
-        bounds: (2, 3) [m] of the body. stride: [m] `STRIDE` of its diagonal.
-    """
-
-    triangles: np.ndarray
-    bounds: np.ndarray
-    stride: float
-
-
-class Component(NamedTuple):
-    """A connected component of a body.
-
-    Attributes:
-        points: (n, 3) [m] its corners. outermost: (6, 3) [m] those that reach farthest along the axes.
-        low, high: (3,) [m] of its box.
-    """
-
-    points: np.ndarray
-    outermost: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-
-
-_Holders = tuple[tuple[Shell, ...], tuple[LooseFaces, ...]]
-
-_holders: weakref.WeakKeyDictionary[Polyhedron, _Holders] = weakref.WeakKeyDictionary()
-_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
-_pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
-
-
-_Sides = tuple[tuple["Shell | LooseFaces", "Component | CloudPoints"], ...]
-"""What may hold something, and what that may be."""
+_Sides = tuple[tuple[Holder, "np.ndarray | CloudPoints"], ...]
+"""What may hold something, and (m, 3) points [m] of what that may be."""
 
 
 class PossibleContainment:
@@ -99,7 +76,7 @@ class PossibleContainment:
     ) -> np.ndarray:
         """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch.
 
-        Where these are steps of a motion, loose faces are asked for now and then (`doubt.wound_by_loose`).
+        Where these are steps of a motion, loose faces are asked for now and then (`STRIDE`).
         """
         found = np.zeros(len(worlds_from_a), dtype=bool)
         ways = (
@@ -107,16 +84,12 @@ class PossibleContainment:
             (self._of_b, worlds_from_b, worlds_from_a),
         )
         for sides, outer, inner in ways:
-            for shell, part in sides:
-                if isinstance(part, CloudPoints):
-                    _look_at_points(shell, part, outer, inner, found)
-                elif isinstance(shell, LooseFaces):
-                    stride = shell.stride if along_a_way else -1.0
-                    wound_by_loose(
-                        shell.triangles, shell.bounds, part.outermost, outer, inner, stride, found
-                    )
-                else:
-                    _look(shell, part, outer, inner, found)
+            for holder, points in sides:
+                if isinstance(points, CloudPoints):
+                    _look_at_cloud(holder, points, outer, inner, found)
+                    continue
+                rule = holder.rule if along_a_way else holder.rule._replace(stride=-1.0)
+                in_doubt(*holder.faces, points, rule, outer, inner, found)
         return found
 
 
@@ -127,149 +100,88 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> PossibleContainment | None:
 
 
 def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:
-    if isinstance(outer, PointCloud):
+    holders = () if isinstance(outer, PointCloud) else _kept(_holders, outer, _holders_of)
+    if not holders:
         return ()
-    shells, loose = _kept(_holders, outer, _holders_of)
     if isinstance(inner, PointCloud):
-        points = CloudPoints.of(inner) if shells or loose else None
-        return tuple((shell, points) for shell in (*shells, *loose) if points is not None)
-    parts = _kept(_parts, inner, _parts_of) if shells else ()
-    pieces = _kept(_pieces, inner, _pieces_of) if loose else ()
-    of_shells = (
-        (shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part)
-    )
-    return (
-        *of_shells,
-        *((shell, part) for shell in loose for part in pieces if _may_hold(shell, part)),
+        points = CloudPoints.of(inner)
+        return tuple((holder, points) for holder in holders)
+    return tuple(
+        (holder, points)
+        for holder in holders
+        for points in _points_asked(holder, inner)
+        if not holder.rule.by_one or _may_hold(holder, points)
     )
 
 
-def _may_hold(shell: Shell | LooseFaces, part: Component) -> bool:
-    """False if two corners of the part are farther apart than any two points within the shell's bounds."""
-    breadth = np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max()
-    return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
+def _points_asked(holder: Holder, inner: Polyhedron) -> Iterator[np.ndarray]:
+    """(m, 3) [m] the corners of each component; where one decides for all, those outermost along the axes."""
+    if len(holder.loose) and len(inner.component_closed) > PIECES:
+        n_uses = np.bincount(inner.face_vertices, minlength=len(inner.vertices))
+        parts = (inner.vertices[n_uses > 0],)
+    else:
+        parts = _kept(_parts, inner, _parts_of)
+    for points in parts:
+        ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
+        yield points[ends] if holder.rule.by_one else points
 
 
-def _look(
-    shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
+def _may_hold(holder: Holder, outermost: np.ndarray) -> bool:
+    """False if two corners are farther apart than any two points within the holder's bounds."""
+    breadth = np.linalg.norm(outermost[::2] - outermost[1::2], axis=1).max()
+    return bool(breadth <= np.linalg.norm(holder.bounds[1] - holder.bounds[0]))
+
+
+def _look_at_cloud(
+    holder: Holder, cloud: CloudPoints, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
 ) -> None:
-    """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
-    asked = _near_a_hole if shell.few else _within_bounds
-    near = asked(shell, part, outer, inner)
-    if not near.any():
-        return
-    rows = np.flatnonzero(near & ~found)
-    if not len(rows):
-        return
-    least, most = np.empty(len(rows)), np.empty(len(rows))
-    points = part.points if shell.few else part.outermost
-    generalized_windings(shell.surface, points, outer[rows], inner[rows], least, most)
-    found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
-
-
-def _look_at_points(
-    shell: Shell | LooseFaces,
-    cloud: CloudPoints,
-    outer: np.ndarray,
-    inner: np.ndarray,
-    found: np.ndarray,
-) -> None:
-    """Sets `found` (n,) where a point of a cloud is in doubt, at poses (n, 4, 4) of the shell and its own."""
-    least, most, any_wound = np.empty(1), np.empty(1), np.zeros(1, dtype=bool)
+    """Sets `found` (n,) where a point of a cloud is in doubt, at poses (n, 4, 4) of the holder and its own."""
+    rule, is_loose = holder.rule._replace(by_one=False, stride=-1.0), len(holder.loose) > 0
     for k in np.flatnonzero(~found):
-        poses = outer[k : k + 1], inner[k : k + 1]
-        if isinstance(shell, LooseFaces):
-            for point in cloud.within(shell.bounds, outer[k], inner[k], one_of_each=True):
-                one = point[None]
-                wound_by_loose(shell.triangles, shell.bounds, one, *poses, -1.0, any_wound)
-            found[k], any_wound[0] = any_wound[0], False
-            continue
-        points = cloud.within(shell.bounds, outer[k], inner[k])
+        points = cloud.within(holder.bounds, outer[k], inner[k], one_of_each=is_loose)
         if len(points):
-            generalized_windings(shell.surface, points, *poses, least, most)
-            found[k] = most[0] > (DOUBTFUL if shell.few else MOSTLY)
+            poses = outer[k : k + 1], inner[k : k + 1]
+            in_doubt(*holder.faces, points, rule, *poses, found[k : k + 1])
 
 
-def _near_a_hole(shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
-    """(n,) False where the caps are seen under at most `DOUBTFUL` from all of the part: the search has decided."""
-    found = np.empty(len(outer), dtype=bool)
-    near_holes(shell.holes, shell.bounds, part.low, part.high, outer, inner, found)
-    return found
-
-
-def _within_bounds(
-    shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray
-) -> np.ndarray:
-    """(n,) True where the outermost corners of the part are within the body's bounds."""
-    points = (
-        part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2)
-        + (inner[:, :3, 3] - outer[:, :3, 3])[:, None]
-    )
-    points = points @ outer[:, :3, :3]
-    return ((points >= shell.bounds[0]) & (points <= shell.bounds[1])).all(axis=(1, 2))
-
-
-def _holders_of(shape: Polyhedron) -> _Holders:
-    found = open_faces_of(shape)
-    shells = tuple(
-        _shell(shape, closing, few)
-        for few, closing in ((True, found.few), (False, found.some))
-        if closing is not None and len(closing.caps)
-    )
-    stride = STRIDE * float(np.linalg.norm(shape.bounds[1] - shape.bounds[0]))
-    loose = (LooseFaces(found.loose, shape.bounds, stride),) if len(found.loose) > 3 else ()
-    return shells, loose
-
-
-def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
-    surface = surface_of(shape)
-    if not few:
-        corners = closing.caps.reshape(-1, 3)
-        surface = surface._replace(
-            turns=closing.turns.astype(np.int32),
-            caps=corners,
-            cap_starts=np.array([0, len(corners)]),
-        )
-    fans = [
-        closing.caps[start:end]
-        for start, end in zip(closing.loops, closing.loops[1:], strict=False)
-    ]
-    return Shell(
-        surface, few, shape.bounds, np.array([_ball_of(fan) for fan in (closing.caps, *fans)])
+def _holders_of(shape: Polyhedron) -> tuple[Holder, ...]:
+    return tuple(
+        Holder(surface, loose, shape.bounds, rule) for surface, loose, rule in _open_surfaces(shape)
     )
 
 
-def _ball_of(fan: np.ndarray) -> tuple[float, ...]:
-    """(centre, radius [m], area [m^2]) of triangles (n, 3, 3)."""
-    centre = fan.mean(axis=(0, 1))
-    sides = fan[:, 1:] - fan[:, :1]
-    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
-    radius = np.linalg.norm(fan - centre, axis=2).max()
-    return (*centre, radius * (1.0 + 1e-12), area * (1.0 + 1e-12))
+def _open_surfaces(shape: Polyhedron) -> Iterator[tuple[Surface, np.ndarray, OutsideRule]]:
+    nothing = np.empty((0, 3, 3))
+    few, some, loose = closing_of(shape), closing_of(shape, FEW, SOME), loose_triangles(shape)
+    if few is not None and len(few.caps):
+        yield surface_of(shape), nothing, FAULTY
+    if some is not None and len(some.caps):
+        yield _with(surface_of(shape), *some), nothing, OPEN
+    if len(loose) > 3:
+        stride = STRIDE * float(np.linalg.norm(shape.bounds[1] - shape.bounds[0]))
+        rule = OutsideRule(most=WOUND, by_one=True, near_caps=False, stride=stride)
+        yield _with(surface_of(shape), np.zeros(shape.n_faces), nothing), loose, rule
 
 
-def _parts_of(shape: Polyhedron) -> tuple[Component, ...]:
+def _with(surface: Surface, turns: np.ndarray, caps: np.ndarray) -> Surface:
+    corners = caps.reshape(-1, 3)
+    starts = np.array([0, len(corners)])
+    return surface._replace(turns=turns.astype(np.int32), caps=corners, cap_starts=starts)
+
+
+def _parts_of(shape: Polyhedron) -> tuple[np.ndarray, ...]:
     of_corner = np.repeat(shape.face_component, np.diff(shape.face_starts))
     order = np.argsort(of_corner, kind="stable")
     ends = np.flatnonzero(np.diff(of_corner[order])) + 1
-    return tuple(
-        _part(shape.vertices[np.unique(rows)])
-        for rows in np.split(shape.face_vertices[order], ends)
-    )
+    of_parts = np.split(shape.face_vertices[order], ends)
+    return tuple(shape.vertices[np.unique(corners)] for corners in of_parts)
 
 
-def _pieces_of(shape: Polyhedron) -> tuple[Component, ...]:
-    if len(shape.component_closed) <= PIECES:
-        return _kept(_parts, shape, _parts_of)
-    return (_part(shape.vertices[np.unique(shape.face_vertices)]),)
-
-
-def _part(points: np.ndarray) -> Component:
-    ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
-    return Component(points, points[ends], points.min(axis=0), points.max(axis=0))
-
-
-def _kept(known: weakref.WeakKeyDictionary, shape: Polyhedron, make) -> tuple:
+def _kept(
+    known: weakref.WeakKeyDictionary[Polyhedron, tuple],
+    shape: Polyhedron,
+    make: Callable[[Polyhedron], tuple],
+) -> tuple:
     if shape not in known:
         known[shape] = make(shape)
     return known[shape]

@@ -112,11 +112,11 @@ class Checker:
         pairs, _ = measured_pairs(case)
         bodies = [body.body_in(case) for pair in pairs for body in pair]
         require_no_shortfall(bodies, "a Checker")
-        self._doubtful = DoubtfulPairs(case, pairs)
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
         self._fixed, self._columns = _placing(case, self._names)
         self._layout = lay_out(case, pairs)
+        self._doubtful = DoubtfulPairs(case, pairs)
         self._is_in_world = self._layout.is_in_world
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))

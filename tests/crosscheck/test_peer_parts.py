@@ -14,8 +14,11 @@ from clearance.crosscheck.peer_run import (
 )
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.crosscheck.witness import point_triangle_distances
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.distance import distance
 from tests.crosscheck.sliding import box, rail_record
+from tests.made_cases import ball, faces_of
 
 
 def random_poses(rng: np.random.Generator, n: int) -> np.ndarray:
@@ -72,6 +75,18 @@ def test_a_cavity_is_outside():
     )
     points = np.array([[0.0, 0.0, 0.0], [0.75, 0.0, 0.0], [1.5, 0.0, 0.0]])
     assert is_inside(triangle_soup(shell), points).tolist() == [False, True, False]
+
+
+def test_before_a_hole_the_peer_says_inside_where_the_package_says_contact():
+    """By the faces alone, which are there on three quarters of all sides, or are not."""
+    whole = ball(1.0, 2)
+    outer = Polyhedron(whole.vertices, faces_of(whole)[2:])
+    points = whole.centres[:2].mean(axis=0) + np.random.default_rng(5).normal(
+        scale=0.1, size=(200, 3)
+    )
+    found = is_inside(triangle_soup(outer), points)
+    ours = [distance(outer, PointCloud([point], 1e-9)).inside == "yes" for point in points]
+    assert 20 < found.sum() < 180 and found.tolist() == ours
 
 
 def test_bounds_never_exceed_what_samples_show():

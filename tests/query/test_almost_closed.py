@@ -6,8 +6,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import trimesh
+from scipy.spatial import ConvexHull
 
 from clearance import Polyhedron, Query, box, contact, distance
+from clearance.crosscheck.containment import winding_number
+from clearance.crosscheck.triangles import triangle_soup
 from clearance.geometry.closing import FEW, SOME, closing_of
 from tests import oracle
 from tests.made_cases import at, ball, dented, faces_of
@@ -164,3 +168,78 @@ def test_solids_of_patches_that_do_not_meet_and_two_sided_ones_are_undecided_by_
             assert distance(CUBE, outer, pose_a=place).inside == inside
             many = Query(outer, CUBE).distances(None, [place, place])
             assert many.undecided.tolist() == [inside == "undecided"] * 2
+
+
+def turns_round(shape: Polyhedron, points: np.ndarray) -> np.ndarray:
+    """(n,) the winding numbers of what is there, added up face by face: neither caps nor rays."""
+    soup = triangle_soup(shape)
+    return np.abs(winding_number(soup.corners, points, soup.turns))
+
+
+def without(shape: Polyhedron, towards: np.ndarray, n_faces: int) -> Polyhedron:
+    """The shape less the faces that reach farthest."""
+    out = set(np.argsort(shape.centres @ towards)[-n_faces:].tolist())
+    return Polyhedron(shape.vertices, [f for i, f in enumerate(faces_of(shape)) if i not in out])
+
+
+@pytest.mark.parametrize("n_faces", [1, 2, 3])
+def test_three_quarters_of_all_directions_are_inside_and_one_quarter_is_outside(
+    n_faces: int,
+) -> None:
+    """Of small boxes before, in and past a hole that is not flat, by the solid angles of all faces."""
+    random = np.random.default_rng(n_faces)
+    outer = without(dented(random, 2, 0.4), random.normal(size=3), n_faces)
+    closing, tiny = closing_of(outer), box((2.0**-12,) * 3)
+    assert closing is not None
+    hull = ConvexHull(outer.vertices).equations
+    n_of = dict.fromkeys(("yes", "undecided", "no"), 0)
+    for point in random.choice(closing.caps.mean(axis=1), 400):
+        place = at(*(point + random.normal(scale=0.15, size=3)))
+        near = distance(outer, tiny, pose_b=place)
+        if near.contact and near.inside == "no":
+            continue  # it meets the surface
+        corners = tiny.vertices + place[:3, 3]
+        if (corners @ hull[:, :3].T + hull[:, 3] > 0.0).any(axis=1).all():
+            continue  # it is beside all faces
+        turns = turns_round(outer, corners)
+        if (np.abs(turns[:, None] - (0.25, 0.75)) < 1e-3).any():
+            continue  # some corners are on this side and some on that
+        inside = "yes" if turns[0] > 0.75 else "undecided" if turns.max() > 0.25 else "no"
+        assert near.inside == inside
+        n_of[inside] += 1
+    assert min(n_of.values()) > 10
+
+
+def test_what_decides_is_what_is_seen_not_which_caps_close_a_hole() -> None:
+    """Before bent holes whose caps cover more than a quarter one by one, and less where they cancel."""
+    n_cancel = seed = 0
+    while n_cancel < 6:
+        random = np.random.default_rng(seed)
+        seed += 1
+        whole = dented(random, 2, 0.4)
+        outer = without(whole, random.normal(size=3), 3)
+        closing = closing_of(outer)
+        if closing is None:
+            continue
+        for point in closing.caps.mean(axis=(0, 1)) + random.normal(scale=0.1, size=(200, 3)):
+            caps = [abs(winding_number(cap[None], point[None])[0]) for cap in closing.caps]
+            if turns_round(outer, point[None])[0] < 0.751 or sum(caps) < 0.251:
+                continue
+            n_cancel += 1
+            corner = [Fraction(x) for x in point.tolist()]
+            assert oracle.contains(corner, whole.vertices, faces_of(whole))
+            assert distance(outer, box((2.0**-12,) * 3), pose_b=at(*point)).contact
+
+
+@pytest.mark.parametrize("place", [(0.0625, 0.0625), (0.03125, 0.0625), (0.09375, 0.015625)])
+def test_corners_exactly_on_a_cap_are_undecided(place: tuple[float, float]) -> None:
+    """A box that stands on a hole of two triangles in a flat wall: on their common edge, or within one."""
+    mesh = trimesh.creation.box((1.0, 1.0, 1.0)).subdivide().subdivide().subdivide()
+    low, high = mesh.triangles.min(axis=1), mesh.triangles.max(axis=1)
+    is_hole = ((low == (0.0, 0.0, 0.5)) & (high == (0.125, 0.125, 0.5))).all(axis=1)
+    assert is_hole.sum() == 2
+    outer = Polyhedron(mesh.vertices, mesh.faces[~is_hole].tolist())
+    standing = box((2.0**-8,) * 3).transformed(at(*place, 0.5 + 2.0**-9))
+    near = distance(outer, standing)
+    assert (near.contact, near.inside) == (False, "undecided")
+    assert distance(outer, standing, pose_b=at(0.0, 0.0, 0.25)).inside == "no"

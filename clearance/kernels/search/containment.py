@@ -7,10 +7,11 @@ may meet are opened. Where the ray meets an edge or a corner, the point is moved
 infinitely small e, in thought: the signs of the predicates (`predicates`) then follow from coordinates, so that
 no ray is a special case. Source: Edelsbrunner & Mücke 1990, simulation of simplicity.
 
-Components that are closed but for a few faults are counted with the caps that close them (`geometry.closing`), so
-that their number is whole and exact, too. The generalized winding number of their faces alone (Jacobson, Kavan &
-Sorkine-Hornung 2013) differs from it by the caps' solid angle in turns. Where that is at most `DOUBTFUL`, no other
-caps give another number unless they are seen from there under three quarters of all directions.
+Components that are closed but for a few faults count with the caps that close them (`geometry.closing`), less the
+caps' solid angles. So the number is that of the faces alone, whatever the caps: the generalized winding number. It
+differs from a whole number by what is seen of all directions through the holes. Up to `MARGIN` that decides: caps
+that leave the point on the other side are seen under at least three quarters of all directions. Source: Jacobson,
+Kavan & Sorkine-Hornung 2013.
 """
 
 import math
@@ -41,14 +42,11 @@ AXIS = 2
 ROUNDING = 512.0 * 2.0**-53
 """Rounding of a moved point, relative to the sum of the coordinates' magnitudes, with room."""
 
-DOUBTFUL = 0.25
-"""[turns] Caps that are seen under more leave it open whether a point is inside."""
+MARGIN = 0.25
+"""[turns] A point is outside up to this winding number, inside from 1 less this on, and undecided in between."""
 
-ROUNDING_OF_ANGLES = 1e-5
-"""[rad] More than rounding, 2^-48 / `EDGE_ON`, makes of a triangle's solid angle."""
-
-EDGE_ON = 1e-9
-"""[-] A triangle with an edge straight through the point, but for so much, counts as half of all directions."""
+ON_IT = 1e-9
+"""[-] Of the product of the distances of its corners: a point as near a triangle, or an edge of it, is on it."""
 
 
 @inline
@@ -135,39 +133,17 @@ def _crossings(surface, face, side, x, exact):
 
 @inline
 def solid_angle(a, b, c):
-    """[rad] between 0 and 2 pi, of the triangle with corners at `a`, `b`, `c` from the origin.
+    """[rad] of the triangle with corners at `a`, `b`, `c` from the origin, positive where seen from behind.
 
+    NaN where the origin is on the triangle (`ON_IT`).
     Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
     """
     la, lb, lc = np.sqrt(dot(a, a)), np.sqrt(dot(b, b)), np.sqrt(dot(c, c))
-    volume = abs(dot(a, cross(b, c)))
+    volume = dot(a, cross(b, c))
     spread = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
-    if volume + abs(spread) <= EDGE_ON * la * lb * lc:
-        return 2.0 * math.pi
+    if max(abs(volume), spread) <= ON_IT * la * lb * lc:
+        return np.nan
     return 2.0 * math.atan2(volume, spread)
-
-
-@inline
-def _turns_of_caps(surface, body, x):
-    """[turns] the solid angles of the body's caps from `x` in its frame, added up whatever way they face."""
-    total = 0.0
-    first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
-    for i in range(first, last, 3):
-        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
-        total += solid_angle(sub(a, x), sub(b, x), sub(c, x)) + ROUNDING_OF_ANGLES
-    return total / (4.0 * math.pi)
-
-
-@inline
-def signed_turns_of_caps(surface, body, x):
-    """[turns] the solid angle of the body's caps from `x` in its frame, positive where seen from behind."""
-    total = 0.0
-    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
-        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
-        a, b, c = sub(a, x), sub(b, x), sub(c, x)
-        angle = solid_angle(a, b, c)
-        total += angle if dot(a, cross(b, c)) > 0.0 else -angle
-    return total / (4.0 * math.pi)
 
 
 class Probe(NamedTuple):
@@ -193,6 +169,21 @@ def _wait_for_children(surface, node, waiting, n_waiting):
     return n_waiting
 
 
+@inline
+def _gained_by_caps(surface, body, side, probe, exact):
+    """[turns] what the ray from a point counts of the body's caps, less their solid angles; NaN on a cap."""
+    number, angles = 0, 0.0
+    vertex = PosedVertex(probe.vertex, 1 - side)
+    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
+        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
+        one, two, three = PosedVertex(a, side), PosedVertex(b, side), PosedVertex(c, side)
+        if not _beside(exact, one, two, three, vertex):
+            number += _crossing(one, two, three, vertex, exact)
+        angle = abs(solid_angle(sub(a, probe.x), sub(b, probe.x), sub(c, probe.x)))
+        angles += angle if orient_posed(one, two, three, vertex, exact) > 0 else -angle
+    return number - angles / (4.0 * math.pi)
+
+
 @kernel
 def winding_number(
     surface: Surface,
@@ -202,8 +193,10 @@ def winding_number(
     frames: Frames,
     exact: ExactScratch,
     nodes: Shorts2,
-) -> int:
-    """How often the closed components of a body wind round a point that is not on its surface, exactly.
+) -> float:
+    """How often the components of a body wind round a point that is not on its surface.
+
+    Exactness: a whole number of a body without caps; else what is not whole is to rounding, and NaN on a cap.
 
     Args:
         is_b: True if the body is b.
@@ -229,15 +222,7 @@ def winding_number(
             number += np.int64(surface.turns[first]) * _crossings(
                 surface, first, side, vertex, exact
             )
-    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
-        one, two = (
-            PosedVertex(row(surface.caps, i), side),
-            PosedVertex(row(surface.caps, i + 1), side),
-        )
-        three = PosedVertex(row(surface.caps, i + 2), side)
-        if not _beside(exact, one, two, three, vertex):
-            number += _crossing(one, two, three, vertex, exact)
-    return number
+    return number + _gained_by_caps(surface, body, side, probe, exact)
 
 
 @inline
@@ -250,8 +235,7 @@ def _is_inside(one, at, two, body_two, is_a, frames, scratch):
     if in_box(two, two.roots[body_two], x, away):
         probe = Probe(row(one.exact, at), x, away)
         arguments = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
-        number = winding_number(*arguments)
-        inside = number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL
+        inside = abs(winding_number(*arguments)) >= 1.0 - MARGIN
     return inside, v, x
 
 
