@@ -31,11 +31,11 @@ TRUE = [0.8, 0.5, 0.2, 0.0001]
 
 
 def test_right_answers_agree():
-    told = []
-    check = cross_check(passing(TRUE), progress=lambda done, total: told.append((done, total)))
+    reported = []
+    check = cross_check(passing(TRUE), progress=lambda done, total: reported.append((done, total)))
     assert check.agrees and check.n_steps == 4
     assert check.greatest_difference < 1e-12 and check.worst_witness_error < 1e-12
-    assert told == [(4, 4)]
+    assert reported == [(4, 4)]
     diagonal = np.linalg.norm([1.1 + 3.1, 0.2, 0.2])
     assert check.tolerance == pytest.approx(CROSS_CHECK * diagonal, rel=1e-12)
     assert check.peer.startswith("python-fcl")
@@ -75,8 +75,8 @@ def test_a_witness_off_its_body_is_listed_though_the_distance_is_right():
 
 def test_unmeasured_pairs_take_no_part():
     rows = [(3.0 - 0.2, "far", (-0.1, 0, 0), (-2.9, 0, 0))]
-    left_out = (Omission("slider", "near", "allowed"),)
-    assert cross_check(rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows, left_out)).agrees
+    omitted = (Omission("slider", "near", "allowed"),)
+    assert cross_check(rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows, omitted)).agrees
     record = rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows)
     assert cross_check(record).disagreements[0].peer_obstacle == "near"
 

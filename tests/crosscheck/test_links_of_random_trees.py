@@ -100,7 +100,7 @@ class RandomTree:
 
 
 @pytest.mark.parametrize("first", range(0, 100, 25))
-def test_no_pair_but_neighbours_and_rigid_ones_is_left_out(first):
+def test_no_pair_but_neighbours_and_rigid_ones_is_omitted(first):
     n_asked = n_touching = 0
     for seed in range(first, first + 25):
         tree = RandomTree(seed)
@@ -110,7 +110,7 @@ def test_no_pair_but_neighbours_and_rigid_ones_is_left_out(first):
                 with pytest.raises(NothingToMeasure):
                     cl.check(tree.case(), certify=False, contact="none")
             continue
-        told = cl.check(tree.case(), certify=False, contact="none").record.clearances
-        np.testing.assert_allclose(told, least, rtol=0.0, atol=2e-6)
+        reported = cl.check(tree.case(), certify=False, contact="none").record.clearances
+        np.testing.assert_allclose(reported, least, rtol=0.0, atol=2e-6)
         n_asked, n_touching = n_asked + 1, n_touching + sum(one == 0.0 for one in least)
     assert n_asked > 8 and n_touching > 8

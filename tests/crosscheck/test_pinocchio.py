@@ -177,12 +177,12 @@ def their_distances(
     ]
     plain = {link for link, mesh in zip(opinion.links, is_mesh, strict=True) if not mesh}
     found: dict[frozenset[str], float] = {}
-    for pair, told in zip(
+    for pair, reported in zip(
         opinion.geometry.collisionPairs, geometry_data.distanceResults, strict=True
     ):
         key = frozenset((opinion.links[pair.first], opinion.links[pair.second]))
         if plain.isdisjoint(key):
-            found[key] = min(found.get(key, np.inf), max(0.0, told.min_distance))
+            found[key] = min(found.get(key, np.inf), max(0.0, reported.min_distance))
     return found
 
 

@@ -29,7 +29,7 @@ def test_every_step_agrees_and_links_have_their_robots_names() -> None:
     assert set(run.steps["body_a"].to_pylist()) <= {"flying/l6", "second/l6"}
 
 
-def test_a_link_left_out_of_one_robot_is_asked_of_the_other() -> None:
+def test_a_link_omitted_for_one_robot_is_measured_for_the_other() -> None:
     """Both have an l6: that of the first robot is left out, the other's is not."""
     case = two_robots(exclude_links=("l6",))
     run = cl.check(case, cross_check=True)

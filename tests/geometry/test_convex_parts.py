@@ -87,7 +87,7 @@ def test_without_coacd_the_hull_stands_for_a_concave_body(monkeypatch):
 @needs(boolean)
 @needs(decompose)
 @pytest.mark.cold
-def test_a_decomposition_that_dies_is_told_and_costs_nothing_else(monkeypatch, tmp_path):
+def test_a_decomposition_that_dies_is_reported_and_costs_nothing_else(monkeypatch, tmp_path):
     script = tmp_path / "dies.py"
     script.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
     monkeypatch.setattr(decompose, "_PROCESS", script)

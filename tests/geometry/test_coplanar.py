@@ -124,7 +124,7 @@ def test_equal_vertices_and_signed_zeros_are_one():
     assert shape.n_faces == 6 and len(shape.vertices) == 8 and shape.closed
 
 
-def test_coordinates_beyond_the_exact_range_are_left_alone():
+def test_coordinates_beyond_the_exact_range_are_unchanged():
     square = np.array([[0, 0, 0], [1e-200, 0, 0], [1e-200, 1e-200, 0], [0, 1e-200, 0]])
     assert merged(square, [[0, 1, 2], [0, 2, 3]]).n_faces == 2
 

@@ -94,7 +94,7 @@ def test_a_box_knows_itself():
     assert shape.flipped().volume == -6.0
 
 
-def test_an_open_or_torn_surface_is_told_from_a_closed_one():
+def test_an_open_or_torn_surface_is_distinguished_from_a_closed_one():
     shape = box((1, 1, 1))
     faces = np.split(shape.face_vertices, shape.face_starts[1:-1])
     opened = Polyhedron(shape.vertices, faces[1:])

@@ -73,7 +73,7 @@ def test_circles_about_nearly_one_centre_are_apart_by_the_radii_less_the_centres
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_polyline_alongside_a_circle_is_told_to_the_last_digits(side):
+def test_a_polyline_alongside_a_circle_is_right_to_the_last_digits(side):
     """Its corners are on a circle of their own: outside, its sides come nearest, inside, its corners."""
     n, radius = 3000, 1.0 + side * 1e-3
     turn = 2.0 * math.pi * np.arange(n) / n

@@ -50,7 +50,7 @@ def test_arc_is_round_and_circle_closes():
     assert not circle.is_end.any()
 
 
-def test_corners_and_ends_are_told_from_smooth_joints():
+def test_corners_and_ends_are_distinguished_from_smooth_joints():
     assert Curve.polyline(SQUARE, closed=True).is_end.all()
     spline = Curve.bspline(np.random.default_rng(0).normal(size=(8, 2)))
     assert spline.is_end.sum() == 2

@@ -252,8 +252,8 @@ def test_a_chord_across_an_arch_meets_its_self_bisector():
     across = Curve.bezier([[-1.2, 0.5], [-0.4, 0.6], [0.4, 0.4], [1.2, 0.5]])
     found = hausdorff(across, arch).directed["a_to_b"]
     assert found.kind == "self_bisector"
-    feet_apart = [hausdorff_point(arch, found.point_a), found.distance]
-    assert feet_apart[0] == pytest.approx(feet_apart[1], abs=1e-14)
+    distance_of_feet = [hausdorff_point(arch, found.point_a), found.distance]
+    assert distance_of_feet[0] == pytest.approx(distance_of_feet[1], abs=1e-14)
 
 
 points = st.lists(st.tuples(st.integers(-8, 8), st.integers(-8, 8)), min_size=4, max_size=7)

@@ -56,8 +56,8 @@ def test_even_weights_change_no_point_and_keep_parameters(weights):
         rest, share = even.maps[k].astype(oracle.REAL) @ np.stack([1 - u, u])
         there = share / (rest + share)
         assert (there >= 0).all() and (there <= 1).all()
-        told = np.array([even.parameter_of(k, float(x)) for x in u])
-        assert np.abs(told - there.astype(float)).max() <= 1e-15
+        reported = np.array([even.parameter_of(k, float(x)) for x in u])
+        assert np.abs(reported - there.astype(float)).max() <= 1e-15
         fine = (there < 0.9) & (
             there >= 0
         )  # beyond, 1 - t has lost too many digits to compare points by it

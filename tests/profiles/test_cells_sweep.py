@@ -61,7 +61,7 @@ def held(case):
     return [c.window for c in case.carries if "/" in c.by]
 
 
-def assert_holds(profile, points, rng):
+def assert_contains(profile, points, rng):
     """Nothing of (n, 2) points is outside; some of them by rational arithmetic."""
     points = points.reshape(-1, 2)
     region = profile.region
@@ -81,11 +81,11 @@ def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
     found = cl.swept_profile(case, "xz", tolerance=1e-2)
     assert found.bound <= 1e-2
     for name in LINKS:
-        assert_holds(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
+        assert_contains(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
     for window in held(case):
         times = np.linspace(window.start, window.end, 100)[1:-1]
         for name in ("part", "lid"):
-            assert_holds(found, seen(case, name, times), rng)
+            assert_contains(found, seen(case, name, times), rng)
 
 
 def within_intervals(case, start, end, n):
@@ -127,7 +127,7 @@ def test_what_moves_by_itself_is_swept_where_it_is_named_and_only_there(seed):
     case, rng = cells.cell(seed), np.random.default_rng(seed)
     found = cl.swept_profile(case, "xz", links=[], obstacles=["door", "crate"], tolerance=1e-2)
     for name in ("door", "crate"):
-        assert_holds(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
+        assert_contains(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
     assert set(found.origin.links) == {"door", "crate"}
     of_robots = {one.label for one in swept_bodies(over_time(case), None, [])}
     assert of_robots == {*LINKS, "part", "lid"}

@@ -113,9 +113,11 @@ def test_the_course_is_the_motion(seed, bent):
     high = low + np.array([1.0, 0.25, 0.5, 0.125])
     course = chain_of(case, (motion,), 2).course(low, high)
     for s in (-1.0, -0.3, 0.0, 0.7, 1.0):
-        told = course.position + s * (course.speed + s * (course.bend / 2 + s * course.jerk / 6))
+        reported = course.position + s * (
+            course.speed + s * (course.bend / 2 + s * course.jerk / 6)
+        )
         at = 0.5 * (low + high) + 0.5 * s * (high - low)
-        assert told[:, 1:] == pytest.approx(interpolated(motion, at), abs=1e-12)
+        assert reported[:, 1:] == pytest.approx(interpolated(motion, at), abs=1e-12)
         assert positions_at(motion, at) == pytest.approx(interpolated(motion, at), abs=1e-12)
     assert (positions_at(motion, np.arange(3.0)) == motion.positions).all()
 

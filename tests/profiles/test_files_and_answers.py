@@ -212,9 +212,9 @@ def test_a_sweep_beyond_its_sketch_violates_the_case_and_the_page_shows_it(tmp_p
     assert not broken.passed and broken.status == "violated"
     assert broken.record.profiles[0].gap < -0.03
     broken.save(tmp_path)
-    told = json.loads((tmp_path / "summary.json").read_text())
-    assert told["verdict"] == "violated" and told["profiles"][0]["passed"] is False
-    assert "picture" not in told["profiles"][0]
+    reported = json.loads((tmp_path / "summary.json").read_text())
+    assert reported["verdict"] == "violated" and reported["profiles"][0]["passed"] is False
+    assert "picture" not in reported["profiles"][0]
     page = (tmp_path / "report.html").read_text()
     assert "<h2>Profiles</h2>" in page and "data:image/svg+xml" in page
 

@@ -132,7 +132,7 @@ def test_the_same_answer_each_time():
     assert one.dimensions == two.dimensions and one.clearance == two.clearance
 
 
-def test_the_sketch_itself_is_left_alone_and_a_copy_is_the_same():
+def test_the_sketch_itself_is_unchanged_and_a_copy_is_the_same():
     sketch = cl.Sketch.load(SKETCHES / "d_cell.yaml")
     before = [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
     cl.fit(sketch, SQUARE, "outside", starts=2)

@@ -47,6 +47,6 @@ def test_beyond_a_sharp_corner_a_point_is_outside_whichever_side_is_nearest(bulg
     points = np.array([[-0.1, 0.02], [-0.1, -0.02], [-1e-3, 1e-3], [1.0, 0.0], [3.1, 0.3]])
     other = ContourPieces([Contour(points, np.zeros(len(points)))])
     samples = np.arange(len(points)), np.zeros(len(points))
-    told = gaps_of_shape(closed.pieces, sides, other, samples).distance > 0.0
+    reported = gaps_of_shape(closed.pieces, sides, other, samples).distance > 0.0
     rows = [np.column_stack([needle.vertices, needle.bulges]).tolist()]
-    assert told.tolist() == [bool(inside(p.tolist(), rows)) for p in points]
+    assert reported.tolist() == [bool(inside(p.tolist(), rows)) for p in points]

@@ -27,7 +27,7 @@ NAMES = (
 )
 
 
-def told(near):
+def reported(near):
     """An answer without its counters, every bit of it."""
     numbers = [near.distance, near.error_bound, *near.point_a, *near.point_b]
     return [float(x).hex() for x in numbers] + [near.face_a, near.face_b, near.contact]
@@ -40,7 +40,7 @@ def polygon_answers(n):
         for name in NAMES
         for pair in zip(*FAMILIES[name](np.random.default_rng(41), n), strict=True)
     ]
-    return [told(polygon_distance(p, q)) for p, q in pairs]
+    return [reported(polygon_distance(p, q)) for p, q in pairs]
 
 
 def body_pairs(n):
@@ -56,7 +56,7 @@ def body_pairs(n):
 
 def body_answers(n):
     """Their answers."""
-    return [told(distance(a, b, pose_b=pose)) for a, b, pose in body_pairs(n)]
+    return [reported(distance(a, b, pose_b=pose)) for a, b, pose in body_pairs(n)]
 
 
 def answers_without_rules(n):
@@ -128,19 +128,19 @@ def main():
     os.environ.setdefault("PYTHONHASHSEED", "0")
     np.seterr(all="ignore")
     if sys.argv[1] == "rules":
-        told_now = {"all": body_answers(12), "without": answers_without_rules(12)}
+        reported_now = {"all": body_answers(12), "without": answers_without_rules(12)}
     elif sys.argv[1] == "meetings":
-        told_now = {
+        reported_now = {
             "meetings": meetings(12),
             "bounds": out_of_bounds_is_seen(),
             "compiles": "numba" in sys.modules,
         }
     else:
-        told_now = {
+        reported_now = {
             "polygons": polygon_answers(int(sys.argv[2])),
             "bounds": out_of_bounds_is_seen(),
         }
-    print(json.dumps(told_now))
+    print(json.dumps(reported_now))
 
 
 if __name__ == "__main__":

@@ -14,14 +14,14 @@ import numpy as np
 
 import clearance as cl
 from tests.made_cases import arm, at, dented, flying
-from tests.query.lane import body_pairs, out_of_bounds_is_seen, told
+from tests.query.lane import body_pairs, out_of_bounds_is_seen, reported
 
 
 def search() -> list:
     """Boxes apart, crossing and one in the other; a dented ball, whose features have concave edges."""
     rough = dented(np.random.default_rng(5), 1, 0.3, 0.3)
     pairs = [*body_pairs(6), (rough, rough, at(x=0.8)), (rough, rough, at(x=0.5, y=0.1))]
-    return [told(cl.distance(a, b, pose_b=pose)) for a, b, pose in pairs]
+    return [reported(cl.distance(a, b, pose_b=pose)) for a, b, pose in pairs]
 
 
 def sweep() -> list:

@@ -24,7 +24,7 @@ def way(rng: np.random.Generator, pace: float, turn: float) -> np.ndarray:
     return poses
 
 
-def apart_along_axes(bounds: np.ndarray, other: np.ndarray, m: np.ndarray) -> np.ndarray:
+def gaps_along_axes(bounds: np.ndarray, other: np.ndarray, m: np.ndarray) -> np.ndarray:
     """(n,) [m] how far a box that is seen by `m` (n, 4, 4) is from the first along that one's axes."""
     half, half_of_other = (bounds[1] - bounds[0]) / 2, (other[1] - other[0]) / 2
     away = m[:, :3, :3] @ other.mean(axis=0) + m[:, :3, 3] - bounds.mean(axis=0)
@@ -36,7 +36,7 @@ PACES = st.sampled_from([0.0, 1e-4, 0.01, 0.1, 0.5, 2.0])
 
 @settings(max_examples=200)
 @given(st.integers(0, 10**6), PACES, PACES, st.sampled_from([0.1, 1.0, 10.0]), st.booleans())
-def test_where_boxes_are_left_out_they_are_beside_each_other_and_else_never(
+def test_where_boxes_are_omitted_they_are_beside_each_other_and_else_never(
     seed: int, pace: float, turn: float, slow: float, stands: bool
 ) -> None:
     rng = np.random.default_rng(seed)
@@ -51,13 +51,13 @@ def test_where_boxes_are_left_out_they_are_beside_each_other_and_else_never(
     steps_together(boxes, np.array([[0, 1]]), np.ascontiguousarray(poses[:, : 2 - stands]), spans)
     seen = np.linalg.inv(poses[:, 0]) @ poses[:, 1]
     apart = np.maximum(
-        apart_along_axes(bounds[0], bounds[1], seen),
-        apart_along_axes(bounds[1], bounds[0], np.linalg.inv(seen)),
+        gaps_along_axes(bounds[0], bounds[1], seen),
+        gaps_along_axes(bounds[1], bounds[0], np.linalg.inv(seen)),
     )
     first, end = spans[0]
-    left_out = np.ones(N_STEPS, dtype=bool)
-    left_out[first:end] = False
-    assert (apart[left_out] > 0.0).all()
+    omitted = np.ones(N_STEPS, dtype=bool)
+    omitted[first:end] = False
+    assert (apart[omitted] > 0.0).all()
     largest = np.abs(poses[:, :, :3, 3]).sum() + np.abs(bounds).sum()
     if first < end:
         assert apart[[first, end - 1]].max() <= 2.0 * ROOM * largest

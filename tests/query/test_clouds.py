@@ -147,11 +147,11 @@ def test_a_hollow_round_points_is_not():
     assert distance(shell, PointCloud([[0.0, 0.0, 0.0], [1.2, 0.0, 0.0]], 0.1)).contact
 
 
-def without(solid, left_out):
+def without(solid, omitted):
     """The solid without the faces whose centres are so."""
     corners = np.split(solid.face_vertices, solid.face_starts[1:-1])
     return Polyhedron(
-        solid.vertices, [c for c, out in zip(corners, left_out, strict=True) if not out]
+        solid.vertices, [c for c, out in zip(corners, omitted, strict=True) if not out]
     )
 
 

@@ -23,7 +23,7 @@ def ball(n: int, seed: int, centre=(0.0, 0.0, 0.0)) -> Polytope:
     return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre)
 
 
-def certificate_holds(bodies, proof) -> bool:
+def certificate_is_right(bodies, proof) -> bool:
     """Weights times normals vanish, and weights times offsets do not exceed 0: nothing inside all."""
     rows = [bodies[k].half_spaces[f] for k, f in zip(proof.parts, proof.faces, strict=True)]
     total = proof.weights @ np.array(rows)
@@ -50,7 +50,7 @@ def test_the_deepest_point_is_strictly_inside_all(m):
             levels = [(b.offsets_about(met.point) / b.face_widths).min() for b in bodies]
             assert min(levels) == pytest.approx(met.depth, rel=1e-9)
         else:
-            assert certificate_holds(bodies, met.certificate)
+            assert certificate_is_right(bodies, met.certificate)
 
 
 def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():
@@ -64,7 +64,7 @@ def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():
         met, paper = common_point([a, b]), common_point_paper(a, b)
         assert met.relation == paper.relation
         if met.relation == "apart":
-            assert certificate_holds([a, b], met.certificate)
+            assert certificate_is_right([a, b], met.certificate)
             for normal in (met.certificate.normal, paper.certificate.normal):
                 assert (a.vertices @ normal).max() < (b.vertices @ normal).min()
         else:
@@ -78,7 +78,7 @@ def test_three_bodies_that_meet_in_pairs_only():
     assert common_point(bars).relation == "overlap"
     bars[2] = Polytope((CUBE - 0.5) * (1, 1, 4) + (1.2, 0.0, 0.0))
     met = common_point(bars)
-    assert met.relation == "apart" and certificate_holds(bars, met.certificate)
+    assert met.relation == "apart" and certificate_is_right(bars, met.certificate)
 
 
 @pytest.mark.parametrize("shift", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0.5, 0.25)])

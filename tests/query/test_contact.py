@@ -32,7 +32,7 @@ def l_prism():
     )
 
 
-def holds_what_it_says(a, b, pose_a, pose_b, found):
+def is_what_it_says(a, b, pose_a, pose_b, found):
     """The translation parts the bodies; one shorter than the lower bound does not, in this direction."""
 
     def after(length):
@@ -56,7 +56,7 @@ def test_boxes_that_overlap_by_d():
     assert found.centroid == pytest.approx([0.45, 0.05, 0.1], rel=1e-13)
     assert found.region.volume == pytest.approx(found.volume, rel=1e-13)
     assert found.exact == (True, True) and found.notes == ()
-    holds_what_it_says(BOX, BOX, pose, np.eye(4), found)
+    is_what_it_says(BOX, BOX, pose, np.eye(4), found)
 
 
 def test_the_answer_moves_with_the_bodies():
@@ -98,10 +98,10 @@ def test_two_octahedra_share_a_smaller_one():
     assert found.penetration == pytest.approx((2.0 - 1.5) / np.sqrt(3.0), rel=1e-12)
     exact = cl.intersect([cl.Polytope(corners), cl.Polytope(corners + 0.5)]).volume
     assert found.volume == pytest.approx(exact, rel=1e-12)
-    holds_what_it_says(body, body, at(0.5, 0.5, 0.5), np.eye(4), found)
+    is_what_it_says(body, body, at(0.5, 0.5, 0.5), np.eye(4), found)
 
 
-def test_facets_are_told_and_bound_both_figures():
+def test_facets_are_reported_and_bound_both_figures():
     rod = cl.cylinder(0.1, 0.5)
     found = cl.contact(rod, BOX, pose_a=at(0.55, 0.1, 0.2))
     true_volume = 0.5 * (0.1**2 * np.arccos(0.5) - 0.05 * np.sqrt(0.1**2 - 0.05**2))
@@ -125,7 +125,7 @@ def test_a_concave_body_is_left_by_its_hollow():
     )  # the region is convex, 0.1 wide
     assert found.direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
     assert not found.exact[0]
-    holds_what_it_says(peg, body, pose, np.eye(4), found)
+    is_what_it_says(peg, body, pose, np.eye(4), found)
     rough = cl.contact(peg, body, pose_a=pose, bounded=False)
     assert (rough.penetration, rough.penetration_at_least) == (found.penetration, 0.0)
     assert np.array_equal(rough.direction, found.direction)
@@ -162,7 +162,7 @@ def test_a_rod_across_a_pipe_overlaps_its_two_walls_only():
     found = cl.contact(rod, tube)
     assert 2 * 0.01 * 4e-4 <= found.volume < 2 * 0.0107 * 4e-4
     assert found.volume_at_least < 2 * 0.01 * 4e-4
-    holds_what_it_says(rod, tube, np.eye(4), np.eye(4), found)
+    is_what_it_says(rod, tube, np.eye(4), np.eye(4), found)
 
 
 @WITH_LIBRARIES
@@ -173,7 +173,7 @@ def test_two_concave_bodies_keep_every_promise():
     for _ in range(3):
         pose = at(*random.uniform(-0.8, 0.8, 3), turn=random.uniform(0, 6))
         found = cl.contact(body, body, pose_a=pose)
-        holds_what_it_says(body, body, pose, np.eye(4), found)
+        is_what_it_says(body, body, pose, np.eye(4), found)
 
 
 def test_a_surface_without_an_inside_is_bounded_not_invented():
@@ -193,7 +193,7 @@ def test_without_the_libraries_depth_and_volume_are_bounds(monkeypatch):
     assert found.penetration >= 0.1 - 1e-12 and found.volume >= 0.016 - 1e-12
     assert found.volume_at_least == 0.0 and not any(found.exact)
     assert "clearance[contact]" in " ".join(found.notes)
-    holds_what_it_says(peg, l_prism(), pose, np.eye(4), found)
+    is_what_it_says(peg, l_prism(), pose, np.eye(4), found)
 
 
 def test_a_flat_body_has_no_depth_and_says_so():

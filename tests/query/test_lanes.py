@@ -55,6 +55,8 @@ def test_no_pruning_rule_changes_an_answer(rules):
     """Of several contacts the first that is met is told; rules that bound boxes change which one that is."""
     assert len(rules["without"]) == 5
     for name, answers in rules["without"].items():
-        for without, told in zip(answers, rules["all"], strict=True):
-            assert without[-1] == told[-1], name
-            assert without == told or (told[-1] and without[0] == told[0] and "boxes" in name), name
+        for without, reported in zip(answers, rules["all"], strict=True):
+            assert without[-1] == reported[-1], name
+            assert without == reported or (
+                reported[-1] and without[0] == reported[0] and "boxes" in name
+            ), name

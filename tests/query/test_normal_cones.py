@@ -268,8 +268,8 @@ def asked(a, b, poses):
     held = hold_pair(a, b, ROOM, new_scratch())
     nearest_at_poses(held, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
     apart = numbers[:, 0] > 0.0
-    told = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
-    return told, counts[:, 2:4].sum(axis=0)
+    reported = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
+    return reported, counts[:, 2:4].sum(axis=0)
 
 
 def bare(surface):

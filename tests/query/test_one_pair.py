@@ -14,7 +14,7 @@ from tests.made_cases import at, ball
 from tests.strategies import rotations
 
 
-def told(near):
+def reported(near):
     """An answer bit by bit, with its counters."""
     numbers = [near.distance, near.error_bound, *near.point_a, *near.point_b]
     return [float(x).hex() for x in numbers] + [near.face_a, near.face_b, near.contact, near.tally]
@@ -29,9 +29,10 @@ def poses(n):
 
 def test_an_answer_does_not_depend_on_what_was_asked_before():
     a, b = ball(1.0, 2), cl.box((1.0, 0.5, 0.2))
-    again = [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+    again = [reported(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
     fresh = [
-        told(cl.distance(ball(1.0, 2), cl.box((1.0, 0.5, 0.2)), pose_b=pose)) for pose in poses(40)
+        reported(cl.distance(ball(1.0, 2), cl.box((1.0, 0.5, 0.2)), pose_b=pose))
+        for pose in poses(40)
     ]
     assert again == fresh
     assert {near[10] for near in again} == {True, False}
@@ -39,12 +40,12 @@ def test_an_answer_does_not_depend_on_what_was_asked_before():
 
 def test_threads_do_not_disturb_each_other():
     a, b = ball(1.0, 2), cl.box((1.0, 0.5, 0.2))
-    alone = [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+    alone = [reported(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
     start = threading.Barrier(4)
 
     def ask(_):
         start.wait()
-        return [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+        return [reported(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
 
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(ask, range(4))) == [alone] * 4

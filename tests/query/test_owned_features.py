@@ -123,7 +123,7 @@ def test_nothing_changes_but_the_work(name, cut, seed, other):
         assert n_faces <= n_all
 
 
-def test_most_face_pairs_are_left_out_where_corners_are_nearest():
+def test_most_face_pairs_are_omitted_where_corners_are_nearest():
     """The nearest corner of a ball lies in some six faces, of which one owns it; here without normal cones."""
     ball = surface_of(BODIES["ball"])
     ball = ball._replace(cones=without_cones(ball.cones))

@@ -135,11 +135,14 @@ def test_bounds_alone_are_bounds(seed):
     a, b, pose = cl.box((0.3, 0.2, 0.5)), cl.box((1.0, 0.4, 0.6)), posed(seed, 0.2)
     near = cl.distance(a, b, pose_a=pose)
     assert near.contact
-    truth, told = cl.contact(a, b, pose_a=pose), bounded_contact(a, b, pose, near.point_b, "why")
-    assert told.penetration_at_least <= truth.penetration <= told.penetration
-    assert told.volume_at_least <= truth.volume <= told.volume
+    truth, reported = (
+        cl.contact(a, b, pose_a=pose),
+        bounded_contact(a, b, pose, near.point_b, "why"),
+    )
+    assert reported.penetration_at_least <= truth.penetration <= reported.penetration
+    assert reported.volume_at_least <= truth.volume <= reported.volume
     moved = pose.copy()
-    moved[:3, 3] += told.penetration * (1.0 + 1e-9) * told.direction
+    moved[:3, 3] += reported.penetration * (1.0 + 1e-9) * reported.direction
     assert cl.distance(a, b, pose_a=moved).distance > 0.0
 
 

@@ -214,7 +214,7 @@ def rounded_rectangle():
     return rounded((0, 0), (6, 4), 0.5)
 
 
-def rounded_rectangle_held():
+def fixed_rounded_rectangle():
     """Its sides are parallel already when their distances are given."""
     from scenes.sketches.make_zones import rounded
 

@@ -97,7 +97,7 @@ class Drawing:
         c, *ends = self.arcs[k]
         return along @ (p[c] - p[next(iter(set(ends) & set(segment)))])
 
-    def freedom_left(self, points, radii):
+    def remaining_freedom(self, points, radii):
         """Degrees of freedom at solved points (n, 2) beyond placing the whole, by rank of differences."""
         x, h = np.concatenate([points.ravel(), radii]), 1e-6
         columns = [

@@ -1,5 +1,5 @@
 """The constraints once more, as formulas of positions, directions and radii only; shares no code with the
-package. A sketch is written out as named numbers; `freedom_left` counts by finite differences."""
+package. A sketch is written out as named numbers; `remaining_freedom` counts by finite differences."""
 
 import numpy as np
 
@@ -91,7 +91,7 @@ class Numbers:
             out += violation(c.kind, what, e, c.number, c.options.get("inside", False))
         return np.array(out, float)
 
-    def freedom_left(self):
+    def remaining_freedom(self):
         """Degrees of freedom at the present place beyond a rigid motion of the whole, by rank."""
         x = np.array(self.free)
         h, columns = 1e-6, []

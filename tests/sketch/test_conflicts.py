@@ -64,7 +64,7 @@ def test_directions_that_contradict():
     assert result.status == "inconsistent" and sorted(result.conflicts) == ["p01", "p12", "skew"]
 
 
-def test_redundant_is_told_from_inconsistent():
+def test_redundant_is_distinguished_from_inconsistent():
     s = Sketch()
     lines = [s.line((0, k), (1, k + 0.1 * k)) for k in range(3)]
     s.parallel(lines[0], lines[1]), s.parallel(lines[1], lines[2])
@@ -183,7 +183,7 @@ def test_what_no_trial_tells_apart_is_named_as_a_whole():
     assert "mirrored" in result.reason
 
 
-def test_a_side_longer_than_a_hundred_others_together_is_told_without_a_trial(monkeypatch):
+def test_a_side_longer_than_a_hundred_others_together_is_reported_without_a_trial(monkeypatch):
     """What is left without any one side is an open chain."""
     turn = 2.0 * np.pi * np.arange(101) / 101
     corners = 101.0 / (2.0 * np.pi) * np.column_stack([np.cos(turn), np.sin(turn)])

@@ -35,7 +35,7 @@ def test_freedom_is_that_of_the_equations_which_are_regular_at_contacts(seed):
     d, s, p, result = solved(seed)
     points = np.array([q.position for q in p])
     radii = [e.radius for e in s.entities.values() if e.what == "circle"]
-    assert result.freedom == d.freedom_left(points, radii)
+    assert result.freedom == d.remaining_freedom(points, radii)
     assert result.status == ("under" if result.freedom else "well")
 
 

@@ -34,7 +34,7 @@ TRUTH = {
     outlines.slot_with_parallel_sides: ("over", 0),
     outlines.keyhole: ("well", 0),
     outlines.rounded_rectangle: ("under", 2),
-    outlines.rounded_rectangle_held: ("well", 0),
+    outlines.fixed_rounded_rectangle: ("well", 0),
     outlines.fillet_of_given_radius_in_a_given_corner: ("well", 0),
     outlines.fillet_and_its_height: ("over", 0),
     outlines.bracket: ("well", 0),

@@ -146,7 +146,7 @@ def _checked(s, result):
     assert result.solved, result.reason
     assert result.residual <= 1e-12 * max(size, 1.0) or result.redundant
     assert np.abs(numbers.violations(np.array(numbers.free))).max() <= 1e-10 * max(size, 1.0)
-    return numbers.freedom_left()
+    return numbers.remaining_freedom()
 
 
 @SOME
@@ -230,7 +230,7 @@ def test_over_constrained(count, seed):
     if not pairs:
         return
     p, q = pairs[seed % len(pairs)]
-    if np.linalg.norm(p.position - q.position) < 0.3 or Numbers(b.s).freedom_left()[0]:
+    if np.linalg.norm(p.position - q.position) < 0.3 or Numbers(b.s).remaining_freedom()[0]:
         return
     extra = b.s.distance(p, q, name="extra")
     b.shake(0.002)

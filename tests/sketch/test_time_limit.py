@@ -98,7 +98,7 @@ def drawn_places(sketch: Sketch) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("n", [5, 6, 7])
-def test_the_best_placement_by_then_is_told_with_its_errors_and_what_does_not_close(n):
+def test_the_best_placement_by_then_is_reported_with_its_errors_and_what_does_not_close(n):
     sketch = cluster(0.4)
     found = solved_with(sketch, TimeLimit(10.0, Clock(n)))
     assert found.stopped
@@ -119,7 +119,7 @@ def test_a_solved_sketch_has_no_errors_and_nothing_is_unclosed():
     assert all((found.best[k] == p).all() for k, p in drawn_places(sketch).items())
 
 
-def test_a_part_that_closes_is_not_told_as_unclosed():
+def test_a_part_that_closes_is_not_reported_as_unclosed():
     """A triangle beside two points with two distances that contradict each other in one cluster of their own."""
     s = contradictory()
     p = [s.point(*q) for q in ((10, 0), (11, 0.2), (10.4, 0.8))]
@@ -139,8 +139,8 @@ def test_a_terminal_shows_a_long_solve_and_is_left_clean(monkeypatch):
     ticks = itertools.count()
     monkeypatch.setattr(sys, "stderr", Terminal())
     found = solved_with(cluster(0.4), TimeLimit(10.0, lambda: 0.6 * next(ticks)))
-    told = sys.stderr.getvalue()
-    assert "solving the sketch: 1.2 of at most 10 s" in told and told.endswith("\r\x1b[K")
+    reported = sys.stderr.getvalue()
+    assert "solving the sketch: 1.2 of at most 10 s" in reported and reported.endswith("\r\x1b[K")
     assert found is not None
 
 

@@ -75,6 +75,6 @@ def test_values_that_are_no_key_have_a_cell_of_their_own():
     assert cell_of(held, (1,)) is cell_of(held, (1,))
 
 
-def test_an_object_is_told_apart_from_one_that_comes_to_lie_in_its_place():
+def test_an_object_is_distinguished_from_one_that_comes_to_lie_in_its_place():
     cells = [Cell([object()], None) for _ in range(100)]
     assert len(set(cells)) == 100

@@ -72,15 +72,15 @@ def past_of(case, phase: int):
 
 def test_the_first_is_the_first_and_the_base_comes_before_the_gripper():
     case = slid(off_by(0.004), carried("bar", 0.0, 1.0), robots=(gantry("arm", 0.0, -0.5, 0.0),))
-    told = [(one.moment, one.joint, one.axis is not None, one.sign) for one in past_of(case, 1)]
+    reported = [(one.moment, one.joint, one.axis is not None, one.sign) for one in past_of(case, 1)]
     grasp = [("", False), ("j", False), ("j", True)]
-    assert told == [
+    assert reported == [
         *(("grasp (0 s)", joint, is_joint, -1.0) for joint, is_joint in grasp),
         *(("release (1 s)", joint, is_joint, 1.0) for joint, is_joint in reversed(grasp)),
     ]
 
 
-def test_what_one_moment_does_and_undoes_is_left_out():
+def test_what_one_moment_does_and_undoes_is_omitted():
     case = slid(off_by(0.004), obstacles=(cube(mount=Mount("base", at(0.9))),))
     assert [(one.joint, one.axis is not None) for one in past_of(case, 0)] == [
         ("j", False),
@@ -91,8 +91,8 @@ def test_what_one_moment_does_and_undoes_is_left_out():
 def test_from_hand_to_hand_of_one_robot_the_base_is_off_with_both():
     own = carried("bar", 0.0, 1.0), carried("base", 1.0)
     case = slid(off_by(0.004), *own, robots=(gantry("arm", 0.0, -0.5, 0.0),))
-    told = [(one.moment, one.joint) for one in past_of(case, 1)]
-    assert told == [
+    reported = [(one.moment, one.joint) for one in past_of(case, 1)]
+    assert reported == [
         ("grasp (0 s)", ""),
         ("grasp (0 s)", "j"),
         ("grasp (0 s)", "j"),

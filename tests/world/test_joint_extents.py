@@ -50,11 +50,11 @@ def test_ranges_are_the_ends_of_the_courses(samples, mimics, rests):
             )
 
 
-@pytest.mark.parametrize(("beyond", "n_told"), [(0.5, 1), (-0.5, 0), (0.5 * ROUNDING, 0)])
+@pytest.mark.parametrize(("beyond", "n_reported"), [(0.5, 1), (-0.5, 0), (0.5 * ROUNDING, 0)])
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_a_joint_is_told_where_it_is_beyond_a_limit_at_a_sample(beyond, n_told, side):
+def test_a_joint_is_reported_where_it_is_beyond_a_limit_at_a_sample(beyond, n_reported, side):
     positions = side * np.array([[0.0, 0.0], [0.0, 1.0 + beyond], [0.0, 0.5]])
     asked = Trajectory(np.arange(3.0), ("a", "b"), positions)
     found = notices_on_joints(PlacedRobot(arm(1.0, []), asked), "warn")
-    assert len(found) == n_told
+    assert len(found) == n_reported
     assert all("'b'" in notice.text and "in 1 of 3 steps" in notice.text for notice in found)

@@ -37,9 +37,9 @@ def test_a_part_of_a_cubic_is_the_same_cubic(seed):
     finer = np.unique(np.concatenate([times, rng.uniform(times[0], times[-1], 20)]))
     spline = CubicHermiteSpline(times, values, rates)
     assert np.allclose(knots.values_at(finer), spline(finer), rtol=0.0, atol=1e-12)
-    told = knots.rates_at(finer)
-    assert np.allclose(told, spline.derivative()(finer), rtol=0.0, atol=1e-11)
-    again = CubicHermiteSpline(finer, knots.values_at(finer), told)
+    reported = knots.rates_at(finer)
+    assert np.allclose(reported, spline.derivative()(finer), rtol=0.0, atol=1e-11)
+    again = CubicHermiteSpline(finer, knots.values_at(finer), reported)
     between = np.linspace(times[0], times[-1], 101)
     assert np.allclose(again(between), spline(between), rtol=0.0, atol=1e-11)
 

@@ -42,12 +42,12 @@ def case_of(
     return Case("made", (placed,), (Obstacle(body, moved(1.5) if pose is None else pose),), **more)
 
 
-def told(case: Case) -> list[tuple[str, str]]:
+def reported(case: Case) -> list[tuple[str, str]]:
     return [(str(notice.severity), notice.kind) for notice in notices_of(case)]
 
 
 def test_a_good_case_tells_nothing():
-    assert told(case_of()) == []
+    assert reported(case_of()) == []
 
 
 @pytest.mark.parametrize(
@@ -70,7 +70,7 @@ def test_another_unit_is_suspect(changes, says):
 
 
 def test_a_small_box_of_a_robot_is_a_sensor():
-    assert told(case_of(arm(0.001, "box"))) == []
+    assert reported(case_of(arm(0.001, "box"))) == []
 
 
 def test_a_mesh_is_also_held_against_the_other_obstacles():
@@ -78,37 +78,37 @@ def test_a_mesh_is_also_held_against_the_other_obstacles():
     fence = Obstacle(Body("fence", box((60.0, 0.1, 40.0)), "fence.stl"), moved(2.0))
     case = case_of()
     case = replace(case, obstacles=(*case.obstacles, fence))
-    assert told(case) == [("suspect", "units")]
+    assert reported(case) == [("suspect", "units")]
     wall = replace(fence, body=replace(fence.body, origin="box"))
-    assert told(replace(case, obstacles=(case.obstacles[0], wall))) == []
+    assert reported(replace(case, obstacles=(case.obstacles[0], wall))) == []
 
 
 def test_a_surface_that_is_flat_has_an_extent():
     vertices = np.array([[0.0, 0, 0], [3000, 0, 0], [3000, 0, 2000], [0, 0, 2000]])
     fence = Polyhedron.from_triangles(vertices, np.array([[0, 1, 2], [0, 2, 3]]))
-    assert told(case_of(obstacle=fence)) == [("suspect", "units")]
+    assert reported(case_of(obstacle=fence)) == [("suspect", "units")]
 
 
 def test_joints_beyond_their_limits():
     limited = arm(lower=-1.0, upper=1.0)
-    assert told(case_of(limited, positions=(0.0, 1.0 + 1e-10))) == []
-    assert told(case_of(limited, positions=(0.0, 1.2))) == [("warning", "limits")]
-    assert told(case_of(limited, positions=(0.0, 8.0))) == [("suspect", "limits")]
+    assert reported(case_of(limited, positions=(0.0, 1.0 + 1e-10))) == []
+    assert reported(case_of(limited, positions=(0.0, 1.2))) == [("warning", "limits")]
+    assert reported(case_of(limited, positions=(0.0, 8.0))) == [("suspect", "limits")]
     with pytest.raises(BadInput, match=r"limits\.joints is 'stop'; 'warn' or 'fail'"):
         notices_of(case_of(limits=Limits(joints="stop")))
     strict = Limits(joints="fail")
-    assert told(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
+    assert reported(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
         ("violated", "joint limits")
     ]
 
 
-def test_a_robot_of_which_nothing_is_asked_is_looked_at_too():
+def test_a_robot_that_need_not_move_is_checked_too():
     far = case_of(pose=moved(30.0, 30.0))
     resting = replace(far.robots[0], trajectory=None)
-    assert told(replace(far, robots=(resting,))) == [("suspect", "units")]
+    assert reported(replace(far, robots=(resting,))) == [("suspect", "units")]
 
 
-def test_what_loading_told_is_kept_and_the_worst_comes_first():
+def test_what_loading_reported_is_kept_and_the_worst_comes_first():
     warning = Notice(Severity.WARNING, "package", "another file")
     of_robot = Notice(Severity.WARNING, "geometry", "a link without shape")
     robot = replace(arm(), notices=(of_robot,))

@@ -11,7 +11,7 @@ from tests.load.making_cell import load_cell
 
 EPOCH = 1750851666.25
 PATH = "time,shoulder\n{0},0\n{1},0.5\n"
-TOLD = (
+REPORTED = (
     "CHECK CLOCKS: obstacle 'door' moves from 0 to 1 s, robot 'left' moves from 1750851666.25 to 1750851667.25 s: "
     "they never move together; do their times come from one clock? If so, give the later table a `start:`, or the "
     "earlier one `after: hold`"
@@ -26,17 +26,17 @@ def cell(folder, start, *changes, **files):
     return load_cell(folder, *windows, *changes, trajectory=path, **files)
 
 
-def told(case):
+def reported(case):
     return [notice.text for notice in notices_of(case) if notice.kind == "clocks"]
 
 
 def test_an_arm_by_the_clock_on_the_wall_and_a_door_from_0_are_suspect(tmp_path):
-    assert told(cell(tmp_path, EPOCH)) == [TOLD]
+    assert reported(cell(tmp_path, EPOCH)) == [REPORTED]
 
 
 @pytest.mark.parametrize("start", [0.0, 0.5, 1.0])
 def test_tables_with_a_moment_in_common_are_not(tmp_path, start):
-    assert not told(cell(tmp_path, start))
+    assert not reported(cell(tmp_path, start))
 
 
 @pytest.mark.parametrize(
@@ -48,11 +48,11 @@ def test_tables_with_a_moment_in_common_are_not(tmp_path, start):
 def test_what_the_case_says_is_meant(tmp_path, door, arm):
     changes = ["moves: door.csv", f"moves: {door}"] if door else []
     changes += ["trajectory: path.csv", f"trajectory: {arm}"] if arm else []
-    assert not told(cell(tmp_path, 3.0, *changes))
+    assert not reported(cell(tmp_path, 3.0, *changes))
 
 
 def test_when_the_earlier_begins_does_not_say_why_the_later_is_later(tmp_path):
-    assert told(cell(tmp_path, EPOCH, "moves: door.csv", "moves: {file: door.csv, start: 0}"))
+    assert reported(cell(tmp_path, EPOCH, "moves: door.csv", "moves: {file: door.csv, start: 0}"))
 
 
 def test_a_table_between_two_ties_them(tmp_path):
@@ -60,13 +60,13 @@ def test_a_table_between_two_ties_them(tmp_path):
     right = "joints: {shoulder: 0.2}", "trajectory: right.csv"
     between = PATH.format(0.5, 3.5)
     found = cell(tmp_path, 3.0, *right, right__csv=between)
-    assert not told(found)
+    assert not reported(found)
 
 
 def test_clocks_that_are_not_tied_may_be_any(tmp_path):
     case = cell(tmp_path, EPOCH)
-    assert not told(replace(case, clock=Clock(float("inf"))))
-    assert told(replace(case, clock=Clock(0.5)))
+    assert not reported(replace(case, clock=Clock(float("inf"))))
+    assert reported(replace(case, clock=Clock(0.5)))
 
 
 def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
@@ -77,7 +77,7 @@ def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
         **{key: getattr(door.moves, key)[:1] for key in ("times", "positions", "quaternions")},
     )
     obstacles = [replace(one, moves=moves) if one is door else one for one in case.obstacles]
-    assert not told(replace(case, obstacles=tuple(obstacles)))
+    assert not reported(replace(case, obstacles=tuple(obstacles)))
 
 
 def test_a_table_in_which_nothing_moves_says_nothing_of_a_clock(tmp_path):
@@ -86,7 +86,7 @@ def test_a_table_in_which_nothing_moves_says_nothing_of_a_clock(tmp_path):
     left = replace(
         case.robots[0], trajectory=replace(case.robots[0].given_trajectory, positions=standing)
     )
-    assert not told(replace(case, robots=(left, *case.robots[1:])))
+    assert not reported(replace(case, robots=(left, *case.robots[1:])))
 
 
 def two_recordings(folder, apart, *changes):
@@ -101,12 +101,12 @@ def two_recordings(folder, apart, *changes):
 
 
 def test_recordings_that_began_apart_are_suspect_from_0_both(tmp_path):
-    assert told(two_recordings(tmp_path, 3.25)) == [
+    assert reported(two_recordings(tmp_path, 3.25)) == [
         "CHECK CLOCKS: by its stamps the recording of robot 'right' begins 3.25 s after that of 'left', "
         "but it is taken from 0 s; beside its file, `start: 3.25` keeps the delay and `start: 0` drops it"
     ]
-    assert "robot 'left' begins 3.25 s after" in told(two_recordings(tmp_path, -3.25))[0]
-    assert not told(two_recordings(tmp_path, 5e-4))
+    assert "robot 'left' begins 3.25 s after" in reported(two_recordings(tmp_path, -3.25))[0]
+    assert not reported(two_recordings(tmp_path, 5e-4))
 
 
 def test_recordings_that_began_within_an_interval_of_theirs_are_a_warning(tmp_path):
@@ -124,7 +124,7 @@ def test_a_recording_begins_when_the_case_says(tmp_path, start):
         "trajectory: path.csv}\nscene",
         f"trajectory: {{file: path.csv, start: {start}}}}}\nscene",
     )
-    assert not told(two_recordings(tmp_path, 3.25, *said))
+    assert not reported(two_recordings(tmp_path, 3.25, *said))
 
 
 def test_a_recording_that_is_shifted_keeps_its_clock(tmp_path):

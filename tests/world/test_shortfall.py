@@ -26,7 +26,7 @@ def case_of(link: float, obstacle: float, **asked) -> cl.Case:
     return cl.Case("c", (cl.PlacedRobot(robot, path, **asked),), (stands,))
 
 
-def test_both_shortfalls_and_the_padding_are_taken_off():
+def test_both_shortfalls_and_the_padding_are_subtracted():
     run = cl.check(case_of(0.125, 0.25, padding={"tip": 0.0625}))
     assert run.record.steps["clearance"].to_pylist() == pytest.approx([2.5625, 1.5625], abs=1e-12)
     assert run.summary["paddings"] == {"tip": 0.1875, "post": 0.25}

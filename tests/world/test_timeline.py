@@ -167,9 +167,9 @@ def test_what_is_not_in_the_cell_neither_picks_up_nor_lets_go(window, says):
     ],
 )  # fmt: skip
 def test_what_cannot_be_carried_is_refused(changes, fault, says):
-    with pytest.raises(fault) as told:
+    with pytest.raises(fault) as reported:
         timeline(replace(cell(1), **changes))
-    assert says in str(told.value) or fault is UnknownObstacle
+    assert says in str(reported.value) or fault is UnknownObstacle
 
 
 def test_two_hands_at_once_are_refused():
