@@ -33,10 +33,11 @@ from .query.result import Nearest
 from .receipt.verification import Verification
 from .receipt.verifying import verify
 from .receipt.writing import write_receipt
+from .record.record import CrossCheck, Record
+from .record.workspace import Workspace
 from .run import Question, Resources, Run, answer, check
 from .simulate.checker import Checker
-from .simulate.record import CrossCheck, Record
-from .simulate.workspace.workspace import Workspace, shared_workspace
+from .simulate.workspace.workspace import shared_workspace
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
 from .world.carry import Carry

@@ -12,7 +12,7 @@ from packaging.utils import canonicalize_name
 from clearance.batch import keys
 from clearance.package_digest import PACKAGE, digest_of_sources, package_digest
 from clearance.receipt import remade_report
-from clearance.simulate import fingerprint
+from clearance.record import fingerprint
 from tests.cells import cell
 
 

@@ -15,8 +15,8 @@ from clearance.batch.answer import BatchAnswer
 from clearance.batch.store import Store
 from clearance.batch.tables import CASES, FINDINGS, write_tables, written_answer
 from clearance.errors import unwritable
+from clearance.record.wording import count
 from clearance.report.folder import write_file, written_file
-from clearance.report.wording import count
 
 PAGE, JUNIT = "batch.html", "junit.xml"
 ANSWER = (CASES, FINDINGS, PAGE, JUNIT)

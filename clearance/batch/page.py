@@ -17,8 +17,8 @@ from clearance import __version__
 from clearance.batch.answer import BASES, BatchAnswer
 from clearance.batch.page_data import object_of, page_data
 from clearance.findings.finding import NOT_PROVEN
+from clearance.record.wording import count
 from clearance.report.head import head_of
-from clearance.report.wording import count
 
 _HERE = Path(__file__).parent
 

@@ -15,12 +15,11 @@ import pyarrow as pa
 from clearance.findings.doubts import doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.findings_file import conditions_text
-from clearance.findings.judgement import judgement_of
 from clearance.findings.measurement_conditions import conditions_of
 from clearance.findings.of_record import why_incomplete
-from clearance.report.tolerances import least_expected
+from clearance.findings.tolerance_lines import least_expected
+from clearance.record.record import Record
 from clearance.run import Run
-from clearance.simulate.record import Record
 from clearance.world.case import Source
 
 ERROR = "error"
@@ -140,13 +139,14 @@ def row_of(run: Run) -> dict[str, Any]:
         "warnings": list(verdict.warnings),
         "not_checked": list(verdict.not_checked),
         "waived": list(verdict.waived),
-        "waivers": _needed(record),
+        "waivers": _needed(run),
         "curve": curve_of(record),
         "n_findings": len(findings),
-        "incomplete": _incomplete(record, len(findings)),
+        "incomplete": _incomplete(run, len(findings)),
         "conditions": conditions_text(conditions_of(record)),
         "doubts": [
-            {"kind": one.kind, "about": one.about, "text": one.text} for one in doubts_of(record)
+            {"kind": one.kind, "about": one.about, "text": one.text}
+            for one in doubts_of(record, run.judgement)
         ],
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
@@ -162,19 +162,19 @@ def _with_tolerances(record: Record) -> dict[str, float | None]:
     }
 
 
-def _needed(record: Record) -> list[str]:
+def _needed(run: Run) -> list[str]:
     """Of waivers that many cases share, those that this one needs."""
-    if not any(waiver.shared for waiver in record.case.waivers):
+    if not any(waiver.shared for waiver in run.record.case.waivers):
         return []
-    uses = judgement_of(record).uses
+    uses = run.judgement.uses
     return [str(use.waiver) for use in uses if use.waiver.shared and use.used]
 
 
-def _incomplete(record: Record, n_findings: int) -> str:
+def _incomplete(run: Run, n_findings: int) -> str:
     """Why something that is not clear may have no finding in the row; empty where each has one."""
     n_left = max(0, n_findings - MOST_FINDINGS)
     left = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
-    return why_incomplete(record) or left
+    return why_incomplete(run.session) or left
 
 
 def _told(finding: Finding) -> dict[str, Any]:

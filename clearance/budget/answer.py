@@ -6,6 +6,7 @@ Not for: the proof (`proven`), the estimate (`expected`), and who takes how much
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
 from clearance.errors import BadInput
 from clearance.kernels.budget.sweep_state import SearchRoom
-from clearance.simulate.budget_answer import RuleBudget
+from clearance.record.budget import RuleBudget
 from clearance.simulate.resources import Resources
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import SectionPlan, rule_limits
@@ -23,9 +24,16 @@ from clearance.world.budget import Budget
 from clearance.world.case import Case
 
 
+class MeasuredBudget(NamedTuple):
+    """What tolerances leave to the pairs of a rule, and what finds the moments at which that is least."""
+
+    left: RuleBudget
+    worst: WorstMoments
+
+
 def budget_answers(
     case: Case, plan: SectionPlan, answers: Sequence[SectionAnswer], resources: Resources
-) -> tuple[RuleBudget, ...]:
+) -> tuple[MeasuredBudget, ...]:
     """What a case's tolerances leave, one for each rule that judges something, in their order.
 
     Args:
@@ -107,7 +115,7 @@ def _of_section(
 
 def _of_rule(
     case: Case, rule: int, name: str, n_steps: int, sections: Sequence[SectionBudget]
-) -> RuleBudget:
+) -> MeasuredBudget:
     proven, expected = np.full(n_steps, np.inf), np.full(n_steps, np.nan)
     between = None if any(s.between is None for s in sections) else np.full(n_steps, np.inf)
     there = np.full(n_steps, np.nan)
@@ -123,5 +131,5 @@ def _of_rule(
             np.minimum(between[held], own if last else own[:-1], out=between[held])
             np.fmin(there[rows], one.expected_between - padding, out=there[rows])
     limits = rule_limits(case, rule, [one.section for one in sections])
-    worst = WorstMoments(name, limits, sections)
-    return RuleBudget(name, limits, proven, expected, between, worst, there)
+    told = RuleBudget(name, limits, proven, expected, between, there)
+    return MeasuredBudget(told, WorstMoments(name, limits, sections))

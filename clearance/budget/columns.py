@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pyarrow as pa
 
-from clearance.simulate.budget_answer import RuleBudget
+from clearance.record.budget import RuleBudget
 
 
 def least_proven(budget: Sequence[RuleBudget]) -> np.ndarray:

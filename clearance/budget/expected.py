@@ -13,9 +13,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from clearance.budget.sources import Slope, Witness, slopes
-from clearance.simulate.certificate import Certificate
-from clearance.simulate.measurement import Measurement
-from clearance.simulate.parts import blocks
+from clearance.record.certificate import Certificate
+from clearance.record.measurement import Measurement
+from clearance.record.rows.blocks import blocks
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 from clearance.world.cubic import Cubics, cubics_of, position_on

@@ -18,7 +18,7 @@ from clearance.budget.proven import PairsWithErrors, PathMoments
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.sources import SourceKey, sizes_of, units_of, with_sizes
 from clearance.kernels.search.proof import FINEST_GAP
-from clearance.simulate.budget_answer import most_looked_for
+from clearance.record.budget import most_looked_for
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 from clearance.world.mimics import leads_of

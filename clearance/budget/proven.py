@@ -33,9 +33,9 @@ from clearance.kernels.budget.sweep_state import (
     new_state,
 )
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.record.measurement import Measurement
 from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
 from clearance.simulate.layout import PairsInMotion, positions_at
-from clearance.simulate.measurement import Measurement
 from clearance.simulate.parts import in_order, parts
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions

@@ -1,14 +1,13 @@
-"""The moments at which a budget leaves least, and what each error takes of them, worked out when first looked at.
+"""The moments at which a budget leaves least, and what each error takes of them.
 
 Not for: finding what is left at each step (`proven`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import TypeVar
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -26,9 +25,9 @@ from clearance.budget.sources import (
     units_of,
     with_sizes,
 )
-from clearance.simulate.budget_answer import BudgetMoment, ErrorSource
-from clearance.simulate.contact.rows_on_demand import RowsOnDemand
-from clearance.simulate.moment import Moment, MomentQuery
+from clearance.record.budget import BudgetMoment, ErrorSource
+from clearance.record.moment import Moment
+from clearance.simulate.moment_query import MomentQuery
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between
@@ -39,25 +38,6 @@ MOST_WORST = 3
 
 MOST_BETWEEN = 8
 """Intervals whose least moments are looked at for that."""
-
-Item = TypeVar("Item")
-
-
-class LazyItems(RowsOnDemand[Item]):
-    """Items that are all worked out when one is first looked at."""
-
-    def __init__(self, work_out: Callable[[], Sequence[Item]]) -> None:
-        self._work_out = work_out
-
-    @cached_property
-    def _items(self) -> tuple[Item, ...]:
-        return tuple(self._work_out())
-
-    def __len__(self) -> int:
-        return len(self._items)
-
-    def _at(self, i: int) -> Item:
-        return self._items[i]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,15 +55,32 @@ class _LowMoment:
         return PathMoments(np.array([self.interval]), np.array([self.share]))
 
 
-class WorstMoments(LazyItems[BudgetMoment]):
+class WorstMoments:
     """The moments of a rule at which a budget leaves least, each of another pair, the worst first."""
 
     def __init__(self, rule: str, limits: Limits, sections: Sequence[SectionBudget]) -> None:
-        super().__init__(self._found)
         self._rule, self._sections = rule, sections
         self._largest = ToleranceSearch(limits.fail, sections)
 
-    def _found(self) -> list[BudgetMoment]:
+    @cached_property
+    def moments(self) -> tuple[BudgetMoment, ...]:
+        """The moments, without what each error takes of them."""
+        return tuple(self._moment(low) for low in self._lows)
+
+    def with_sources(self, i: int, most: int | None = None) -> BudgetMoment:
+        """One of them with what each error takes, and of the first `most`, or of all, its greatest size."""
+        low = self._lows[i]
+        case = low.section.section.phase.case
+        sources = tuple(
+            replace(one, largest=tuple(self._largest.of(case, key._replace(moment=NOW))))
+            if most is None or place < most
+            else one
+            for place, (key, one) in enumerate(self._sources[i])
+        )
+        return replace(self.moments[i], sources=sources)
+
+    @cached_property
+    def _lows(self) -> list[_LowMoment]:
         lows = sorted(
             (low for section in self._sections for low in _lows(section)),
             key=lambda low: low.proven,
@@ -91,7 +88,11 @@ class WorstMoments(LazyItems[BudgetMoment]):
         named: dict[Pair, _LowMoment] = {}
         for low in lows:
             named.setdefault(low.section.section.pairs[low.pair], low)
-        return [self._moment(low) for low in [*named.values()][:MOST_WORST]]
+        return [*named.values()][:MOST_WORST]
+
+    @cached_property
+    def _sources(self) -> list[list[tuple[SourceKey, ErrorSource]]]:
+        return [_sources(low) for low in self._lows]
 
     def _moment(self, low: _LowMoment) -> BudgetMoment:
         section = low.section.section
@@ -104,33 +105,28 @@ class WorstMoments(LazyItems[BudgetMoment]):
             )
             expected = max(moment.clearance - float(taken[0]) - section.padding, low.proven)
         told = moment.of_run(section.phase.first, section.padding, self._rule)
-        return BudgetMoment(
-            told, low.proven, expected, LazyItems(lambda: self._sources(low, moment))
-        )
+        return BudgetMoment(told, low.proven, expected)
 
-    def _sources(self, low: _LowMoment, moment: Moment) -> list[ErrorSource]:
-        """What each error takes of a moment, what takes most first."""
-        section, pairs = low.section, low.section.pairs
-        case, budget = section.section.phase.case, pairs.budget
-        by_key: dict[SourceKey, list[Slope]] = {}
-        for slope in slopes(case, budget, _witness(low, moment)):
-            by_key.setdefault(slope.key, []).append(slope)
-        found = []
-        for key, own in by_key.items():
-            sizes, units = sizes_of(budget, key), units_of(case, key)
-            less = with_sizes(budget, key, (0.0,) * len(sizes))
-            without = pairs.of(budget, (key.moment, less))
-            taken = _at(without, low) - _at(pairs, low)
-            expected = None if moment.touches else _deviation(own, budget)
-            found.append(
-                ErrorSource(
-                    key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
-                    max(0.0, taken), expected,
-                    LazyItems(partial(self._largest.of, case, key._replace(moment=NOW))),
-                    key.moment,
-                )
-            )  # fmt: skip
-        return sorted(found, key=lambda source: -source.proven)
+
+def _sources(low: _LowMoment) -> list[tuple[SourceKey, ErrorSource]]:
+    """What each error takes of a moment, what takes most first."""
+    section, pairs, moment = low.section, low.section.pairs, _measured(low)
+    case, budget = section.section.phase.case, pairs.budget
+    by_key: dict[SourceKey, list[Slope]] = {}
+    for slope in slopes(case, budget, _witness(low, moment)):
+        by_key.setdefault(slope.key, []).append(slope)
+    found = []
+    for key, own in by_key.items():
+        sizes, units = sizes_of(budget, key), units_of(case, key)
+        less = with_sizes(budget, key, (0.0,) * len(sizes))
+        taken = _at(pairs.of(budget, (key.moment, less)), low) - _at(pairs, low)
+        expected = None if moment.touches else _deviation(own, budget)
+        source = ErrorSource(
+            key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
+            max(0.0, taken), expected, moment=key.moment,
+        )  # fmt: skip
+        found.append((key, source))
+    return sorted(found, key=lambda one: -one[1].proven)
 
 
 def _deviation(own: list[Slope], budget: Budget) -> float:

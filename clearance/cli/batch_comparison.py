@@ -9,8 +9,8 @@ import click
 from clearance.batch.compared import BatchComparison, ComparedCase
 from clearance.errors import shown
 from clearance.findings.comparison import ComparedFinding, FindingChange
+from clearance.record.wording import count
 from clearance.report.comparison_text import comparison_cells, doubt_lines
-from clearance.report.wording import count
 
 MOST_ROWS = 20
 """Lines of a kind that are told in a terminal."""

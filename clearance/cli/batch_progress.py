@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.run import Watch
 from clearance.errors import shown
-from clearance.report.wording import mm
+from clearance.record.wording import mm
 
 if TYPE_CHECKING:
     from rich.progress import Progress

@@ -11,7 +11,7 @@ from clearance.batch.output import PAGE
 from clearance.batch.status import BatchStatus
 from clearance.batch.store import Store
 from clearance.errors import shown
-from clearance.report.wording import count, depth_mm, mm
+from clearance.record.wording import count, depth_mm, mm
 
 
 def print_answer(

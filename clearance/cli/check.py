@@ -202,8 +202,6 @@ def _answer(
     with kept_rows(outputs.out, printed.quiet) as rows:
         with shown_progress(not printed.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if outputs.tell_contacts or printed.as_json:
-                run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
         outputs.write(run, comparison)
         notes = outputs.more.write(run, ahead)
@@ -270,9 +268,8 @@ def _require_extras(cross_check: bool, motion: str) -> None:
 def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
     if printed.as_json:
         from clearance.report.output import json_text
-        from clearance.report.summary import summary_of
 
-        click.echo(json_text(summary_of(run.record)), nl=False)
+        click.echo(json_text(run.summary), nl=False)
     elif not printed.quiet:
         from clearance.cli.verdict import print_verdict
 

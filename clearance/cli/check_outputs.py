@@ -32,11 +32,6 @@ class Outputs:
     for_ci: CiOutputs
     more: MoreFiles
 
-    @property
-    def tell_contacts(self) -> bool:
-        """True if something is written in which contacts are told of."""
-        return bool(self.out or self.more.png or self.more.glb)
-
     def require_writable(self) -> None:
         """Refuses what could not be written in the end.
 
@@ -117,7 +112,7 @@ class Outputs:
         if self.junit is not None:
             from clearance.report.junit import write_junit
 
-            write_junit(run.record, self.junit)
+            write_junit(run.report_data, self.junit)
 
 
 def _refuse_taken(path: Path, option: str, taken: dict[str, str]) -> None:

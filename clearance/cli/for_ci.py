@@ -101,9 +101,8 @@ def comparison_of(run: Run, baseline: FindingList | None) -> Comparison | None:
     if baseline is None:
         return None
     from clearance.findings.comparison import compared
-    from clearance.findings.findings_file import finding_list_of
 
-    return compared(baseline, finding_list_of(run.record, run.findings))
+    return compared(baseline, run.finding_list)
 
 
 @dataclass(frozen=True)

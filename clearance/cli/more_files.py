@@ -119,9 +119,8 @@ class MoreFiles:
 
     def _write_still(self, run: Run) -> None:
         from clearance.report.folder import write_file
-        from clearance.simulate.replay.replay import replay_of
 
-        replay = replay_of(run.record, rows=run.rows)
+        replay = run.session.replay(run.rows)
         if self.glb is not None:
             from clearance.report.still.glb import glb_of
 

@@ -56,10 +56,10 @@ def _checked(path: Path) -> ExitCode:
 def _why(run: Run) -> list[str]:
     """What is broken, the worst first, then what else fails the run: input in doubt, waivers that should go."""
     from clearance.findings.doubts import doubts_of
+    from clearance.findings.finding_text import finding_line
     from clearance.report.comparison_text import doubt_text
-    from clearance.report.finding_text import finding_line
 
     broken = [finding_line(finding) for finding in run.findings if finding.fails]
     more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
-    doubts = [doubt_text(doubt) for doubt in doubts_of(run.record) if doubt.fails]
+    doubts = [doubt_text(doubt) for doubt in doubts_of(run.record, run.waived) if doubt.fails]
     return [*broken[:MOST], *more, *doubts]

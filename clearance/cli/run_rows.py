@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from clearance.errors import Incomplete
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows, open_resumable_rows
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows, open_resumable_rows
 
 SUFFIX = ".unfinished"
 

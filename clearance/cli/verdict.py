@@ -15,14 +15,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from clearance.cli.progress import shown_progress
 from clearance.errors import shown
-from clearance.report.actors import carried_of, paddings_of
-from clearance.report.contact import HEADS, contact_of
-from clearance.report.intervals import Interval, extent, intervals
-from clearance.report.summary import certified_of, notes_of, tessellation_bound
-from clearance.report.verdict import Verdict, contact_line, moment_line, profile_text
-from clearance.report.wording import (
+from clearance.findings.verdict import Verdict, contact_line, moment_line, profile_text
+from clearance.record.levels import Interval
+from clearance.record.names import LINK_AND_OBSTACLE
+from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.record.wording import (
     certified_text,
     contact_text,
     count,
@@ -36,10 +34,11 @@ from clearance.report.wording import (
     span_text,
     step_text,
 )
+from clearance.report.actors import carried_of, paddings_of
+from clearance.report.contact import HEADS, contact_of
+from clearance.report.summary import certified_of, notes_of, tessellation_bound
 from clearance.run import Run
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.names import LINK_AND_OBSTACLE
-from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.run.session import RunSession
 from clearance.world.notice import KINDS, Notice, listed
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
@@ -66,17 +65,15 @@ def _stdout() -> Console:
 
 
 def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[Text]]]:
-    """The lines; the verdict says how deep contacts are, so they are looked into first, with progress."""
-    _work_out_contacts(run.record)
-    record, verdict = run.record, run.verdict
+    record, session, verdict = run.record, run.session, run.verdict
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
-    lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
+    lines += [*_beside(verdict), *_worst(record), *_rules(record, session), *_carried(record)]
     lines += _paddings(record)
-    lines += _where_asked(record)
+    lines += _where_asked(run)
     if record.need != "minimum":
-        lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
+        lines += [_row(_LEVELS[level], _interval_text(session, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
-    nearest = motion_minima(record, _MOST_PAIRS)
+    nearest = session.motion_minima(_MOST_PAIRS)
     if nearest:
         lines.append(_pair_table(record, nearest))
     lines += [_row("profile", profile_text(answer)) for answer in record.profiles]
@@ -84,7 +81,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     lines += _facets(record)
     if run.cross_check is not None:
         lines += _cross_check(run.cross_check)
-    lines.append(partial(_notes, record))
+    lines.append(partial(_notes, run))
     if out is not None:
         lines.append(_row("report", shown(str(out / "report.html"))))
     return lines
@@ -143,7 +140,7 @@ def _paddings(record: Record) -> list[Text]:
     return [_row("padding", less)] if told else []
 
 
-def _rules(record: Record) -> list[Text]:
+def _rules(record: Record, session: RunSession) -> list[Text]:
     """One line for each rule of the case, if it has any: how it stands, and its worst moment."""
     limits = record.case.limits
     if not limits.rules:
@@ -158,7 +155,7 @@ def _rules(record: Record) -> list[Text]:
         elif answer.worst is None:
             told += f"{answer.status}, nothing nearer was asked for"
         else:
-            worst = record.worst_among([answer]) or answer.worst
+            worst = session.worst_among([answer]) or answer.worst
             near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
             told += f"{answer.status}, {near}, {worst.link} - {worst.obstacle}"
             told += f" at {moment_text(worst)}"
@@ -174,28 +171,37 @@ def _carried(record: Record) -> list[Text]:
     ]
 
 
-def _where_asked(record: Record) -> list[Text | Callable[[], list[Text]]]:
+def _where_asked(run: Run) -> list[Text | Callable[[], list[Text]]]:
     """What is told of a recorded run, of tolerances, and of gaps for people, where a case has them."""
+    record, session = run.record, run.session
     lines: list[Text | Callable[[], list[Text]]] = []
     if record.commanded is not None:
         from clearance.report.recordings import recording_lines
 
         lines += _rows("recorded", recording_lines(record))
     if record.budget is not None:
-        lines.append(partial(_tolerances, record))
+        lines.append(partial(_tolerances, run))
     if record.body_gaps:
-        from clearance.report.body_gaps import gap_lines
+        from clearance.report.body_gaps import body_gaps_of, gap_lines
 
-        lines += _rows("body gaps", gap_lines(record))
+        found = body_gaps_of(session.motion_minima(), session.standing_bodies)
+        lines += _rows("body gaps", gap_lines(found))
     return lines
 
 
-def _tolerances(record: Record) -> list[Text]:
+def _tolerances(run: Run) -> list[Text]:
     """Where the tolerances leave least, what takes most of it, and where their numbers come from."""
-    from clearance.report.tolerances import source_lines
+    from clearance.report.tolerances import MOST_SOURCES, source_lines
 
+    record, session = run.record, run.session
+    found = [(one, session.least_left(one)) for one in record.budget or ()]
+    known = [(one, left[0].proven - one.limits.fail) for one, left in found if left]
+    lines: list[str] = []
+    if known:
+        worst = min(known, key=lambda pair: pair[1])[0]
+        lines += source_lines(record, worst, session.error_sources(worst, 0, MOST_SOURCES))
     assert record.case.tolerance is not None
-    return _rows("tolerances", [*source_lines(record), *record.case.tolerance.sources])
+    return _rows("tolerances", [*lines, *record.case.tolerance.sources])
 
 
 def _rows(label: str, lines: Iterable[str]) -> list[Text]:
@@ -223,12 +229,6 @@ def _facets(record: Record) -> list[Text]:
     return [_row("facets", f"{told}too small by that much, never too large")]
 
 
-def _work_out_contacts(record: Record) -> None:
-    if record.depths_known:
-        with shown_progress(False, ["looking into contacts"]) as progress:
-            record.work_out_contacts(progress)
-
-
 def _deepest(record: Record) -> list[Text]:
     """The deepest overlap: where, how deep, which way out of the link."""
     found = contact_of(record)
@@ -245,11 +245,11 @@ def _point(point: Sequence[float]) -> str:
     return f"({', '.join(f'{value:.6f}' for value in point)})"
 
 
-def _interval_text(record: Record, level: str) -> str:
-    found: list[Interval] = intervals(record)[level]
+def _interval_text(session: RunSession, level: str) -> str:
+    found: list[Interval] = session.intervals[level]
     if not found:
         return "never"
-    n_intervals, n_steps = extent(record, level)
+    n_intervals, n_steps = session.extent(level)
     times = [span_text(part.start, part.end) for part in found[:_MOST_INTERVALS]]
     more = n_intervals - len(times)
     tail = f" and {more} more" if more else ""
@@ -315,8 +315,8 @@ def _told(row: Disagreement) -> str:
     return f"step {row.step}: {ours}, peer {peers}: {row.reason}"
 
 
-def _notes(record: Record) -> list[Text]:
-    notes = notes_of(record)
+def _notes(run: Run) -> list[Text]:
+    notes = notes_of(run.record, run.session.hints)
     lines = [_row("note", note) for note in notes[:_MOST_NOTES]]
     more = len(notes) - len(lines)
     return [*lines, _row("", f"and {count(more, 'more note')}, see --json")] if more > 0 else lines

@@ -11,7 +11,7 @@ from clearance.cli import ExitCode
 from clearance.cli.options import LengthParamType, OutputPath
 
 if TYPE_CHECKING:
-    from clearance.simulate.workspace.workspace import Workspace
+    from clearance.record.workspace import Workspace
 
 MOST_LINKS = 8
 
@@ -102,7 +102,7 @@ def _lines(found: Workspace, out: Path | None) -> list[str]:
     else:
         import numpy as np
 
-        from clearance.report.wording import litres
+        from clearance.record.wording import litres
 
         x, y, z = np.round(found.region.centroid, 3) + 0.0  # no -0.000
         lines = [

@@ -14,7 +14,7 @@ import numpy as np
 from clearance.crosscheck.fcl_adapter import peer_name
 from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
 from clearance.crosscheck.settle import off_body, peer_is_wrong
-from clearance.simulate.record import CrossCheck, Disagreement, Samples
+from clearance.record.record import CrossCheck, Disagreement, Samples
 from clearance.tolerance import CROSS_CHECK
 from clearance.world.pairs import Pair
 

@@ -16,7 +16,7 @@ from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
 from clearance.geometry.point_cloud import PointCloud
-from clearance.simulate.record import Samples
+from clearance.record.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex, Pair, measured_pairs

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
-from clearance.simulate.record import Samples
+from clearance.record.record import Samples
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 

@@ -11,12 +11,10 @@ from dataclasses import replace
 import pyarrow as pa
 
 from clearance.crosscheck.compare import compared
-from clearance.simulate.moment import Moment
-from clearance.simulate.record import CrossCheck, Samples
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.run_answer import RunAnswer
+from clearance.record.record import CrossCheck, Samples
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.steps import RunAnswer, step_table
 from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.steps import step_table
 
 
 def cross_check_sections(
@@ -53,7 +51,7 @@ def _of_section(
 ) -> tuple[CrossCheck, list[int]]:
     """The comparison of a section, and the steps of the run that are settled for us."""
     section, first = answer.section, answer.section.phase.first
-    alone = RuleAnswer("", section.in_motion.limits, answer.found, None, _no_moment)
+    alone = RuleAnswer("", section.in_motion.limits, answer.found)
     judged = RunAnswer((alone,), answer.found, None, answer.found, None)
     tables = step_table(section.phase.case, section.phase.motions, section.pairs, judged)
     samples = Samples(section.phase.case, section.phase.motions, pa.concat_tables(tables), ())
@@ -61,7 +59,3 @@ def _of_section(
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
     moved = replace(found, worst_step=found.worst_step + first, disagreements=rows)
     return moved, (settled + first).tolist()
-
-
-def _no_moment(step: int) -> Moment:
-    raise AssertionError("a table needs no moment")

@@ -21,7 +21,7 @@ from clearance.findings.compared_doubts import (
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measurement_conditions import MeasurementConditions
-from clearance.simulate.status import Status
+from clearance.record.status import Status
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""

@@ -1,7 +1,7 @@
 """What stands beside the findings of a run and bears on its answer: suspect input, what was not checked, warnings.
 
 Kept in `findings.json`, so that a comparison knows of a run that is in doubt and has no finding for it. Not for:
-the verdict that is drawn from it (`report.verdict`).
+the verdict that is drawn from it (`verdict`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from clearance.world.notice import Notice, Severity
 
 if TYPE_CHECKING:
-    from clearance.simulate.record import Record
+    from clearance.findings.judgement import Judgement
+    from clearance.record.record import Record
     from clearance.world.case import Case
 
 SUSPECT, DISPUTED, STALE_WAIVER = "suspect", "disputed", "stale waiver"
@@ -52,9 +53,13 @@ class Doubt:
         return self.kind in FAILING
 
 
-def doubts_of(record: Record) -> tuple[Doubt, ...]:
-    """All of a record, those that fail it first; each once."""
-    found = [*_of_input(record), *_of_answer(record)]
+def doubts_of(record: Record, judgement: Judgement | None) -> tuple[Doubt, ...]:
+    """All of a record, those that fail it first; each once.
+
+    Args:
+        judgement: None where the case has no waivers.
+    """
+    found = [*_of_input(record), *_of_answer(record, judgement)]
     return tuple(sorted(dict.fromkeys(found), key=lambda one: KINDS.index(one.kind)))
 
 
@@ -94,7 +99,7 @@ def _notes(texts: Iterable[str]) -> Iterator[Doubt]:
     return (Doubt(NOTE, "", text) for text in texts)
 
 
-def _of_answer(record: Record) -> Iterator[Doubt]:
+def _of_answer(record: Record, judgement: Judgement | None) -> Iterator[Doubt]:
     yield from (Doubt(NOT_CHECKED, "", text) for text in not_checked(record.case))
     check = record.cross_check
     if check is not None and not check.agrees:
@@ -102,8 +107,5 @@ def _of_answer(record: Record) -> Iterator[Doubt]:
         yield Doubt(
             DISPUTED, check.peer, f"{check.peer} disagrees at {n_steps} of {check.n_steps} steps"
         )
-    if record.case.waivers:
-        from clearance.findings.judgement import judgement_of
-
-        for fault in judgement_of(record).faults:
-            yield Doubt(STALE_WAIVER, "", fault)
+    for fault in () if judgement is None else judgement.faults:
+        yield Doubt(STALE_WAIVER, "", fault)

@@ -9,7 +9,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 
-from clearance.simulate.status import Status
+from clearance.record.status import Status
 
 CLEARANCE = "clearance"
 """Two bodies and the limits of a rule."""

@@ -14,11 +14,12 @@ from pathlib import Path
 from clearance.errors import BadInput, BadSyntax
 from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
+from clearance.findings.judgement import Judgement
 from clearance.findings.measurement_conditions import MeasurementConditions, conditions_of
-from clearance.findings.of_record import findings_of, why_incomplete
+from clearance.findings.of_record import why_incomplete
 from clearance.load.files.input_files import read_bytes
 from clearance.load.schema.errors import place
-from clearance.simulate.record import Record
+from clearance.record.session import Session
 
 FILE_NAME = "findings.json"
 
@@ -55,16 +56,18 @@ class FindingList:
     format: int = FORMAT
 
 
-def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None) -> FindingList:
-    """The list of a record; `findings` are its own, if they are known."""
-    found = findings_of(record) if findings is None else findings
+def finding_list_of(
+    session: Session, findings: tuple[Finding, ...], judgement: Judgement
+) -> FindingList:
+    """The list of a run with these findings."""
+    record = session.record
     return FindingList(
         case=record.case.name,
-        incomplete=why_incomplete(record),
-        not_listed=max(0, len(found) - MOST_LISTED),
+        incomplete=why_incomplete(session),
+        not_listed=max(0, len(findings) - MOST_LISTED),
         measured=conditions_of(record),
-        doubts=doubts_of(record),
-        findings=found[:MOST_LISTED],
+        doubts=doubts_of(record, judgement),
+        findings=findings[:MOST_LISTED],
     )
 
 

@@ -1,23 +1,23 @@
 """What a run comes to with its waivers: what they cover, what they do not, and which should go.
 
 Pairs that a waiver is of are measured and proven apart from all others, so that none hides behind what is waived.
-Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`report.verdict`).
+Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`verdict`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
-from weakref import WeakKeyDictionary
 
 from clearance.findings.finding import UNPROVEN, AppliedWaiver, Finding, FindingName
 from clearance.findings.of_rule import RuleFindings
 from clearance.findings.standing import code_of, why_undecided
-from clearance.simulate.record import PairTest, Record
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.status import STATUSES, Status
+from clearance.record.moment import Moment
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.session import PairTest, Session
+from clearance.record.status import STATUSES, Status
 from clearance.world.case import Limits
 from clearance.world.waiver import Waiver
 
@@ -60,6 +60,8 @@ class Judgement:
         findings: of all rules, the worst first. uses: of each waiver that is of this case.
         rest: what the rules come to without the pairs that are waived.
         n_of_others: waivers that are of other cases. is_rest: the pairs that are not waived; None where all are.
+        worst: the moment that stands worst of what decides the verdict.
+        worst_of: the same by rule; empty where no waiver is of this case.
     """
 
     findings: tuple[Finding, ...]
@@ -67,6 +69,8 @@ class Judgement:
     uses: tuple[WaiverUse, ...] = ()
     n_of_others: int = 0
     is_rest: PairTest | None = None
+    worst: Moment | None = None
+    worst_of: Mapping[str, Moment | None] = field(default_factory=dict)
 
     @property
     def judging(self) -> tuple[RuleAnswer, ...]:
@@ -93,36 +97,37 @@ class Judgement:
         return str(STATUSES[max(codes, default=0)])
 
 
-_KNOWN: WeakKeyDictionary[Record, Judgement] = WeakKeyDictionary()
-
-
-def judgement_of(record: Record) -> Judgement:
-    """The judgement of a record; what it takes is measured once."""
-    if record not in _KNOWN:
-        _KNOWN[record] = _judged(record)
-    return _KNOWN[record]
-
-
-def _judged(record: Record) -> Judgement:
-    findings = of_rules(record, record.rules)
+def judgement_of(session: Session) -> Judgement:
+    """The judgement of a run."""
+    record = session.record
+    findings = of_rules(session, record.rules)
     own = [waiver for waiver in record.case.waivers if waiver.is_of_case(record.case.name)]
     n_of_others = len(record.case.waivers) - len(own)
     if not own:
-        return Judgement(findings, record.rules, n_of_others=n_of_others)
-    return _WaivedRecord(record, findings, tuple(own)).judgement(n_of_others)
+        return Judgement(findings, record.rules, n_of_others=n_of_others, worst=record.worst)
+    return _with_worst(session, _WaivedRun(session, findings, tuple(own)).judgement(n_of_others))
 
 
-def of_rules(record: Record, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
+def _with_worst(session: Session, judgement: Judgement) -> Judgement:
+    """The judgement with the moments that stand worst of what decides the verdict."""
+    by_rule: dict[str, list[RuleAnswer]] = {}
+    for answer in judgement.judging:
+        by_rule.setdefault(answer.name, []).append(answer)
+    worst_of = {name: session.worst_among(answers) for name, answers in by_rule.items()}
+    return replace(judgement, worst=session.worst_among(judgement.judging), worst_of=worst_of)
+
+
+def of_rules(session: Session, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
     """The findings of some rules, the worst first."""
-    found = [finding for rule in rules for finding in RuleFindings(record, rule)]
+    found = [finding for rule in rules for finding in RuleFindings(session, rule)]
     return tuple(sorted(found, key=lambda finding: finding.standing))
 
 
 @dataclass(frozen=True, eq=False)
-class _WaivedRecord:
-    """A record held against the waivers that are of its case; `findings` are those without them."""
+class _WaivedRun:
+    """A run held against the waivers that are of its case; `findings` are those without them."""
 
-    record: Record
+    session: Session
     findings: tuple[Finding, ...]
     waivers: tuple[Waiver, ...]
 
@@ -131,19 +136,18 @@ class _WaivedRecord:
         uses = tuple(self._use(i, broken) for i in range(len(self.waivers)))
         used = {i for i, use in enumerate(uses) if use.used}
         if not used:
-            return Judgement(self.findings, self.record.rules, uses, n_of_others)
+            return Judgement(self.findings, self.session.record.rules, uses, n_of_others)
 
         def is_rest(*pair: Any) -> bool:
             return self._owner(*pair) not in used
 
         rest = self._of_pairs(is_rest)
-        findings = [*of_rules(self.record, rest), *(f for use in uses for f in use.findings)]
+        findings = [*of_rules(self.session, rest), *(f for use in uses for f in use.findings)]
         findings.sort(key=lambda finding: finding.standing)
         return Judgement(tuple(findings), rest, uses, n_of_others, is_rest)
 
     def _of_pairs(self, is_meant: PairTest, *levels: float) -> tuple[RuleAnswer, ...]:
-        assert self.record.of_pairs is not None, "the record of a run can be asked again"
-        return self.record.of_pairs(is_meant, levels=levels)
+        return self.session.of_pairs(is_meant, levels=levels)
 
     def _owner(self, rule: str, one: tuple[str, ...], other: tuple[str, ...]) -> int:
         """The last waiver that holds and is of a pair; -1 for none."""
@@ -151,8 +155,9 @@ class _WaivedRecord:
         return max((i for i in own if not self._expired(i)), default=-1)
 
     def _expired(self, i: int) -> bool:
-        assert self.record.today is not None, "a case with waivers has a day"
-        return self.waivers[i].is_expired(self.record.today)
+        today = self.session.record.today
+        assert today is not None, "a case with waivers has a day"
+        return self.waivers[i].is_expired(today)
 
     def _use(self, i: int, broken: bool) -> WaiverUse:
         waiver = self.waivers[i]
@@ -168,13 +173,13 @@ class _WaivedRecord:
             why = f"is not needed: {self._why_not_needed(i)}"
             return WaiverUse(waiver, fault=_stale(waiver, why))
         failing = [finding for finding in findings if finding.fails]
-        why = why_undecided(self.record.case)
+        why = why_undecided(self.session.record.case)
         fault = _fault(waiver, failing[0], why) if failing else ""
         return WaiverUse(waiver, answers, tuple(findings), fault, is_of)
 
     def _covered(self, waiver: Waiver, rule: RuleAnswer) -> list[Finding]:
         """What of a waiver's pairs is not clear; waived what breaks a rule and stays above the waiver's level."""
-        found = [one for one in RuleFindings(self.record, rule) if one.status != Status.CLEAR]
+        found = [one for one in RuleFindings(self.session, rule) if one.status != Status.CLEAR]
         return [_waived(self._of_waiver(one, waiver), waiver, rule.limits) for one in found]
 
     def _of_waiver(self, finding: Finding, waiver: Waiver) -> Finding:
@@ -182,14 +187,16 @@ class _WaivedRecord:
         if finding.kind != UNPROVEN:
             return finding
         a, b = waiver.between
-        name = FindingName(self.record.case.name, finding.kind, finding.rule, waiver.between)
+        name = FindingName(
+            self.session.record.case.name, finding.kind, finding.rule, waiver.between
+        )
         return replace(finding, id=name.id, body_a=a, body_b=b)
 
     def _why_not_needed(self, i: int) -> str:
         """Why nothing needs a waiver: what it names is not there, or keeps its rule."""
         from clearance.findings.waiver_names import unknown_name
 
-        told = unknown_name(self.record, self.waivers[i])
+        told = unknown_name(self.session.record, self.waivers[i])
         return told or "what it is of keeps to its rule, or a later waiver is of it"
 
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Literal
 from weakref import WeakKeyDictionary
 
-from clearance.simulate.fingerprint import robot_digest
-from clearance.simulate.names import pair_names
-from clearance.simulate.record import Record
+from clearance.record.fingerprint import robot_digest
+from clearance.record.names import pair_names
+from clearance.record.record import Record
 from clearance.world.budget import Budget, RobotTolerance
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.cell import once_a_cell
@@ -170,8 +170,7 @@ def _blocks(pairs: Iterable[tuple[str, str]]) -> Iterator[MeasuredPairs]:
 
 def _measured(record: Record) -> tuple[tuple[Pair, ...], ...]:
     """The pairs of each section of each rule."""
-    known = (rule.pairs for rule in record.rules if rule.pairs is not None)
-    return tuple(answer.section.pairs for pairs in known for answer in pairs.answers)
+    return tuple(pairs for rule in record.rules for pairs in rule.sections)
 
 
 @once_a_cell(16)

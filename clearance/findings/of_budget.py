@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from weakref import WeakKeyDictionary
 
 from clearance.findings.finding import (
     NOT_PROVEN,
@@ -21,34 +20,32 @@ from clearance.findings.finding import (
 from clearance.findings.judgement import Judgement, WaiverUse
 from clearance.findings.of_rule import joints_of
 from clearance.findings.standing import code_of
-from clearance.simulate.budget_answer import RuleBudget
-from clearance.simulate.record import Record
-from clearance.simulate.status import STATUSES, Status
+from clearance.record.budget import RuleBudget
+from clearance.record.record import Record
+from clearance.record.session import Session
+from clearance.record.status import STATUSES, Status
 from clearance.world.case import Limits
 
 NOT_WORKED_OUT = "what the tolerances leave was not worked out"
 
-_KNOWN: WeakKeyDictionary[Record, tuple[Finding, ...]] = WeakKeyDictionary()
 
-
-def of_budget(record: Record, judgement: Judgement | None) -> tuple[Finding, ...]:
+def of_budget(session: Session, judgement: Judgement | None) -> tuple[Finding, ...]:
     """A finding for each rule that is kept as measured, and is not proven to be with the tolerances; with waivers,
     one for each of them too whose level is not.
 
     Args:
-        judgement: of the record; None where it has no waivers.
+        judgement: of the run; None where it has no waivers.
     """
-    if record.case.tolerance is None:
+    if session.record.case.tolerance is None:
         return ()
-    if record not in _KNOWN:
-        _KNOWN[record] = (*_of_rules(record, judgement), *_of_waivers(record, judgement))
-    return _KNOWN[record]
+    return (*_of_rules(session, judgement), *_of_waivers(session, judgement))
 
 
-def _of_rules(record: Record, judgement: Judgement | None) -> Iterator[Finding]:
+def _of_rules(session: Session, judgement: Judgement | None) -> Iterator[Finding]:
+    record = session.record
     judging = record.rules if judgement is None else judgement.judging
     broken = {one.name for one in judging if code_of(one) >= STATUSES.index(Status.VIOLATED)}
-    known = {one.rule: one for one in _not_waived(record, judgement)}
+    known = {one.rule: one for one in _not_waived(session, judgement)}
     rest = record.rules if judgement is None else judgement.rest
     for rule in rest:
         if rule.name in broken:
@@ -56,22 +53,22 @@ def _of_rules(record: Record, judgement: Judgement | None) -> Iterator[Finding]:
         if rule.name not in known:
             yield replace(_named(record, rule.name, rule.limits), text=NOT_WORKED_OUT)
         elif not known[rule.name].keeps:
-            yield _not_kept(record, _named(record, rule.name, rule.limits), known[rule.name])
+            yield _not_kept(session, _named(record, rule.name, rule.limits), known[rule.name])
 
 
-def _not_waived(record: Record, judgement: Judgement | None) -> tuple[RuleBudget, ...]:
+def _not_waived(session: Session, judgement: Judgement | None) -> tuple[RuleBudget, ...]:
     """What the tolerances leave of the pairs that are not waived."""
-    if judgement is None or judgement.is_rest is None or record.budget_of_pairs is None:
-        return record.budget or ()
-    return record.budget_of_pairs(judgement.is_rest)
+    if judgement is None or judgement.is_rest is None or session.record.budget is None:
+        return session.record.budget or ()
+    return session.budget_of_pairs(judgement.is_rest)
 
 
-def _of_waivers(record: Record, judgement: Judgement | None) -> Iterator[Finding]:
+def _of_waivers(session: Session, judgement: Judgement | None) -> Iterator[Finding]:
     for use in () if judgement is None else judgement.covering:
-        if record.budget_of_pairs is not None and use.is_of is not None:
-            for one in record.budget_of_pairs(use.is_of):
+        if session.record.budget is not None and use.is_of is not None:
+            for one in session.budget_of_pairs(use.is_of):
                 if one.limits.below(one.least, use.waiver.at_least) or one.least <= 0.0:
-                    yield _not_kept(record, _of_waiver(record, use, one), one)
+                    yield _not_kept(session, _of_waiver(session.record, use, one), one)
 
 
 def _of_waiver(record: Record, use: WaiverUse, one: RuleBudget) -> Finding:
@@ -102,12 +99,13 @@ def _named(record: Record, rule: str, limits: Limits) -> Finding:
     )
 
 
-def _not_kept(record: Record, named: Finding, budget: RuleBudget) -> Finding:
+def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:
     """A finding with what is proven, and the moment that the errors bring nearest."""
     named = replace(named, proven=budget.least)
-    if not budget.worst:
+    worst = session.least_left(budget)
+    if not worst:
         return named
-    moment = budget.worst[0].moment
+    moment = worst[0].moment
     return replace(
         named,
         body_a=named.body_a or moment.link,
@@ -119,7 +117,7 @@ def _not_kept(record: Record, named: Finding, budget: RuleBudget) -> Finding:
         between=moment.between,
         point_a=_point(moment.point_link),
         point_b=_point(moment.point_obstacle),
-        joints=joints_of(record, moment),
+        joints=joints_of(session.record, moment),
     )
 
 

@@ -3,32 +3,37 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
-from clearance.findings.judgement import judgement_of
+from clearance.findings.judgement import Judgement
 from clearance.findings.occurrences import release_level
-from clearance.findings.of_budget import of_budget
-from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.rule_pairs import MOST_NEAR_STEPS
-from clearance.simulate.status import Status
+from clearance.record.record import ProfileAnswer, Record
+from clearance.record.rule_answer import MOST_NEAR_STEPS
+from clearance.record.session import Session
+from clearance.record.status import Status
 from clearance.world.notice import Severity
 
 
-def findings_of(record: Record) -> tuple[Finding, ...]:
+def findings_of(
+    record: Record, judgement: Judgement, of_tolerances: Sequence[Finding] = ()
+) -> tuple[Finding, ...]:
     """The findings of a record, the worst first; each rule that judges something has one at least.
 
     What its waivers cover is `waived`, and is there all the same.
+
+    Args:
+        of_tolerances: the findings of `of_budget`.
     """
-    judgement = judgement_of(record)
-    found = [*judgement.findings, *of_budget(record, judgement)]
+    found = [*judgement.findings, *of_tolerances]
     found += [_of_profile(record, answer) for answer in record.profiles]
     found += _of_joints(record)
     return tuple(sorted(found, key=lambda finding: finding.standing))
 
 
-def why_incomplete(record: Record) -> str:
+def why_incomplete(session: Session) -> str:
     """Why a pair below its warn limit could have no finding of its own; empty where none can."""
+    record = session.record
     if record.need == "minimum":
         return "only the least of all steps was asked for (need 'minimum')"
     if record.method == "paper":
@@ -36,7 +41,7 @@ def why_incomplete(record: Record) -> str:
     if record.case.clock.slack > 0.0:
         return "where clocks are not tied only the nearest pair of each step is known"
     for rule in record.rules:
-        if rule.pairs is not None and rule.pairs.is_cut(release_level(rule.limits)):
+        if session.is_cut(rule, release_level(rule.limits)):
             return f"more than {MOST_NEAR_STEPS:,} steps are near; only the nearest pair of each is told"
     return ""
 

@@ -16,22 +16,20 @@ import numpy as np
 from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
 from clearance.findings.occurrences import NearCourse, release_level
 from clearance.findings.standing import why_undecided
-from clearance.simulate.certificate import Certificate, contact_is_open
-from clearance.simulate.moment import Moment
-from clearance.simulate.pairs_alone import can_be_alone, near_alone
-from clearance.simulate.record import Record
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.rule_pairs import NearRows
-from clearance.simulate.status import Status, status_of
-from clearance.simulate.stretches import RuleStretches
+from clearance.record.certificate import Certificate, contact_is_open
+from clearance.record.moment import Moment
+from clearance.record.record import Record
+from clearance.record.rule_answer import NearRows, RuleAnswer
+from clearance.record.session import Session
+from clearance.record.status import Status, status_of
 from clearance.world.case import Limits
 
 
 @dataclass(frozen=True, eq=False)
 class RuleFindings:
-    """The findings of a rule of a record; `alone` where the rule is told of one pair only."""
+    """The findings of a rule of a run; `alone` where the rule is told of one pair only."""
 
-    record: Record
+    session: Session
     rule: RuleAnswer
     alone: bool = False
 
@@ -55,11 +53,12 @@ class RuleFindings:
     def _of_pairs(self) -> Iterator[Finding]:
         """Those of pairs; each by itself where that can be proven, so that none is hidden by another."""
         level = release_level(self.rule.limits)
-        if self.alone or not can_be_alone(self.rule, level):
+        answers = None if self.alone else self.session.alone(self.rule, level)
+        if answers is None:
             yield from self._of_known_pairs()
             return
-        for answer in near_alone(self.rule, level).values():
-            yield from RuleFindings(self.record, answer, alone=True)._of_known_pairs()
+        for answer in answers:
+            yield from RuleFindings(self.session, answer, alone=True)._of_known_pairs()
 
     def _of_known_pairs(self) -> Iterator[Finding]:
         limits = self.rule.limits
@@ -74,14 +73,7 @@ class RuleFindings:
     @cached_property
     def _rows(self) -> NearRows:
         """All pairs below the release level at each step."""
-        level = release_level(self.rule.limits)
-        if self.rule.pairs is not None:
-            return self.rule.pairs.near(level)
-        found = self.rule.measurement
-        steps = np.flatnonzero((found.pair >= 0) & (found.clearance < level))
-        touching = found.touches(slice(None))[steps]
-        only = np.ones(len(steps), dtype=bool)
-        return NearRows(steps, found.pair[steps], found.clearance[steps], touching, only)
+        return self.session.near(self.rule, release_level(self.rule.limits))
 
     @cached_property
     def _bridges(self) -> np.ndarray:
@@ -128,12 +120,8 @@ class RuleFindings:
     def _moment(self, pair: int, position: int) -> Moment:
         step = position // 2
         if position % 2:
-            assert self.rule.certificate is not None
-            return self.rule.certificate.moment_of(step)
-        nearest = self.rule.measurement.pair[step] == pair
-        if nearest or self.rule.pairs is None:
-            return self.rule.moment_at(step)
-        return self.rule.pairs.moment(step, pair)
+            return self.session.moment_between(self.rule, step)
+        return self.session.moment(self.rule, step, pair)
 
     def _at(self, moment: Moment, first: int, last: int, occurrence: int = 0) -> Finding:
         """A finding with its worst moment and its stretch, from one position to another."""
@@ -155,22 +143,22 @@ class RuleFindings:
             last_step=last // 2,
             point_a=_point(moment.point_link),
             point_b=_point(moment.point_obstacle),
-            joints=joints_of(self.record, moment),
+            joints=joints_of(self.session.record, moment),
         )
 
     def _span(self, time: float, first: int, last: int) -> tuple[float, float]:
         """[s] The stretch about a time: of the motion where that is proven, else from a position to another."""
         if self.alone:
-            for start, end in self._released.spans.tolist():
+            for start, end in self._released.tolist():
                 if start <= time <= end:
                     return start, end
-        times = self.record.motions[0].times
+        times = self.session.record.motions[0].times
         return float(times[first // 2]), float(times[min(last // 2 + last % 2, len(times) - 1)])
 
     @cached_property
-    def _released(self) -> RuleStretches:
-        """When the pairs of the rule are below the level at which an occurrence ends."""
-        return RuleStretches(self.rule, release_level(self.rule.limits))
+    def _released(self) -> np.ndarray:
+        """(k, 2) [s] The stretches below the level at which an occurrence ends."""
+        return self.session.spans_below(self.rule, release_level(self.rule.limits))
 
     def _proven(self, intervals: slice) -> float | None:
         """[m] What is proven of all pairs of the rule over some intervals."""
@@ -196,7 +184,7 @@ class RuleFindings:
 
     def _of_open(self, certificate: Certificate, open_at: np.ndarray, status: str) -> Finding:
         worst = int(open_at[np.argmin(certificate.lower_bound[open_at])])
-        times = self.record.motions[0].times
+        times = self.session.record.motions[0].times
         seen = certificate.upper_bound[worst]
         return self._named(
             UNPROVEN,
@@ -210,7 +198,7 @@ class RuleFindings:
             end=float(times[min(open_at[-1] + 1, len(times) - 1)]),
             first_step=int(open_at[0]),
             last_step=int(open_at[-1]),
-            text=why_undecided(self.record.case),
+            text=why_undecided(self.session.record.case),
         )
 
     def _kept(self) -> Finding:
@@ -236,7 +224,7 @@ class RuleFindings:
         a, b = bodies or ("", "")
         told: dict[str, Any] = {"status": str(Status.CLEAR), "clearance": None, "proven": None}
         return Finding(
-            id=FindingName(self.record.case.name, kind, rule, bodies, occurrence).id,
+            id=FindingName(self.session.record.case.name, kind, rule, bodies, occurrence).id,
             kind=kind,
             rule=rule,
             body_a=a,

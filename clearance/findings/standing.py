@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from clearance.simulate.certificate import motion_codes
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.status import STATUSES, Status
+from clearance.record.certificate import motion_codes
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import STATUSES, Status
 from clearance.world.case import Case
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from clearance.errors import nearest_name
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 from clearance.world.case import Case
 from clearance.world.rules import matches
 from clearance.world.waiver import Waiver

@@ -17,11 +17,11 @@ from clearance.gains.changed_files import OWN as OF_CASE
 from clearance.gains.changed_files import case_files
 from clearance.gains.page import page_of
 from clearance.overwriting import refuse_inputs
+from clearance.record.moment import Moment
 from clearance.report.folder import fill_folder
 from clearance.report.output import OWN as OF_REPORT
 from clearance.report.output import json_text
 from clearance.run import Run
-from clearance.simulate.moment import Moment
 
 FIGURES, PAGE = "gain.json", "gain.html"
 

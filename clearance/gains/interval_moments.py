@@ -20,7 +20,7 @@ from clearance.gains.shortfalls import (
     short_of,
     with_new_moments,
 )
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 
 
 def looked_closer(wanted: Requirement, record: Record, state: State) -> Requirement:

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
+from clearance.record.record import Record
 from clearance.simulate.approaches import Approach
-from clearance.simulate.record import Record
 from clearance.simulate.transfers import CombinedTransfers, Transfers
 
 NOT_MOVED = "nothing of this change moves them"

@@ -19,14 +19,12 @@ from clearance.gains.change_parts import (
     proven_bound,
 )
 from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
+from clearance.record.wording import limit_mm, mm, moment_text, seconds
 from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
 from clearance.report.plain_page import plain_page
-from clearance.report.wording import limit_mm, mm, moment_text, seconds
 from clearance.run import Run
-from clearance.simulate.record import Record
-from clearance.simulate.replay.curve_moments import curve_moments
 
 NAMES = ("before", "after")
 
@@ -68,7 +66,7 @@ def _badge(gain: Gain) -> str:
 def _curves(gain: Gain) -> Markup:
     letters = ("a", "b")
     runs = (gain.before, gain.after)
-    curves = [motion_curve(name, run.record) for name, run in zip(NAMES, runs, strict=True)]
+    curves = [motion_curve(name, run) for name, run in zip(NAMES, runs, strict=True)]
     key = [
         element("span", element("i"), name, class_=letter)
         for letter, name in zip(letters, NAMES, strict=True)
@@ -89,9 +87,9 @@ def _curves(gain: Gain) -> Markup:
     return section("Clearance over time", picture, element("div", *key, class_="key"), what)
 
 
-def motion_curve(name: str, record: Record) -> ClearanceCurve:
-    """The curve of a record, with the moments between its steps that are known."""
-    steps, moments = curve_of(name, record.steps), curve_moments(record)
+def motion_curve(name: str, run: Run) -> ClearanceCurve:
+    """The curve of a run, with the moments between its steps that are known."""
+    steps, moments = curve_of(name, run.record.steps), run.session.curve_moments()
     times = np.append(steps.times, [moment.time for moment in moments])
     clearances = np.append(steps.clearances, [moment.clearance for moment in moments])
     order = np.argsort(times, kind="stable")

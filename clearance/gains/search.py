@@ -23,8 +23,8 @@ from clearance.gains.shortfalls import (
     proven,
     raised,
 )
+from clearance.record.record import Record
 from clearance.simulate.approaches import Approach
-from clearance.simulate.record import Record
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline

@@ -23,7 +23,7 @@ from clearance.gains.joint_ranges import too_fast
 from clearance.gains.obstruction import HOPELESS
 from clearance.gains.offsets import SLIDE
 from clearance.gains.turn import ARM
-from clearance.report.wording import depth_mm, limit_mm, mm, moment_text
+from clearance.record.wording import depth_mm, limit_mm, mm, moment_text
 from clearance.run import Run
 from clearance.world.case import index_of_robot
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from clearance.findings.standing import code_of
 from clearance.gains.moments import with_moments
-from clearance.run import Question, answer
+from clearance.record.certificate import motion_codes
+from clearance.record.record import Record
+from clearance.record.status import STATUSES, Status
+from clearance.run import Question, Run, answer
 from clearance.simulate.approaches import Approach, OfPair, approaches
-from clearance.simulate.certificate import motion_codes
-from clearance.simulate.record import Record
-from clearance.simulate.status import STATUSES, Status
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.rules import Rule
@@ -103,19 +103,24 @@ class State:
 
     x: np.ndarray
     case: Case
-    record: Record
+    run: Run
     beyond: float
     wanted: Requirement
     beside: Rows | None = None
     moved: OfPair | None = None
     bounded: bool = False
 
+    @property
+    def record(self) -> Record:
+        """What was measured."""
+        return self.run.record
+
     @cached_property
     def near(self) -> Sequence[Approach]:
         """All that comes near, at the steps."""
         extra = float(self._extra.max(initial=0.0))
         within = self.margin + self.wanted.beyond + extra + self.beyond
-        return [*approaches(self.record.rules, within, self.moved, bounded=self.bounded)]
+        return [*approaches(self.run.session.rules, within, self.moved, bounded=self.bounded)]
 
     @property
     def touches(self) -> bool:
@@ -197,8 +202,8 @@ def measured(
         moved: the pairs that are looked at; None for all.
     """
     finer = with_moments(case, wanted.moments)
-    record = answer(Question(finer, certify=False, contact="none", inside=False)).record
-    return State(x, case, record, beyond, wanted, moved=moved)
+    run = answer(Question(finer, certify=False, contact="none", inside=False))
+    return State(x, case, run, beyond, wanted, moved=moved)
 
 
 def proven(case: Case, margin: float, gap: float = CERTIFY_GAP) -> Record:

@@ -6,7 +6,9 @@ beyond a sketch by less than the profile's bound is still called a violation. No
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,12 +22,19 @@ from clearance.profiles.profile import Profile
 from clearance.profiles.region import contains
 from clearance.profiles.sweep import swept_profile
 from clearance.profiles.swept_bodies import TimedCase
-from clearance.simulate.record import ProfileAnswer
+from clearance.record.record import ProfileAnswer
 from clearance.world.case import Case, ReservedSpace
 from clearance.world.timeline import Timeline
 
 
-def answer_profiles(case: Case, timeline: Timeline) -> tuple[ProfileAnswer, ...]:
+class AnsweredProfile(NamedTuple):
+    """The answer of a profile, and what draws it as SVG."""
+
+    answer: ProfileAnswer
+    picture: Callable[[], str]
+
+
+def answer_profiles(case: Case, timeline: Timeline) -> tuple[AnsweredProfile, ...]:
     """One answer for each of the case's profiles, in their order.
 
     Raises:
@@ -44,7 +53,7 @@ def answer_profiles(case: Case, timeline: Timeline) -> tuple[ProfileAnswer, ...]
     return tuple(found)
 
 
-def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> ProfileAnswer:
+def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> AnsweredProfile:
     """The answer; a gap is less by what paths may be off [m]."""
     curve = space.sketch.curves()
     require_closed(curve, "sketch")
@@ -62,7 +71,7 @@ def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> ProfileA
         if not contained:
             gap, ends = _beyond(sketch, swept, around, ends)
     link, step = _maker(swept, ends[0])
-    return ProfileAnswer(
+    answer = ProfileAnswer(
         name=space.name,
         plane=space.plane,
         section=space.section,
@@ -76,8 +85,9 @@ def _answer(space: ReservedSpace, swept: Profile, path_error: float) -> ProfileA
         point_sketch=_pair(ends[1]),
         link=link,
         step=step,
-        picture=partial(_picture, space, swept, DrawnOutline("sketch", curve), ends),
     )
+    picture = partial(_picture, space, swept, DrawnOutline("sketch", curve), ends)
+    return AnsweredProfile(answer, picture)
 
 
 def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):

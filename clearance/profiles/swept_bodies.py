@@ -16,10 +16,10 @@ from clearance.errors import BadShape, UnknownLink, UnknownObstacle, nearest_nam
 from clearance.profiles.chain import Chain, chain_of
 from clearance.profiles.chords import BodyKnots, knots_of, standing
 from clearance.profiles.plane import Plane
-from clearance.simulate.holders import holding_link
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.forest import WORLD
+from clearance.world.holders import holding_link
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
 from clearance.world.phase import Phase

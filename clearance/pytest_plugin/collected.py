@@ -129,7 +129,7 @@ class RuleItem(_Item):
     def runtest(self) -> None:
         """Fails with each finding that breaks the rule; is skipped where all that does is waived, and where the
         run is in doubt."""
-        from clearance.report.finding_text import finding_line, waived_text
+        from clearance.findings.finding_text import finding_line, waived_text
 
         run = self.case_run.run()
         if not any(answer.name == self.rule for answer in run.record.rules):
@@ -164,7 +164,7 @@ def _in_doubt(run: Run) -> list[str]:
 
 
 def _told(finding: Finding) -> str:
-    from clearance.report.finding_text import finding_line
+    from clearance.findings.finding_text import finding_line
 
     return f"{finding_line(finding)} (finding {finding.id})"
 

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
 from clearance.findings.standing import why_undecided
-from clearance.report.wording import limit_mm, mm, moment_text, of_rule
+from clearance.record.budget import RuleBudget
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.session import PairTest
+from clearance.record.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
-from clearance.simulate.budget_answer import RuleBudget
-from clearance.simulate.record import PairTest
-from clearance.simulate.rule_answer import RuleAnswer
 from clearance.world.case import Case
 from clearance.world.rules import PairPattern, checked_level, matches
 
@@ -25,12 +25,11 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     """
     pattern = PairPattern((between[0], between[1]))
     level = None if at_least is None else checked_level(at_least, "at_least")
-    assert run.record.of_pairs is not None, "a run can be asked again"
 
     def is_meant(_: str, one: tuple[str, ...], other: tuple[str, ...]) -> bool:
         return pattern.matches(one, other)
 
-    answers = run.record.of_pairs(is_meant, "steps", () if level is None else (level,))
+    answers = run.session.of_pairs(is_meant, "steps", () if level is None else (level,))
     if not answers:
         raise _no_such_pair(run, between)
     found = {one.name: [*_faults(run.record.case, one, level)] for one in answers}
@@ -42,8 +41,10 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
 
 def _budgets(run: Run, is_meant: PairTest) -> tuple[RuleBudget, ...]:
     """What tolerances leave of the pairs; nothing without any, and where what is not proven is accepted."""
-    tolerance, asked = run.record.case.tolerance, run.record.budget_of_pairs
-    return () if tolerance is None or tolerance.unproven_ok or asked is None else asked(is_meant)
+    tolerance = run.record.case.tolerance
+    if tolerance is None or tolerance.unproven_ok:
+        return ()
+    return run.session.budget_of_pairs(is_meant)
 
 
 def _with_tolerances(
@@ -77,15 +78,7 @@ def _faults(case: Case, answer: RuleAnswer, at_least: float | None) -> Iterator[
 
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:
-    names = sorted(
-        {
-            name
-            for rule in run.record.rules
-            if rule.pairs
-            for pair in rule.pairs.names
-            for name in pair
-        }
-    )
+    names = sorted({body.name_in(run.record.case) for pair in run.record.pairs for body in pair})
     for pattern in between:
         if not any(matches(name, pattern) for name in names):
             return UnknownLink(f"no body is called {pattern!r}", valid=nearest_name(pattern, names))

@@ -14,10 +14,10 @@ from clearance.compile.library import processor
 from clearance.errors import BadInput, BadSyntax, MissingFile, shown
 from clearance.package_digest import package_digest
 from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
-from clearance.report.output import CONTENT, write
+from clearance.report.output import CONTENT
 from clearance.report.provenance import versions
 from clearance.report.withdrawn import OLDER_SUMMARY
-from clearance.simulate.record import Record
+from clearance.run import Run
 
 PAGE = "report.html"
 
@@ -53,13 +53,13 @@ def listed(names: list[str]) -> str:
     return ", ".join([*(shown(text[:MOST_LETTERS]) for text in names[:MOST_TOLD]), *more])
 
 
-def differences(record: Record, place: Path) -> dict[str, str]:
-    """The first difference of each file between the report in a folder and the report of a record.
+def differences(run: Run, place: Path) -> dict[str, str]:
+    """The first difference of each file between the report in a folder and the report of a run.
 
     The summary comes first, then the page. A file that the folder lacks is `ABSENT`.
     """
     with tempfile.TemporaryDirectory() as made:
-        write(record, made)
+        run.save(made)
         pairs = {
             name: (_content(place / name), _content(Path(made) / name))
             for name in reversed(CONTENT)
@@ -108,13 +108,13 @@ def hashes_of(folder: Path) -> dict[str, str]:
     return {name: digest for name, digest in found.items() if digest is not None}
 
 
-def has_comparison(record: Record, folder: Path) -> bool:
+def has_comparison(run: Run, folder: Path) -> bool:
     """Whether the page in a folder shows more than its run.
 
     Raises:
         BadInput: the report is that of another run.
     """
-    for name, what in differences(record, folder).items():
+    for name, what in differences(run, folder).items():
         if name != PAGE:
             raise BadInput(
                 f"not the report of this run: {what}",

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
+from clearance.findings.verdict import KEPT, Verdict
 from clearance.receipt.asked import question_of, told_beside
 from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
@@ -37,10 +38,9 @@ from clearance.receipt.verification import (
     proven,
 )
 from clearance.receipt.writing import claims_of
+from clearance.record.status import Status
 from clearance.report.folder import LAST
-from clearance.report.verdict import KEPT, Verdict
 from clearance.run import Run, answer
-from clearance.simulate.status import Status
 from clearance.world.case import Case
 
 PASSING = {Status.CLEAR: "warn", Status.NEAR: "fail"}
@@ -92,7 +92,7 @@ def _held_against(
     found: Verification, run: Run, data: CaseData, receipt: Receipt, place: Path
 ) -> Verification:
     """The verification, with all that differs between the report and a fresh run."""
-    different = differences(run.record, place)
+    different = differences(run, place)
     absent = [name for name, what in different.items() if what == ABSENT]
     reasons = {ABSENT: absent, "not part of the report": strangers(place)}
     different = {name: what for name, what in different.items() if name not in absent}

@@ -46,8 +46,8 @@ ERRORS_TAKE = 2
 MICROMETRES = round(2e-6 / UNIT)
 
 if TYPE_CHECKING:
+    from clearance.record.record import Record
     from clearance.run import Run
-    from clearance.simulate.record import Record
 
 
 def write_receipt(
@@ -79,7 +79,7 @@ def write_receipt(
     if run.question is None:
         raise BadInput("no receipt of a record that answers no question", valid="a run of check()")
     refuse_uncovered(run.question)
-    report, compared = hashes_of(place), has_comparison(record, place)
+    report, compared = hashes_of(place), has_comparison(run, place)
     proven = _proven(record, kind, progress)
     data = proven.data
     head = {

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 from clearance.world.case import PlacedRobot
 from clearance.world.mount import Mount
 from clearance.world.timing import Timing

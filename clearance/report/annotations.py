@@ -11,10 +11,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from clearance.findings.finding import Finding
-from clearance.report.finding_text import finding_line
+from clearance.findings.finding_text import finding_line
+from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
+from clearance.record.record import Record
 from clearance.report.trajectory_row import row_of
-from clearance.report.verdict import ACCEPTED, POSE, SAMPLES, Verdict
-from clearance.simulate.record import Record
 
 MOST = 10
 """Annotations of a step that GitHub shows."""

@@ -10,9 +10,9 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.wording import certified_text, count, limit_mm, scientific_mm
 from clearance.report.contact import HEADS
 from clearance.report.markup import element, section, step_link, table
-from clearance.report.wording import certified_text, count, limit_mm, scientific_mm
 
 MAX_DISAGREEMENTS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""

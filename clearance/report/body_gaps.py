@@ -8,16 +8,14 @@ Source: ISO 13854, minimum gaps, as the page of AUVA (app.auva.at) gives them; t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.record import PairMinimum
+from clearance.record.wording import count, limit_mm, mm, seconds
 from clearance.report.markup import element, section, step_link, table
-from clearance.report.wording import count, limit_mm, mm, seconds
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.record import Record
-from clearance.simulate.standing import standing_bodies
 
 WIDTHS = {
     "body": 0.5,
@@ -36,11 +34,10 @@ SOURCE = "widths of ISO 13854 as AUVA (app.auva.at) gives them"
 MOST_LINES, MOST_ROWS = 4, 200
 
 
-def body_gaps_of(record: Record) -> list[dict[str, Any]]:
+def body_gaps_of(minima: Sequence[PairMinimum], standing: frozenset[str]) -> list[dict[str, Any]]:
     """The least gap [m] of each pair of a moving and a standing body that is below the widest of `WIDTHS`, the
     narrowest first, and which parts it is too narrow for.
     """
-    standing = standing_bodies(record)
     return [
         {
             "body_a": one.link,
@@ -50,15 +47,14 @@ def body_gaps_of(record: Record) -> list[dict[str, Any]]:
             "time": one.time,
             "may_catch": [part for part, width in WIDTHS.items() if one.clearance < width],
         }
-        for one in motion_minima(record)
+        for one in minima
         if one.clearance < max(WIDTHS.values())
         and (one.link in standing) != (one.obstacle in standing)
     ]
 
 
-def gap_lines(record: Record) -> Iterator[str]:
+def gap_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     """The narrowest of them, and where the widths are from."""
-    found = body_gaps_of(record)
     for one in found[:MOST_LINES]:
         where = f"{one['body_a']} - {one['body_b']} at step {one['step']}"
         yield f"{mm(one['gap'])} mm may catch {_parts(one)}: {where}"

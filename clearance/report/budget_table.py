@@ -6,13 +6,13 @@ Not for: the page (`tolerance_section`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pyarrow as pa
 
-from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget
-from clearance.simulate.record import Record
+from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget
+from clearance.record.record import Record
 
 FILE_NAME = "budget.csv"
 
@@ -44,9 +44,11 @@ SCHEMA = pa.schema(
 """A frame has two tolerances, an offset [m] and an angle [rad]; everything else has one."""
 
 
-def budget_table(record: Record) -> pa.Table:
-    """The table of a record with tolerances."""
-    rows = [row for one in record.budget or () for worst in one.worst for row in _rows(one, worst)]
+def budget_table(record: Record, left: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
+    """The table of a record with tolerances; `left` as in `RunDetails`."""
+    rows = [
+        row for one in record.budget or () for worst in left[one.rule] for row in _rows(one, worst)
+    ]
     return pa.Table.from_pylist(rows, schema=SCHEMA)
 
 

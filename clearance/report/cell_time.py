@@ -9,8 +9,8 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.wording import seconds
 from clearance.report.markup import element, section
-from clearance.report.wording import seconds
 
 
 def cell_time(summary: dict[str, Any]) -> Markup:

@@ -6,9 +6,9 @@ from clearance.findings.compared_doubts import ComparedDoubt
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
-from clearance.report.finding_text import bodies_text
+from clearance.findings.finding_text import bodies_text
+from clearance.record.wording import mm
 from clearance.report.rules import name_shown
-from clearance.report.wording import mm
 
 HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", "why")
 """What `comparison_cells` are."""

@@ -10,10 +10,10 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.contact import StepContact
+from clearance.record.record import Record
+from clearance.record.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
 from clearance.report.markup import element, section, step_link, table
-from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
-from clearance.simulate.contact.sequence import StepContact
-from clearance.simulate.record import Record
 
 
 def contact_of(record: Record) -> dict[str, Any] | None:
@@ -24,15 +24,16 @@ def contact_of(record: Record) -> dict[str, Any] | None:
     n_steps = Counter((row.link, row.obstacle) for row in record.contacts)
     for row in record.worked_out:
         pair = (row.link, row.obstacle)
-        if pair not in by_pair or row.numbers.penetration > by_pair[pair].numbers.penetration:
+        if pair not in by_pair or row.penetration > by_pair[pair].penetration:
             by_pair[pair] = row
-    deepest = sorted(by_pair.values(), key=lambda row: -row.numbers.penetration)
+    deepest = sorted(by_pair.values(), key=lambda row: -row.penetration)
     pairs = [_told(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
     return {"deepest": _told(record.deepest), "pairs": pairs}
 
 
 def _told(row: StepContact) -> dict[str, Any]:
-    found = row.numbers
+    found = row.known
+    assert found is not None, "only overlaps that are worked out are told"
     return {
         "step": row.step,
         "time": row.time,

@@ -8,11 +8,11 @@ from markupsafe import Markup
 
 from clearance.findings.comparison import ComparedFinding, Comparison
 from clearance.findings.finding import Finding
+from clearance.findings.finding_text import bodies_text, stretch_text, waived_text, when_text
+from clearance.record.wording import count, limit_mm, mm
 from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
-from clearance.report.finding_text import bodies_text, stretch_text, waived_text, when_text
 from clearance.report.markup import element, section, table
 from clearance.report.rules import name_shown
-from clearance.report.wording import count, limit_mm, mm
 
 MOST_ROWS = 200
 """Most findings printed on the page; findings.json has all."""

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from clearance.extras import importing
+from clearance.findings.verdict import Verdict
 from clearance.report.folder import write_file
 from clearance.report.junit_cases import TestResult, results_of
-from clearance.report.verdict import Verdict, verdict_of
-from clearance.simulate.record import Record
+from clearance.report.report_data import ReportData
 
 if TYPE_CHECKING:
     import junitparser
@@ -31,7 +31,7 @@ _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 has no room for, escaped or not."""
 
 
-def write_junit(record: Record, path: str | Path) -> None:
+def write_junit(data: ReportData, path: str | Path) -> None:
     """Writes one test case for the verdict, and one for each thing that can fail by itself.
 
     What is waived is skipped, with who waives it and why. Where there are more cases than build servers read, the
@@ -44,10 +44,9 @@ def write_junit(record: Record, path: str | Path) -> None:
     with importing("report", "--junit"):
         import junitparser
 
-    verdict = verdict_of(record)
-    results = [*results_of(record, verdict)]
+    verdict, results = data.verdict, [*results_of(data)]
     kept = _that_fit(results)
-    suite = junitparser.TestSuite(_shown(record.case.name))
+    suite = junitparser.TestSuite(_shown(data.record.case.name))
     for name, value in _properties(verdict, len(results) - len(kept)).items():
         suite.add_property(name, _shown(value))
     suite.add_testcases([_case(result, name) for result, name in _named(kept)])

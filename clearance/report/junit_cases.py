@@ -15,16 +15,15 @@ from clearance.findings.finding import (
     WAIVED_TOLERANCES,
     Finding,
 )
-from clearance.findings.judgement import Judgement, judgement_of
-from clearance.findings.of_budget import of_budget
+from clearance.findings.finding_text import bodies_text, finding_line, waived_text
+from clearance.findings.judgement import Judgement
 from clearance.findings.standing import code_of
-from clearance.report.finding_text import bodies_text, finding_line, waived_text
-from clearance.report.pair_judge import PairJudge
-from clearance.report.rules import name_shown
-from clearance.report.summary import certified_of
-from clearance.report.tolerances import budget_lines
-from clearance.report.verdict import Verdict, moment_line, profile_text
-from clearance.report.wording import (
+from clearance.findings.tolerance_lines import budget_lines
+from clearance.findings.verdict import Verdict, moment_line, profile_text
+from clearance.record.record import PairMinimum, Record
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import STATUSES, Status
+from clearance.record.wording import (
     certified_text,
     least_text,
     limit_mm,
@@ -35,10 +34,10 @@ from clearance.report.wording import (
     seconds,
     step_text,
 )
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.status import STATUSES, Status
+from clearance.report.pair_judge import PairJudge
+from clearance.report.report_data import ReportData
+from clearance.report.rules import name_shown
+from clearance.report.summary import certified_of
 from clearance.world.notice import Severity
 from clearance.world.rules import DEFAULT
 
@@ -65,14 +64,14 @@ class TestResult:
     skipped: bool = False
 
 
-def results_of(record: Record, verdict: Verdict) -> Iterator[TestResult]:
+def results_of(data: ReportData) -> Iterator[TestResult]:
     """All cases; that of the verdict, which comes first, fails exactly where the run is not passed."""
-    judgement = judgement_of(record)
-    yield _of_verdict(record, verdict)
+    record, judgement = data.record, data.judgement
+    yield _of_verdict(record, data.verdict)
     yield from _of_waivers(judgement)
-    yield from _of_rules(record, judgement)
-    yield from _of_pairs(record, judgement)
-    yield from _of_budget(record, judgement)
+    yield from _of_rules(data)
+    yield from _of_pairs(data)
+    yield from _of_budget(data)
     for pair in record.unmeasured:
         yield TestResult(pair.link, f"{pair.link} - {pair.obstacle}", pair.reason, skipped=True)
     yield _of_certificate(record, judgement)
@@ -99,9 +98,10 @@ def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
         yield TestResult("waiver", str(use.waiver), use.fault or use.waiver.reason, fault)
 
 
-def _of_rules(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+def _of_rules(data: ReportData) -> Iterator[TestResult]:
     """One case for each rule where there are any: it fails by its worst moment, or if its limit is not proven."""
-    limits = record.case.limits
+    record, judgement = data.record, data.judgement
+    limits, worst_of = record.case.limits, judgement.worst_of or data.details.worst
     if not limits.rules:
         return
     for i, name in enumerate(limits.rule_names):
@@ -109,7 +109,7 @@ def _of_rules(record: Record, judgement: Judgement) -> Iterator[TestResult]:
             yield TestResult("rule", name, "no pair is judged by it", skipped=True)
             continue
         own, answers = limits.of_rule(i), [one for one in judgement.judging if one.name == name]
-        text, worst = limits_text(own.fail, own.warn), record.worst_among(answers)
+        text, worst = limits_text(own.fail, own.warn), worst_of.get(name)
         if worst is not None:
             text = f"{moment_line(record, worst)}; {text}"
         yield TestResult("rule", name, text, LIMIT if any(map(_is_violated, answers)) else "")
@@ -119,15 +119,15 @@ def _is_violated(answer: RuleAnswer) -> bool:
     return code_of(answer) >= VIOLATED
 
 
-def _of_pairs(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+def _of_pairs(data: ReportData) -> Iterator[TestResult]:
     """One case for each finding that is not clear, and for each pair without one, by each rule that judges it."""
     told = set()
-    for finding in judgement.findings:
+    for finding in data.judgement.findings:
         if finding.status != Status.CLEAR:
             told.add((finding.body_a, finding.body_b, finding.rule))
             yield _of_finding(finding)
-    judge = PairJudge.of(record)
-    for minimum in motion_minima(record):
+    judge = PairJudge.of(data.record)
+    for minimum in data.details.minima:
         if (minimum.link, minimum.obstacle, minimum.rule) not in told:
             yield _of_minimum(judge, minimum)
 
@@ -147,9 +147,9 @@ def _of_finding(finding: Finding) -> TestResult:
     return TestResult(group, name, f"{near}{least}{text}", LIMIT if finding.broken else "")
 
 
-def _of_budget(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+def _of_budget(data: ReportData) -> Iterator[TestResult]:
     """One case for each rule that is kept without tolerances: whether it is proven to be with them."""
-    found = of_budget(record, judgement)
+    record, judgement, found = data.record, data.judgement, data.of_tolerances
     yield from map(_of_finding, found)
     broken = {answer.name for answer in judgement.judging if _is_violated(answer)}
     told = broken | {finding.rule for finding in found}

@@ -11,17 +11,12 @@ from collections.abc import Sequence
 
 from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
+from clearance.findings.finding_text import bodies_text, finding_line, waived_text, when_text
+from clearance.findings.verdict import Verdict
+from clearance.record.record import Record
+from clearance.record.wording import count, limit_mm, mm
 from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
-from clearance.report.finding_text import (
-    bodies_text,
-    finding_line,
-    waived_text,
-    when_text,
-)
 from clearance.report.rules import name_shown
-from clearance.report.verdict import Verdict
-from clearance.report.wording import count, limit_mm, mm
-from clearance.simulate.record import Record
 
 MOST_ROWS = 50
 """Most findings in the table."""

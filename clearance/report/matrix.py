@@ -11,9 +11,9 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.status import STATUSES, Status
+from clearance.record.wording import mm, seconds
 from clearance.report.markup import element, section
-from clearance.report.wording import mm, seconds
-from clearance.simulate.status import STATUSES, Status
 from clearance.world.rules import DEFAULT
 
 _PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}

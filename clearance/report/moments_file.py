@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from clearance.report.moveit_moments import moments_of
-from clearance.simulate.record import Record
+from clearance.report.report_data import ReportData
 
 FILE_NAME = "worst_moments.yaml"
 
@@ -20,9 +20,9 @@ _HEAD = """\
 """
 
 
-def moments_text(record: Record) -> str:
-    """The file's text; the same record gives the same."""
-    return _HEAD + "\n".join(_lines(moments_of(record))) + "\n"
+def moments_text(data: ReportData) -> str:
+    """The file's text; the same data give the same."""
+    return _HEAD + "\n".join(_lines(moments_of(data))) + "\n"
 
 
 def _lines(given: dict[str, Any]) -> Iterator[str]:

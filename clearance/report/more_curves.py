@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.budget.columns import least_between, least_expected, least_proven
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 
 MOST_PARTS = 2000
 """Stretches that a screen can resolve."""

@@ -9,20 +9,19 @@ messages, of which none holds all of it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from clearance.load.message.times import split_time
+from clearance.record.moment import Moment
+from clearance.record.record import PairMinimum, Record
+from clearance.record.status import STATUSES, Status
 from clearance.report.actors import paddings_of
 from clearance.report.pair_judge import PairJudge
-from clearance.report.verdict import verdict_of
-from clearance.simulate.moment import Moment
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.status import STATUSES, Status
+from clearance.report.report_data import ReportData
 from clearance.world.case import Case
 
 FORMAT = "clearance-moments-1"
@@ -55,13 +54,14 @@ class _Entry:
         return self.rule, *self.bodies
 
 
-def moments_of(record: Record) -> dict[str, Any]:
+def moments_of(data: ReportData) -> dict[str, Any]:
     """The file's content."""
-    entries, names = _entries(record), _Names(record.case)
+    record = data.record
+    entries, names = _entries(record, data.details.minima), _Names(record.case)
     return {
         "format": FORMAT,
         "name": record.case.name,
-        "verdict": verdict_of(record).status,
+        "verdict": data.verdict.status,
         "need": record.need,
         "header": {"frame_id": "world"},
         "n_left_out": max(0, len(entries) - MOST),
@@ -69,7 +69,7 @@ def moments_of(record: Record) -> dict[str, Any]:
     }
 
 
-def _entries(record: Record) -> list[_Entry]:
+def _entries(record: Record, minima: Sequence[PairMinimum]) -> list[_Entry]:
     """The overall worst, then all that is not clear, the worst first."""
     worst = _of_moment(record, record.worst)
     found = {worst.is_of: worst}
@@ -78,7 +78,7 @@ def _entries(record: Record) -> list[_Entry]:
             one = _of_moment(record, rule.worst)
             found.setdefault(one.is_of, one)
     judge = PairJudge.of(record)
-    for minimum in motion_minima(record):
+    for minimum in minima:
         one = _of_pair(record, minimum, judge.status_of(minimum))
         found.setdefault(one.is_of, one)
     limits = {rule.name: rule.limits.fail for rule in record.rules}
@@ -196,8 +196,9 @@ class _Names:
 def _overlap(record: Record, entry: _Entry) -> dict[str, Any]:
     """How deep two bodies overlap, where that has been worked out: the first goes that far that way."""
     for row in record.worked_out:
-        if (row.step, row.link, row.obstacle) == (entry.step, *entry.bodies) and not entry.between:
-            return {"depth": row.numbers.penetration, "way_out": _vector(row.numbers.direction)}
+        found, pair = row.known, (row.step, row.link, row.obstacle)
+        if found is not None and pair == (entry.step, *entry.bodies) and not entry.between:
+            return {"depth": found.penetration, "way_out": _vector(found.direction)}
     return {}
 
 

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from markupsafe import Markup
 
+from clearance.findings.verdict import Verdict
+from clearance.record.record import PairMinimum, Record
+from clearance.record.wording import depth_text, limits_text, mm, moment_text, step_text
 from clearance.report.contact import HEADS
 from clearance.report.markup import element, table
-from clearance.report.verdict import verdict_of
-from clearance.report.wording import depth_text, limits_text, mm, moment_text, step_text
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.record import PairMinimum, Record
 
 MOST_PAIRS = 5
+"""Nearest pairs that a notebook shows."""
 
 
-def run_text(record: Record) -> str:
+def run_text(record: Record, verdict: Verdict) -> str:
     """Name, verdict, least clearance, who and when, in one line."""
-    return f"{record.case.name}: {verdict_of(record).text()}, {_worst(record)}"
+    return f"{record.case.name}: {verdict.text()}, {_worst(record)}"
 
 
-def run_html(record: Record) -> str:
+def run_html(record: Record, verdict: Verdict, nearest: Sequence[PairMinimum]) -> str:
     """The same with what must be known beside it, and the closest pairs as a table."""
-    verdict = verdict_of(record)
     limits = record.rule(record.worst.rule).limits
     told = limits_text(limits.fail, limits.warn)
     beside = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
@@ -41,7 +42,7 @@ def run_html(record: Record) -> str:
         element("ul", *[element("li", line) for line in beside]),
         table(
             (*HEADS[record.sides[0]], ">mm", ">Step", ">s", *(["Rule"] if several else [])),
-            [_row(p, several=several) for p in motion_minima(record, MOST_PAIRS)],
+            [_row(p, several=several) for p in nearest],
         ),
     )
 

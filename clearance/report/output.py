@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
+from clearance.record.replay import FILE_NAME, EarlierBody, Replay
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.report.budget_table import FILE_NAME as BUDGET
 from clearance.report.budget_table import budget_table
-from clearance.report.earlier_motion import earlier_motion
 from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.moments_file import FILE_NAME as MOMENTS
@@ -18,6 +20,7 @@ from clearance.report.moments_file import moments_text
 from clearance.report.more_curves import more_curves
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
+from clearance.report.report_data import ReportData
 from clearance.report.summary import summary_of
 from clearance.report.tables import (
     contact_batches,
@@ -27,9 +30,6 @@ from clearance.report.tables import (
     write_parquet,
 )
 from clearance.report.withdrawn import OLDER_SUMMARY
-from clearance.simulate.record import Record
-from clearance.simulate.replay.replay import FILE_NAME, replay_of
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 CONTENT = (
     "steps.parquet",
@@ -49,12 +49,24 @@ OWN = (*CONTENT, "receipt.bin", OLDER_SUMMARY)
 """All files that a report can have; a receipt, which is of one report, goes with it."""
 
 
+class Drawings(NamedTuple):
+    """The pictures of a report.
+
+    Attributes:
+        pictures: of each profile as SVG, by its name. earlier: where bodies were before a change.
+    """
+
+    replay: Replay
+    pictures: dict[str, str]
+    earlier: Sequence[EarlierBody] = ()
+
+
 def write(
-    record: Record,
+    data: ReportData,
+    drawn: Drawings,
     folder: str | Path,
     kept: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
-    earlier: Record | None = None,
 ) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, where there are tolerances `budget.csv`,
     `worst_moments.yaml`, `replay.npz`, `findings.json`, `report.html` and, last, `summary.json`.
@@ -66,19 +78,16 @@ def write(
 
     Args:
         kept: where the record's rows are; files on the way to `folder` lie beside them.
-        comparison: with a baseline, for the page. earlier: of the same bodies before a change, for the replay.
+        comparison: with a baseline, for the page.
 
     Raises:
         Unwritable: `folder` cannot be written.
     """
-    summary, replay = summary_of(record), replay_of(record, rows=kept)
-    pictures = {answer.name: answer.picture() for answer in record.profiles}
-    moments = moments_text(record)
-    found = findings_file.finding_list_of(record)
-    told = findings(found.findings, comparison)
-    before = [] if earlier is None else earlier_motion(earlier, replay)
-    curves = pair_curves(record, kept)
-    page = page_of(summary, replay, pictures, curves, told, more_curves(record), before)
+    record, summary, moments = data.record, summary_of(data), moments_text(data)
+    told = findings(data.findings.findings, comparison)
+    curves = pair_curves(record, data.details.minima, kept)
+    more = more_curves(record)
+    page = page_of(summary, drawn.replay, drawn.pictures, curves, told, more, drawn.earlier)
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")
@@ -87,10 +96,10 @@ def write(
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
-            write_csv(lambda: [budget_table(record)], place / BUDGET)
+            write_csv(lambda: [budget_table(record, data.details.left)], place / BUDGET)
         (place / MOMENTS).write_text(moments, encoding="utf-8")
-        replay.save(place / FILE_NAME)
-        findings_text = findings_file.findings_text(found)
+        drawn.replay.save(place / FILE_NAME)
+        findings_text = findings_file.findings_text(data.findings)
         (place / findings_file.FILE_NAME).write_text(findings_text, encoding="utf-8")
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")

@@ -22,16 +22,14 @@ from markupsafe import Markup
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
-from clearance.report.earlier_motion import EarlierBody
+from clearance.record.replay import LINK, EarlierBody, Replay
+from clearance.record.status import STATUSES, Status
+from clearance.record.wording import contact_text, count
 from clearance.report.head import head_of
 from clearance.report.markup import element
 from clearance.report.more_curves import PageCurve
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
-from clearance.report.wording import contact_text, count
-from clearance.simulate.replay.bodies import LINK
-from clearance.simulate.replay.replay import Replay
-from clearance.simulate.status import STATUSES, Status
 from clearance.world.rules import DEFAULT
 
 _HERE = Path(__file__).parent

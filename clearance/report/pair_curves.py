@@ -5,13 +5,13 @@ Not for: the table of every pair at every step (`tables`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.record import Record
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.record import PairMinimum, Record
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 
 MOST_NUMBERS = 250_000
 """Numbers of all curves together: 1.3 MB on the page."""
@@ -23,7 +23,7 @@ class PairCurves:
 
     Attributes:
         times: (k,) [s] the middle of each stretch; of each step where there are no more.
-        clearances: (p, k) float32 [m], rounded down; pairs as in `motion_minima`; NaN while one is not
+        clearances: (p, k) float32 [m], rounded down; pairs as in `minima`; NaN while one is not
             measured.
     """
 
@@ -31,7 +31,9 @@ class PairCurves:
     clearances: np.ndarray
 
 
-def pair_curves(record: Record, kept: MeasuredRows = IN_MEMORY) -> PairCurves | None:
+def pair_curves(
+    record: Record, minima: Sequence[PairMinimum], kept: MeasuredRows = IN_MEMORY
+) -> PairCurves | None:
     """The curves; None unless every pair was measured at every step."""
     every = record.every_pair
     if every is None:
@@ -44,7 +46,7 @@ def pair_curves(record: Record, kept: MeasuredRows = IN_MEMORY) -> PairCurves | 
     times = record.motions[0].times
     middles = 0.5 * (times[starts] + times[np.append(starts[1:], n_steps) - 1])
     places = {pair: i for i, pair in enumerate(zip(every.links, every.obstacles, strict=True))}
-    order = [places[minimum.link, minimum.obstacle] for minimum in motion_minima(record)]
+    order = [places[minimum.link, minimum.obstacle] for minimum in minima]
     return PairCurves(middles, _rounded_down(least.T[order]))
 
 

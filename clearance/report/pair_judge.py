@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from clearance.record.record import PairMinimum, Record
+from clearance.record.status import status_of
 from clearance.report.actors import paddings_of
-from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.status import status_of
 from clearance.world.case import Limits
 
 

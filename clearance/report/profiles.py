@@ -7,8 +7,8 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.wording import gap_text
 from clearance.report.markup import element, section, step_link, table
-from clearance.report.wording import gap_text
 
 
 def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:

@@ -8,9 +8,9 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.record import Record
+from clearance.record.wording import mm, seconds
 from clearance.report.markup import element, section, table
-from clearance.report.wording import mm, seconds
-from clearance.simulate.record import Record
 from clearance.world.joint_positions import turns
 from clearance.world.recording import SHARE
 

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from clearance.record.details import RunDetails
+from clearance.record.moment import Moment
+from clearance.record.record import Record
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.wording import limit_mm, mm, other_time, seconds
 from clearance.report.markup import element, moment_link, section, table
-from clearance.report.wording import limit_mm, mm, other_time, seconds
-from clearance.simulate.moment import Moment
-from clearance.simulate.record import Record
-from clearance.simulate.rule_answer import RuleAnswer
 from clearance.world.rules import DEFAULT, Rule
 
 
@@ -43,24 +44,29 @@ def told_moment(record: Record, moment: Moment) -> dict[str, Any]:
     }
 
 
-def rules_of(record: Record) -> list[dict[str, Any]]:
+def rules_of(record: Record, details: RunDetails) -> list[dict[str, Any]]:
     """All rules of the case in its order, the limits by themselves first; those that judge no pair have no
     status."""
     limits = record.case.limits
     answers = {answer.name: answer for answer in record.rules}
     own: list[Rule | None] = [None, *limits.rules]
     return [
-        _told(record, i, name, rule, answers.get(name))
+        _told(record, details, i, name, rule, answers.get(name))
         for i, (name, rule) in enumerate(zip(limits.rule_names, own, strict=True))
     ]
 
 
 def _told(
-    record: Record, i: int, name: str, rule: Rule | None, answer: RuleAnswer | None
+    record: Record,
+    details: RunDetails,
+    i: int,
+    name: str,
+    rule: Rule | None,
+    answer: RuleAnswer | None,
 ) -> dict[str, Any]:
     limits = record.case.limits.of_rule(i)
     window = (-math.inf, math.inf) if rule is None else (rule.window.start, rule.window.end)
-    worst = None if answer is None else record.worst_among([answer])
+    worst = details.worst.get(name)
     sample = None if answer is None else answer.worst_sample
     return {
         "name": name,
@@ -71,7 +77,7 @@ def _told(
         "fail": limits.fail,
         "warn": limits.warn,
         "status": None if answer is None else answer.status,
-        "n_pairs": sum(pair.rule == name for pair in record.pair_minima) or None,
+        "n_pairs": details.n_pairs.get(name),
         "lower_bound": _proven(answer),
         "worst": None if worst is None else told_moment(record, worst),
         "worst_sample": None if sample is None else told_moment(record, sample),

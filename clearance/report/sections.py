@@ -12,6 +12,18 @@ from markupsafe import Markup
 
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
+from clearance.findings.verdict import ACCEPTED, STALE, verdict_text
+from clearance.record.moment import Depth
+from clearance.record.wording import (
+    count,
+    depth_text,
+    joint_value,
+    least_proven,
+    limits_text,
+    mm,
+    other_time,
+    seconds,
+)
 from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
 from clearance.report.body_gaps import body_gaps
 from clearance.report.cell_time import cell_time
@@ -29,18 +41,6 @@ from clearance.report.recordings import recordings
 from clearance.report.rules import name_shown, rules
 from clearance.report.sensitivity import sensitivity_table
 from clearance.report.tolerance_section import tolerances
-from clearance.report.verdict import ACCEPTED, STALE, verdict_text
-from clearance.report.wording import (
-    count,
-    depth_text,
-    joint_value,
-    least_proven,
-    limits_text,
-    mm,
-    other_time,
-    seconds,
-)
-from clearance.simulate.moment import Depth
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""

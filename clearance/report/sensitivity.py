@@ -9,9 +9,8 @@ from typing import Any
 
 from markupsafe import Markup
 
+from clearance.record.sensitivity import Sensitivity
 from clearance.report.markup import element, table
-from clearance.simulate.record import Record
-from clearance.simulate.sensitivity import sensitivity_of
 
 MOST_PAIRS = 8
 """Pairs that are as near, by name."""
@@ -20,9 +19,8 @@ _PER = {"rad": (math.radians(1.0) * 1e3, "1°"), "m": (1.0, "1 mm")}
 """Of a variable's unit: from metres of clearance a unit to millimetres a step, and the step."""
 
 
-def sensitivity_data(record: Record) -> dict[str, Any]:
+def sensitivity_data(found: Sensitivity) -> dict[str, Any]:
     """Slopes in metres of clearance per radian or metre, or why there are none."""
-    found = sensitivity_of(record)
     return {
         "why_not": found.why_not or None,
         "pairs": [list(pair) for pair in found.pairs],

@@ -7,9 +7,8 @@ from dataclasses import asdict
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from clearance.report.wording import count, joint_value, mm
-from clearance.simulate.audit.pair import PairFinding, PairStatus
-from clearance.simulate.audit.srdf import ExcusedPair, ProposedPair
+from clearance.record.audit import ExcusedPair, PairFinding, PairStatus, ProposedPair
+from clearance.record.wording import count, joint_value, mm
 from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.robot import Robot
 

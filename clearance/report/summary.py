@@ -6,31 +6,32 @@ guide (`scripts/docs/results.md`). Not for: wording and rounding, which belong t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
 
+from clearance.findings.self_clearance import self_clearance_of
+from clearance.findings.verdict import Verdict
 from clearance.geometry.point_cloud import PointCloud
+from clearance.record.certificate import Certificate
+from clearance.record.details import RunDetails
+from clearance.record.moment import Moment
+from clearance.record.names import LINK_AND_OBSTACLE
+from clearance.record.record import CrossCheck, PairMinimum, ProfileAnswer, Record
+from clearance.record.row_status import status_counts
+from clearance.record.wording import count
 from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
 from clearance.report.body_gaps import body_gaps_of
 from clearance.report.contact import contact_of
-from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.recordings import recordings_of
+from clearance.report.report_data import ReportData
 from clearance.report.rules import rules_of, told_moment
-from clearance.report.self_clearance import self_clearance_of
 from clearance.report.sensitivity import sensitivity_data
 from clearance.report.tolerances import tolerances_of
-from clearance.report.verdict import Verdict, verdict_of
-from clearance.report.wording import count
-from clearance.simulate.certificate import Certificate
-from clearance.simulate.moment import Moment
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.names import LINK_AND_OBSTACLE
-from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
-from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.motion import Motion
@@ -40,17 +41,18 @@ FORMAT = 3
 """Which keys there are: `scripts/docs/results.md`."""
 
 
-def summary_of(record: Record) -> dict[str, Any]:
+def summary_of(data: ReportData) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
     exist is None. Keys `tolerances`, `recordings` and `body_gaps` are there where a case has them."""
-    case, verdict, certificate = record.case, verdict_of(record), record.certificate
+    record, details, verdict = data.record, data.details, data.verdict
+    case, certificate = record.case, record.certificate
     times = record.steps["time"].to_numpy()
     return {
         "format": FORMAT,
         "name": case.name,
         **_verdict(verdict),
         "limits": {name: getattr(case.limits, name) for name in ("fail", "warn", "joints")},
-        "rules": rules_of(record),
+        "rules": rules_of(record, details),
         "actors": actors_of(record),
         "carries": carried_of(record),
         "clock": clock_of(record),
@@ -67,14 +69,14 @@ def summary_of(record: Record) -> dict[str, Any]:
         "worst": _worst(record, record.worst),
         "worst_sample": _worst(record, record.worst_sample),
         "nearest": told_moment(record, record.nearest),
-        "sensitivity": sensitivity_data(record),
+        "sensitivity": sensitivity_data(details.sensitivity),
         "status_counts": status_counts(record),
         "intervals": {
-            level: [asdict(i) for i in found] for level, found in intervals(record).items()
+            level: [asdict(i) for i in found] for level, found in details.intervals.items()
         },
-        "events": [asdict(event) for event in events(record)],
-        "not_listed": not_listed(record),
-        "pairs": _pairs(record),
+        "events": [asdict(event) for event in details.events],
+        "not_listed": details.not_listed,
+        "pairs": _pairs(record, details.minima),
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "self_clearance": self_clearance_of(record),
         "contact": contact_of(record),
@@ -87,20 +89,22 @@ def summary_of(record: Record) -> dict[str, Any]:
         "profiles": [_profile(answer) for answer in record.profiles],
         "tally": dict(record.tally),
         "sign_off": None if case.sign_off is None else asdict(case.sign_off),
-        "notes": notes_of(record),
+        "notes": notes_of(record, details.hints),
         "inputs": inputs(case),
         "versions": versions(),
-    } | _where_given(record, verdict)
+    } | _where_given(record, details, verdict)
 
 
-def _where_given(record: Record, verdict: Verdict) -> dict[str, Any]:
+def _where_given(record: Record, details: RunDetails, verdict: Verdict) -> dict[str, Any]:
     """What only cases with tolerances, a recorded run or body gaps have."""
-    tolerances, recordings = tolerances_of(record), recordings_of(record)
-    told = (
+    tolerances, recordings = tolerances_of(record, details.left), recordings_of(record)
+    told: dict[str, Any] = (
         {} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}}
     )
     told |= {} if recordings is None else {"recordings": recordings}
-    return told | ({"body_gaps": body_gaps_of(record)} if record.body_gaps else {})
+    if record.body_gaps:
+        told["body_gaps"] = body_gaps_of(details.minima, details.standing)
+    return told
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
@@ -128,10 +132,10 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def _pairs(record: Record) -> list[dict[str, Any]]:
+def _pairs(record: Record, minima: Sequence[PairMinimum]) -> list[dict[str, Any]]:
     """The least clearance of each pair by each rule that judges it, with its status."""
     judge = PairJudge.of(record)
-    return [asdict(one) | {"status": judge.status_of(one)} for one in motion_minima(record)]
+    return [asdict(one) | {"status": judge.status_of(one)} for one in minima]
 
 
 def _worst(record: Record, worst: Moment) -> dict[str, Any]:
@@ -250,10 +254,10 @@ def _of_one_robot(record: Record) -> bool:
     return any(placed.self_clearance for placed in record.case.robots)
 
 
-def notes_of(record: Record) -> list[str]:
+def notes_of(record: Record, hints: Sequence[str]) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
     told = [
-        *standing_hint(record),
+        *hints,
         *record.case.notes,
         *robots,
         *record.notes,

@@ -10,12 +10,12 @@ from pathlib import Path
 import pyarrow as pa
 
 from clearance.budget.columns import with_proven_between
-from clearance.simulate.contact.columns import with_contact_columns
-from clearance.simulate.contact.sequence import StepContact
-from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
-from clearance.simulate.parts import blocks
-from clearance.simulate.record import Record
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.contact import StepContact
+from clearance.record.contact_columns import with_contact_columns
+from clearance.record.names import LINK_AND_OBSTACLE, SIDES
+from clearance.record.record import Record
+from clearance.record.rows.blocks import blocks
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 
 CONTACTS = 10_000
 """Overlaps that are written at a time."""

@@ -7,9 +7,9 @@ from typing import Any
 from markupsafe import Markup
 
 from clearance.findings.of_budget import NOT_WORKED_OUT
+from clearance.record.wording import depth_mm, limit_mm, mm, seconds
 from clearance.report.markup import element, moment_link, section, table
 from clearance.report.rules import name_shown
-from clearance.report.wording import depth_mm, limit_mm, mm, seconds
 
 HUES = 6
 """Colours of a bar; further sources begin again."""

@@ -7,17 +7,15 @@ Lengths are rounded down, angles too. Not for: working it out (`clearance.budget
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from decimal import ROUND_FLOOR, Decimal
 from typing import Any
 
-import numpy as np
-
-from clearance.report.wording import depth_mm, limit_mm, mm, moment_text, of_rule
-from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
-from clearance.simulate.record import Record
-from clearance.world.budget import Budget
+from clearance.findings.tolerance_lines import least_expected, tolerance_lines
+from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
+from clearance.record.record import Record
+from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule
 
 MOST_SOURCES = 3
 """Sources of errors that a line names."""
@@ -32,51 +30,6 @@ _KINDS = {
     "timing": "clock",
     "facets": "facets",
 }
-
-
-def budget_lines(record: Record) -> tuple[str, ...]:
-    """A sentence for each rule on what is proven and what is expected; none without tolerances."""
-    budget = record.case.tolerance
-    if budget is None or record.budget is None:
-        return ()
-    return tuple(_line(record, budget, one) for one in record.budget)
-
-
-def tolerance_lines(record: Record) -> tuple[str, ...]:
-    """These, and which grasps are taken as exact."""
-    exact = [f"{one.part} by {one.by}" for one in record.case.carries if one.exact_grasp]
-    told = budget_lines(record)
-    return (*told, f"Grasps taken as exact: {', '.join(exact)}.") if told and exact else told
-
-
-def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
-    proven, expected = one.least, least_expected(one)
-    basis = "the samples only" if one.between is None else "the motion"
-    waived = " (waived pairs among them)" if record.case.waivers else ""
-    left = f"at least {mm(proven)} mm are left{waived}"
-    if proven <= 0.0:
-        left = "contact is not ruled out"  # a number below 0 says no depth
-    told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
-    if expected is not None:
-        spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
-        told += f" Expected ({spread}): {mm(expected)} mm."
-    return told
-
-
-def least_expected(one: RuleBudget) -> float | None:
-    """[m] The least expected clearance, of the motion where that is certified. None where it is not worked out.
-
-    Never told below what is proven: three deviations of a single uniform error are more than its worst.
-    """
-    found = np.append(one.expected, [] if one.expected_between is None else one.expected_between)
-    known = found[np.isfinite(found)]
-    return max(float(known.min()), one.least) if len(known) else None
-
-
-def worst_of(record: Record) -> tuple[RuleBudget, BudgetMoment] | None:
-    """The moment at which the errors leave least above its fail limit, and what judges it; None where none is."""
-    found = [(one, one.worst[0]) for one in record.budget or () if one.worst]
-    return min(found, key=lambda pair: pair[1].proven - pair[0].limits.fail, default=None)
 
 
 def source_text(record: Record, source: ErrorSource) -> str:
@@ -130,12 +83,8 @@ def _rounded_down(value: float, unit: str) -> str:
     return f"{shown:f} {'mm' if unit == 'm' else unit}"
 
 
-def source_lines(record: Record) -> Iterator[str]:
-    """What takes most at the worst moment, and what of it may be how great at most."""
-    found = worst_of(record)
-    if found is None:
-        return
-    one, worst = found
+def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterator[str]:
+    """What takes most at a moment of a rule, and what of it may be how great at most."""
     moment = worst.moment
     where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
     yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
@@ -163,8 +112,10 @@ def _largest_lines(
         yield f"not enough to keep {limit}, even at 0, alone: {', '.join(others)}"
 
 
-def tolerances_of(record: Record) -> dict[str, Any] | None:
-    """What `summary.json` holds of tolerances; None without any."""
+def tolerances_of(
+    record: Record, left: Mapping[str, Sequence[BudgetMoment]]
+) -> dict[str, Any] | None:
+    """What `summary.json` holds of tolerances; None without any. `left` as in `RunDetails`."""
     budget = record.case.tolerance
     if budget is None:
         return None
@@ -174,11 +125,11 @@ def tolerances_of(record: Record) -> dict[str, Any] | None:
         "unproven_ok": budget.unproven_ok,
         "sources": list(budget.sources),
         "lines": list(tolerance_lines(record)),
-        "rules": [_told(record, one) for one in record.budget or ()],
+        "rules": [_told(record, one, left[one.rule]) for one in record.budget or ()],
     }
 
 
-def _told(record: Record, one: RuleBudget) -> dict[str, Any]:
+def _told(record: Record, one: RuleBudget, worst: Sequence[BudgetMoment]) -> dict[str, Any]:
     return {
         "rule": one.rule,
         "fail": one.limits.fail,
@@ -187,7 +138,7 @@ def _told(record: Record, one: RuleBudget) -> dict[str, Any]:
         "proven": one.least,
         "expected": least_expected(one),
         "basis": "samples" if one.between is None else "motion",
-        "worst": [_moment(record, worst) for worst in one.worst],
+        "worst": [_moment(record, each) for each in worst],
     }
 
 
@@ -210,8 +161,7 @@ def _moment(record: Record, worst: BudgetMoment) -> dict[str, Any]:
 
 
 def _source(record: Record, source: ErrorSource) -> dict[str, Any]:
-    known = asdict(replace(source, largest=tuple(source.largest)))
-    return known | _shown(record, source)
+    return asdict(source) | _shown(record, source)
 
 
 def _shown(record: Record, source: ErrorSource) -> dict[str, str]:

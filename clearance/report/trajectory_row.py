@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.findings.finding import Finding
 from clearance.load.motion.trajectory_lines import line_of_sample
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 from clearance.world.case import PlacedRobot
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from clearance.load.mesh.mesh_file import mesh_file
+from clearance.record.workspace import Workspace
 from clearance.report.folder import fill_folder
 from clearance.report.output import json_text
 from clearance.report.workspace_picture import picture_of
-from clearance.simulate.workspace.workspace import Workspace
 
 MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}
 OWN = ("workspace.svg", "workspace.json", *MESHES)

@@ -12,8 +12,8 @@ import numpy as np
 from markupsafe import escape
 
 from clearance.geometry.polytope import Polytope
-from clearance.report.wording import litres
-from clearance.simulate.workspace.workspace import Workspace
+from clearance.record.wording import litres
+from clearance.record.workspace import Workspace
 from clearance.world.extents import own_floor
 
 WIDTH, HEIGHT, MARGIN = 1000.0, 720.0, 40.0

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
 from clearance.errors import BadInput, nearest_name
-from clearance.run.answers import answered
+from clearance.run.made import answered
 from clearance.run.question import Question, limited
 from clearance.run.result import Run
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
@@ -94,7 +94,8 @@ def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
     Raises:
         NothingToMeasure: no pair is left.
     """
-    return Run(answered(question, resources), resources.rows, question)
+    session = answered(question, resources)
+    return Run(session.record, session, question, resources.rows)
 
 
 def _with_recorded(

@@ -1,6 +1,6 @@
 """What a reader of the verdict must know: what was not measured, not cross-checked, or has no depth.
 
-Not for: notices of the case itself (`world.plausibility`), nor what becomes of them (`report.verdict`).
+Not for: notices of the case itself (`world.plausibility`), nor what becomes of them (`findings.verdict`).
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from clearance.record.certificate import Certificate
 from clearance.run.question import Question
 from clearance.simulate import inside
-from clearance.simulate.certificate import Certificate
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import SectionPlan
 from clearance.world.case import Case

@@ -12,20 +12,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
-from clearance.simulate.certificate import Certificate
-from clearance.simulate.moment import Moment
-from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of
-from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
+from clearance.record.certificate import Certificate
+from clearance.record.moment import Moment
+from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of
+from clearance.record.record import CrossCheck, PairMinimum, Record
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
     from clearance.findings.comparison import Comparison
     from clearance.findings.finding import Finding
-    from clearance.report.intervals import Event
-    from clearance.report.verdict import Verdict
+    from clearance.findings.findings_file import FindingList
+    from clearance.findings.judgement import Judgement
+    from clearance.findings.verdict import Verdict
+    from clearance.record.levels import Event
+    from clearance.report.report_data import ReportData
     from clearance.run.question import Question
+    from clearance.run.session import RunSession
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +37,15 @@ class Run:
     """A case and its answer.
 
     Attributes:
+        session: what works out on demand what the record leaves open.
         rows: where what the record shows of its rows is kept; the report is written by way of it.
-        question: what was asked; None for a record that was made by hand.
+        question: what was asked.
     """
 
     record: Record
+    session: RunSession
+    question: Question
     rows: MeasuredRows = IN_MEMORY
-    question: Question | None = None
 
     @cached_property
     def steps(self) -> pa.Table:
@@ -49,7 +55,7 @@ class Run:
         With tolerances, `proven_between` [m] is the bound of the motion from the step to the next.
         """
         from clearance.budget.columns import with_proven_between
-        from clearance.simulate.contact.columns import with_contact_columns
+        from clearance.record.contact_columns import with_contact_columns
 
         record = self.record
         with_contacts = with_contact_columns(record.steps, record.contacts)
@@ -98,17 +104,44 @@ class Run:
         row = {name: row[side] for name, side in columns} | row
         if row.get("between"):
             known = row["clearance"]
-            moment = None if known is None else self.record.rule(row["rule"]).moment_at(step)
+            rule = self.record.rule(row["rule"])
+            moment = None if known is None else self.session.moment_at(rule, step)
             status = None if moment is None else self.record.status_of(moment)
             row |= {"between": False, "status": status}
         return row
 
     @property
+    def pair_minima(self) -> tuple[PairMinimum, ...]:
+        """The least clearance of each pair at the steps, least first; empty if `need` asks for less."""
+        return self.session.pair_minima()
+
+    @cached_property
+    def judgement(self) -> Judgement:
+        """The rules of the run with its waivers."""
+        from clearance.findings.judgement import judgement_of
+
+        return judgement_of(self.session)
+
+    @property
+    def waived(self) -> Judgement | None:
+        """The same; None where the case has no waivers, and nothing is worked out then."""
+        return self.judgement if self.record.case.waivers else None
+
+    @cached_property
+    def of_tolerances(self) -> tuple[Finding, ...]:
+        """The limits that are not proven with the case's tolerances."""
+        if self.record.case.tolerance is None:
+            return ()
+        from clearance.findings.of_budget import of_budget
+
+        return of_budget(self.session, self.waived)
+
+    @cached_property
     def verdict(self) -> Verdict:
         """What the run comes to, why, and what that rests on."""
-        from clearance.report.verdict import verdict_of
+        from clearance.findings.verdict import verdict_of
 
-        return verdict_of(self.record)
+        return verdict_of(self.record, self.waived, self.of_tolerances)
 
     @property
     def passed(self) -> bool:
@@ -124,17 +157,29 @@ class Run:
 
     @property
     def events(self) -> list[Event]:
-        """Where a limit was entered or left, in order of time; see `report.intervals.events`."""
-        from clearance.report.intervals import events
-
-        return events(self.record)
+        """The moments at which a limit was entered or left, in order of time."""
+        return self.session.events
 
     @property
     def summary(self) -> dict[str, Any]:
         """What `summary.json` holds, as plain data."""
         from clearance.report.summary import summary_of
 
-        return summary_of(self.record)
+        return summary_of(self.report_data)
+
+    @cached_property
+    def report_data(self) -> ReportData:
+        """All that a report is made of, worked out now."""
+        from clearance.report.report_data import ReportData
+
+        return ReportData(
+            self.record,
+            self.session.details,
+            self.judgement,
+            self.of_tolerances,
+            self.finding_list,
+            self.verdict,
+        )
 
     @property
     def certificate(self) -> Certificate | None:
@@ -149,20 +194,27 @@ class Run:
     def __repr__(self) -> str:
         from clearance.report.notebook import run_text
 
-        return f"<Run {run_text(self.record)}>"
+        return f"<Run {run_text(self.record, self.verdict)}>"
 
     def _repr_html_(self) -> str:
         """The verdict and the closest pairs, for a notebook."""
-        from clearance.report.notebook import run_html
+        from clearance.report.notebook import MOST_PAIRS, run_html
 
-        return run_html(self.record)
+        return run_html(self.record, self.verdict, self.session.motion_minima(MOST_PAIRS))
 
-    @property
+    @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What each rule comes to between which bodies, the worst first; what is waived is among it."""
         from clearance.findings.of_record import findings_of
 
-        return findings_of(self.record)
+        return findings_of(self.record, self.judgement, self.of_tolerances)
+
+    @cached_property
+    def finding_list(self) -> FindingList:
+        """What `findings.json` holds: the findings, and what is needed to compare them with another run's."""
+        from clearance.findings.findings_file import finding_list_of
+
+        return finding_list_of(self.session, self.findings, self.judgement)
 
     def save(
         self,
@@ -180,12 +232,14 @@ class Run:
         Raises:
             BadInput: no path. Unwritable: nothing is left half-written.
         """
-        from clearance.report.output import write
+        from clearance.report.output import Drawings, write
 
         if not isinstance(folder, str | PathLike) or not str(folder):
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
-        before = None if earlier is None else earlier.record
-        write(self.record, folder, self.rows, comparison, before)
+        replay = self.session.replay(self.rows)
+        before = [] if earlier is None else earlier.session.earlier_motion(replay)
+        drawn = Drawings(replay, self.session.pictures, before)
+        write(self.report_data, drawn, folder, self.rows, comparison)
         return Path(folder)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from clearance.query.pair_query import Query
 from clearance.simulate.overlaps import Overlaps
 from clearance.simulate.point_motion import motion_by_columns
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_pairs import MeasuredRule
 from clearance.simulate.sections import Section
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
@@ -41,7 +41,7 @@ class Approach:
             where that was not asked for.
     """
 
-    rule: RuleAnswer
+    rule: MeasuredRule
     section: Section
     pair: Pair
     steps: np.ndarray
@@ -74,7 +74,7 @@ OfPair = Callable[[Case, Pair], bool]
 
 
 def approaches(
-    rules: Sequence[RuleAnswer],
+    rules: Sequence[MeasuredRule],
     beyond: float,
     chosen: OfPair | None = None,
     *,
@@ -97,13 +97,13 @@ def approaches(
                 yield from _approach(rule, section, pair, near.steps[rows], bounded=bounded)
 
 
-def approach_at(rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarray) -> Approach:
+def approach_at(rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray) -> Approach:
     """A pair at some steps (k,) of the run, whether it is near or not; of overlaps only those spread evenly."""
     return next(_approach(rule, section, pair, steps))
 
 
 def _approach(
-    rule: RuleAnswer, section: Section, pair: Pair, steps: np.ndarray, *, bounded: bool = True
+    rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray, *, bounded: bool = True
 ) -> Iterator[Approach]:
     phase = section.phase
     case, own = phase.case, steps - phase.first

@@ -22,15 +22,17 @@ from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
 from clearance.kernels.motion.kinematics import BALL, TURNING, Links
 from clearance.kernels.motion.world import World
 from clearance.ordered import ascending
-from clearance.simulate.certificate import Certificate
+from clearance.record.measurement import COUNTERS, Measurement
+from clearance.record.moment import Moment
+from clearance.record.rows.blocks import blocks
+from clearance.record.rows.resumable import MeasuredRows
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import HELD
-from clearance.simulate.measurement import COUNTERS, Measurement
-from clearance.simulate.moment import Moment, MomentQuery
-from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.measured import ProvenMotion
+from clearance.simulate.moment_query import MomentQuery
+from clearance.simulate.parts import in_order, parts
 from clearance.simulate.refine import Refinement
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.rows.resumable import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.forest import joined_positions, positions_along
@@ -55,7 +57,7 @@ def certify_motion(
     need: str = "steps",
     resources: Resources = DEFAULT_RESOURCES,
     levels: Sequence[float] = (),
-) -> Certificate:
+) -> ProvenMotion:
     """Lower bounds that are within `gap` [m] of a distance that really occurs, nearer where a limit is open.
 
     Args:
@@ -78,12 +80,12 @@ def certify_motion(
     finest = FINEST_CERTIFY_GAP * farthest_reach(what.case, tuple(what.motions))
     refinement = Refinement(work.prove, gap, finest, limits.rounding)
     bounds, counts = refinement.decided(log.bounds, (limits.fail, limits.warn, *levels))
-    return Certificate(
+    return ProvenMotion(
         *bounds,
         gap,
         dict(zip(COUNTERS, (log.tally + counts).tolist(), strict=True)),
-        _moment_of(MomentQuery(what.case, what.motions, what.pairs), bounds, found),
         notices,
+        moment_of=_moment_of(MomentQuery(what.case, what.motions, what.pairs), bounds, found),
     )
 
 

@@ -15,11 +15,11 @@ import numpy as np
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.kernels.motion.held_scene import Scene
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
+from clearance.record.measurement import SWEEP_COUNTERS
+from clearance.record.names import pair_names
 from clearance.simulate.asked_positions import AskedPositions
 from clearance.simulate.inside import DoubtfulPairs
 from clearance.simulate.layout import lay_out
-from clearance.simulate.measurement import SWEEP_COUNTERS
-from clearance.simulate.names import pair_names
 from clearance.tolerance import REACH
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case, PlacedRobot

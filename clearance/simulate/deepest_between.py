@@ -12,9 +12,10 @@ import numpy as np
 
 from clearance.errors import ClearanceError
 from clearance.query.contact import contact
-from clearance.simulate.moment import Depth, Moment, MomentQuery
+from clearance.record.moment import Depth, Moment
+from clearance.simulate.moment_query import MomentQuery
 from clearance.simulate.pairs_alone import can_be_alone, near_alone
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_pairs import MeasuredRule
 from clearance.simulate.stretches import RuleStretches
 from clearance.world.forest import forest_of, positions_between
 
@@ -26,7 +27,7 @@ MOST_STRETCHES = 3
 """Most stretches to examine, longest first: the verdict waits for them."""
 
 
-def deepest_between(rules: Sequence[RuleAnswer]) -> Moment | None:
+def deepest_between(rules: Sequence[MeasuredRule]) -> Moment | None:
     """The first of the deepest moments found between the steps; None if no stretch has few steps."""
     spans = sorted(_spans(rules), key=lambda one: one[1] - one[2])[:MOST_STRETCHES]
     return _deepest([_deepest_in(*span) for span in spans])
@@ -38,7 +39,7 @@ def _deepest(found: Sequence[Moment | None]) -> Moment | None:
     return max(known, key=lambda one: one.depth.penetration if one.depth else 0.0, default=None)
 
 
-def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
+def _deepest_in(rule: MeasuredRule, start: float, end: float) -> Moment | None:
     """The deepest moment of a stretch: of evenly spread moments, then of as many near the deepest."""
     best = _deepest([*_moments(rule, start, end)])
     if best is None:
@@ -48,7 +49,7 @@ def _deepest_in(rule: RuleAnswer, start: float, end: float) -> Moment | None:
     return _deepest([best, *_moments(rule, *about)])
 
 
-def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[RuleAnswer, float, float]]:
+def _spans(rules: Sequence[MeasuredRule]) -> Iterator[tuple[MeasuredRule, float, float]]:
     """Start and end [s] of each pair's stretches of contact that have few steps."""
     for rule in rules:
         within = rule.limits.warn
@@ -65,7 +66,7 @@ def _spans(rules: Sequence[RuleAnswer]) -> Iterator[tuple[RuleAnswer, float, flo
                     yield answer, start, end
 
 
-def _moments(rule: RuleAnswer, start: float, end: float) -> Iterator[Moment]:
+def _moments(rule: MeasuredRule, start: float, end: float) -> Iterator[Moment]:
     """The moments of a stretch at which the one pair of a rule overlaps, with their depth."""
     assert rule.pairs is not None
     for answer in rule.pairs.answers:

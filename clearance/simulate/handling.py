@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
-from clearance.simulate.record import Record
+from clearance.record.record import Record
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.world.carry import Carry
 from clearance.world.forest import link_poses_at

@@ -18,9 +18,11 @@ from clearance.kernels.motion.sweep import sweep
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.sweep_state import NOT_LESS
+from clearance.record.measurement import SWEEP_COUNTERS, Minima
+from clearance.record.rows.blocks import blocks
 from clearance.simulate.layout import PairsInMotion, positions_at
-from clearance.simulate.measurement import SWEEP_COUNTERS, Measurement, Minima
-from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.measured import MeasuredSteps
+from clearance.simulate.parts import in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 
 NEEDS = ("steps", "pairs", "limit", "minimum")
@@ -194,7 +196,7 @@ def _gathered(known: dict[str, np.ndarray], n_pairs: int) -> tuple[Minima, np.nd
 
 def measure(
     what: PairsInMotion, need: str = "steps", resources: Resources = DEFAULT_RESOURCES
-) -> Measurement:
+) -> MeasuredSteps:
     """The exact clearances of pairs in motion.
 
     Args:
@@ -270,12 +272,12 @@ def pairs_within(
     return np.concatenate(rows), np.concatenate(pairs), np.concatenate(distances)
 
 
-def _every_pair(work: _Sweep) -> Measurement:
+def _every_pair(work: _Sweep) -> MeasuredSteps:
     rows, every, minima = work.every_row("pairs", range(work.n_steps))
     return _measurement(work, rows, lambda most: minima, every=every)
 
 
-def _minimum(work: _Sweep) -> Measurement:
+def _minimum(work: _Sweep) -> MeasuredSteps:
     within = np.inf
     if len(parts(work.n_steps, sparse=True)) > 1:  # else a first look is part of the sweep
         few = work.aside.step_rows("first", _first_steps(work.n_steps), lasting=True)
@@ -288,7 +290,7 @@ def _minimum(work: _Sweep) -> Measurement:
     return _measurement(work, rows, None)
 
 
-def _within_limit(work: _Sweep, limit: float) -> Measurement:
+def _within_limit(work: _Sweep, limit: float) -> MeasuredSteps:
     """The least of all is always known, so that a run has a worst step."""
     rows = work.step_rows("limit", range(work.n_steps), limit * NOT_LESS)
     for block in blocks(work.n_steps):
@@ -340,20 +342,20 @@ def _measurement(
     rows: KeptRows,
     measure_pair_minima: Callable[[int | None], Minima] | None,
     every: np.ndarray | None = None,
-) -> Measurement:
+) -> MeasuredSteps:
     for block in blocks(work.n_steps):
         unknown = rows.pair[block] < 0
         rows.clearance[block][unknown] = np.nan
         rows.points[block][unknown] = np.nan
     work.resources.rows.let_go()
-    return Measurement(
+    return MeasuredSteps(
         rows.clearance,
         rows.floor,
         rows.pair,
         rows.points,
         dict(zip(SWEEP_COUNTERS, work.tally.tolist(), strict=True)),
-        measure_pair_minima,
         every,
+        measure_pair_minima=measure_pair_minima,
     )
 
 

@@ -14,8 +14,9 @@ from clearance.errors import NothingToMeasure
 from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
+from clearance.record.measurement import Minima
 from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measurement import Measurement, Minima
+from clearance.simulate.measured import MeasuredSteps
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
@@ -29,7 +30,7 @@ def measure_paper(
     progress: Progress | None = None,
     tolerance: float = NO_TOLERANCE,
     first_step: int = 0,
-) -> Measurement:
+) -> MeasuredSteps:
     """The paper's clearances of pairs in motion; those of pairs that its rules cut are infinite.
 
     Args:
@@ -64,14 +65,14 @@ def measure_paper(
             raise _nothing_said(first_step + step, case, pairs, tolerance)
         if progress:
             progress(step + 1, n_steps)
-    return Measurement(
+    return MeasuredSteps(
         clearance,
         np.zeros(n_steps),
         winner,
         points,
         dict(tally),
-        lambda most: minima,
         may_cut_pairs=True,
+        measure_pair_minima=lambda most: minima,
     )
 
 

@@ -1,44 +1,35 @@
-"""The least clearance of each pair over the certified motion; else over the samples.
-
-Not for: the least clearance at the samples (`Record.pair_minima`), which is the start of this.
-"""
+"""The least clearance of each pair over the certified motion. Not for: at the steps (`pair_minima`)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from clearance.simulate.moment import Moment
+from clearance.record.moment import Moment
+from clearance.record.record import PairMinimum
 from clearance.simulate.pairs_alone import can_be_alone, least_between, near_alone, near_between
-from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_pairs import MeasuredRule
 
 MOST_INTERVALS = 2**14
 """Most intervals times pairs for which far pairs are proven too: a tenth of a second."""
 
-_KNOWN: WeakKeyDictionary[Record, dict[int | None, tuple[PairMinimum, ...]]] = WeakKeyDictionary()
 
-
-def motion_minima(record: Record, most: int | None = None) -> tuple[PairMinimum, ...]:
-    """As `Record.pair_minima`, over the motion; the first `most` of them if that is given.
+def motion_minima(
+    rules: Sequence[MeasuredRule], sampled: Sequence[PairMinimum], most: int | None = None
+) -> tuple[PairMinimum, ...]:
+    """The least clearance of each pair over the motion, where that is certified; else at the steps.
 
     Far pairs have their least at the samples if there are too many to prove each on its own. So have pairs of two
     clocks, and pairs hidden by a nearer one among them; the nearest of an interval has what the proof saw.
+
+    Args:
+        sampled: the least of each pair at the steps. most: the first few alone.
     """
-    known = _KNOWN.setdefault(record, {})
-    if most not in known:
-        known[most] = _found(record, most)
-    return known[most]
-
-
-def _found(record: Record, most: int | None) -> tuple[PairMinimum, ...]:
-    sampled = record.pair_minima[:most]
     found: list[PairMinimum] = []
-    for rule in record.rules:
+    for rule in rules:
         own = [one for one in sampled if one.rule == rule.name]
         within = max(rule.limits.warn, rule.limits.fail)
         seen = _with_seen(rule, own)
@@ -49,7 +40,7 @@ def _found(record: Record, most: int | None) -> tuple[PairMinimum, ...]:
     return tuple(sorted(found, key=lambda one: one.clearance)[:most])
 
 
-def _with_seen(rule: RuleAnswer, sampled: Sequence[PairMinimum]) -> list[PairMinimum]:
+def _with_seen(rule: MeasuredRule, sampled: Sequence[PairMinimum]) -> list[PairMinimum]:
     """The least of pairs at the steps, or between them where the proof of their rule saw them nearer."""
     certificate = rule.certificate
     if certificate is None or not sampled:
@@ -67,7 +58,7 @@ def _with_seen(rule: RuleAnswer, sampled: Sequence[PairMinimum]) -> list[PairMin
 class _RuleMinima:
     """The pairs of a rule; those within [m] are near."""
 
-    rule: RuleAnswer
+    rule: MeasuredRule
     within: float
 
     def of(self, sampled: Sequence[PairMinimum], most: int | None) -> list[PairMinimum]:

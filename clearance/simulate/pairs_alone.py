@@ -9,49 +9,48 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from clearance.kernels.motion.certify import CertifiedSteps, IntervalBounds
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.twist import CertificateGoal
+from clearance.record.moment import Moment
+from clearance.record.rule_answer import NearRows
 from clearance.simulate.certify import BEYOND, MOST_PARTS, certify_motion, path_of, prove_path
-from clearance.simulate.measurement import Measurement
-from clearance.simulate.moment import Moment, MomentQuery
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.rule_pairs import NearRows, RulePairs
+from clearance.simulate.measured import MeasuredSteps
+from clearance.simulate.moment_query import MomentQuery
+from clearance.simulate.rule_pairs import MeasuredRule, RulePairs, measured_rule
 from clearance.simulate.run_answer import joined, joined_certificates
 from clearance.simulate.section_answer import SectionAnswer
 
 FAR_GAP = 0.01
 """[-] Largest gap of the bound of a pair that is not near: a hundredth of its clearance is enough for a table."""
 
-_KNOWN: WeakKeyDictionary[RuleAnswer, dict[float, dict[int, RuleAnswer]]] = WeakKeyDictionary()
 
-
-def can_be_alone(rule: RuleAnswer, within: float) -> bool:
+def can_be_alone(rule: MeasuredRule, within: float) -> bool:
     """True if the pairs of a rule that come within [m] can be proven one by one."""
     if rule.certificate is None or rule.pairs is None or rule.pairs.is_cut(within):
         return False
     return all(answer.section.tied for answer in rule.pairs.answers)
 
 
-def near_alone(rule: RuleAnswer, within: float) -> dict[int, RuleAnswer]:
+def near_alone(rule: MeasuredRule, within: float) -> dict[int, MeasuredRule]:
     """The answer of a rule for each pair that comes within [m], at a step or between; pairs of the run."""
     within = max(within, rule.limits.rounding)  # bodies in contact are near, whatever the limit
-    known = _KNOWN.setdefault(rule, {})
-    if within not in known:
+    if within not in rule.alone:
         assert rule.pairs is not None, "the sections of a rule are known"
         rows = [rows for _, rows in rule.pairs.near_by_section(within)]
         found = {pair for own in rows for pair in own.pairs.tolist()}
         for answer in rule.pairs.answers:
             found |= near_between(answer, within, found)
-        known[within] = {pair: _of_pair(rule, pair, within, rows) for pair in sorted(found)}
-    return known[within]
+        rule.alone[within] = {pair: _of_pair(rule, pair, within, rows) for pair in sorted(found)}
+    return rule.alone[within]
 
 
-def _of_pair(rule: RuleAnswer, pair: int, within: float, rows: Sequence[NearRows]) -> RuleAnswer:
+def _of_pair(
+    rule: MeasuredRule, pair: int, within: float, rows: Sequence[NearRows]
+) -> MeasuredRule:
     """The answer of a rule for one pair; `rows`: its clearances at steps where it is near, by section."""
     assert rule.pairs is not None
     own = [
@@ -66,7 +65,7 @@ def _of_pair(rule: RuleAnswer, pair: int, within: float, rows: Sequence[NearRows
 
     found = joined(own, n_steps, pair + 1)
     certificate = joined_certificates(own, n_steps, rule.name)
-    return RuleAnswer(rule.name, rule.limits, found, certificate, moment_at, pairs)
+    return measured_rule(rule.name, rule.limits, found, certificate, moment_at, pairs)
 
 
 def near_between(answer: SectionAnswer, within: float, known: set[int]) -> set[int]:
@@ -102,7 +101,7 @@ def _nearer(answer: SectionAnswer, pairs: np.ndarray, steps: slice, reach: float
 
 
 def least_between(
-    rule: RuleAnswer, pairs: dict[int, float]
+    rule: MeasuredRule, pairs: dict[int, float]
 ) -> dict[int, tuple[float, Moment | None]]:
     """For each of some pairs with a clearance [m]: its proven bound up to that [m], and a moment between two steps
     with a lower clearance, or None."""
@@ -193,9 +192,9 @@ def _alone(answer: SectionAnswer, rows: NearRows, pair: int, within: float) -> S
     return SectionAnswer(alone, found, own)
 
 
-def _measured(clearance: np.ndarray, lower_bound: np.ndarray) -> Measurement:
+def _measured(clearance: np.ndarray, lower_bound: np.ndarray) -> MeasuredSteps:
     """A measurement of one pair, without witness points."""
     n = len(clearance)
     points = np.broadcast_to(np.nan, (n, 2, 3))
     pair = np.where(np.isnan(clearance), -1, 0)
-    return Measurement(clearance, lower_bound, pair, points, {}, None)
+    return MeasuredSteps(clearance, lower_bound, pair, points, {}, measure_pair_minima=None)

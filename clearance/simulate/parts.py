@@ -21,9 +21,6 @@ SPARSE = 4
 WAITING = 8
 """Parts a thread that are handed out ahead: so many results wait at most."""
 
-BLOCK = 2**16
-"""Rows that are looked at together where all rows are gone through: 0.5 MB of each number."""
-
 
 def usable_cores() -> int:
     """The cores that this process may run on."""
@@ -38,12 +35,6 @@ def parts(n_rows: int, *, sparse: bool = False) -> list[slice]:
     n_parts = 2 * -(-n_rows // (2 * longest)) if n_rows > longest // 2 else 1
     ends = [n_rows * i // n_parts for i in range(n_parts + 1)]
     return [slice(start, end) for start, end in zip(ends, ends[1:], strict=False)]
-
-
-def blocks(n_rows: int) -> Iterator[slice]:
-    """The rows in blocks of `BLOCK`; the last one is shorter."""
-    for start in range(0, n_rows, BLOCK):
-        yield slice(start, min(start + BLOCK, n_rows))
 
 
 def in_order(

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput
 from clearance.progress import Progress
+from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.simulate.parts import usable_cores
-from clearance.simulate.rows.resumable import IN_MEMORY, MeasuredRows
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,37 +6,22 @@ how the rule stands as a whole (`rule_answer`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
+from clearance.record.moment import Moment
+from clearance.record.names import pair_names
+from clearance.record.rule_answer import MOST_NEAR_STEPS, NearRows, RuleAnswer
 from clearance.simulate.measure import NearestPairs, pairs_within
-from clearance.simulate.moment import Moment, MomentQuery
-from clearance.simulate.names import pair_names
+from clearance.simulate.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.moment_query import MomentQuery
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
-
-MOST_NEAR_STEPS = 250_000
-"""Of a section; where something is near at more, only the nearest pair of each is told, to save memory."""
-
-
-@dataclass(frozen=True, eq=False)
-class NearRows:
-    """Pairs near at steps, one row a pair and step, steps in order.
-
-    Attributes:
-        steps, pairs: (k,) pairs are places among those of the run. clearances: (k,) [m] less padding.
-        touching: (k,) where the bodies themselves touch.
-        nearest_only: (k,) True where only the nearest pair of the step is known: others may be near as well.
-    """
-
-    steps: np.ndarray
-    pairs: np.ndarray
-    clearances: np.ndarray
-    touching: np.ndarray
-    nearest_only: np.ndarray
+from clearance.world.case import Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,3 +147,77 @@ def _moment(answer: SectionAnswer, step: int, pair: int) -> Moment:
         return MomentQuery(case, motions, section.pairs).at(step, pair)
     names = pair_names(case, section.pairs)
     return SampleMoments(names, motions).at(answer.found, "", step)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredRule(RuleAnswer):
+    """What a rule comes to, and what measures its moments and its pairs one by one.
+
+    Attributes:
+        moment_at: the moment of a step whose clearance is known.
+        pairs: its pairs one by one; None where only the nearest of each step is known.
+        alone: by a level [m], the pairs that come within it, each proven alone, as far as that was asked for.
+    """
+
+    measurement: MeasuredSteps
+    certificate: ProvenMotion | None = None
+    moment_at: Callable[[int], Moment] = field(kw_only=True)
+    pairs: RulePairs | None = field(default=None, kw_only=True)
+    alone: dict[float, dict[int, MeasuredRule]] = field(default_factory=dict, kw_only=True)
+
+    @cached_property
+    def answer(self) -> RuleAnswer:
+        """The data of it alone."""
+        certificate = None if self.certificate is None else self.certificate.data
+        return RuleAnswer(
+            self.name,
+            self.limits,
+            self.measurement.data,
+            certificate,
+            self.worst_sample,
+            self.worst,
+            self.sections,
+        )
+
+
+def measured_rule(
+    name: str,
+    limits: Limits,
+    found: MeasuredSteps,
+    proven: ProvenMotion | None,
+    moment_at: Callable[[int], Moment],
+    pairs: RulePairs | None = None,
+) -> MeasuredRule:
+    """A rule with its worst moments."""
+    sample = _worst_sample(found, moment_at)
+    return MeasuredRule(
+        name,
+        limits,
+        found,
+        proven,
+        sample,
+        _lesser(sample, None if proven is None else proven.nearest_moment),
+        () if pairs is None else tuple(one.section.pairs for one in pairs.answers),
+        moment_at=moment_at,
+        pairs=pairs,
+    )
+
+
+def _worst_sample(found: MeasuredSteps, moment_at: Callable[[int], Moment]) -> Moment | None:
+    """The first step of least clearance; None where none is known."""
+    unknown = np.isnan(found.clearance)
+    if unknown.all():
+        return None
+    touching = found.touches(slice(None))
+    if found.touching is not None and touching.any():
+        return moment_at(int(np.argmax(touching)))
+    return moment_at(int(np.argmin(np.where(unknown, np.inf, found.clearance))))
+
+
+def _lesser(known: Moment | None, between: Moment | None) -> Moment | None:
+    """The one of less clearance; contact of the bodies themselves is least."""
+    if known is None or between is None:
+        return between if known is None else known
+    if known.touches:
+        return known
+    return between if between.touches or between.clearance < known.clearance else known

@@ -7,62 +7,32 @@ to its fail limit; without rules that is the nearest pair of all. Not for: measu
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from clearance.simulate.certificate import Certificate, motion_codes
-from clearance.simulate.measurement import Measurement, Minima
-from clearance.simulate.moment import Moment
-from clearance.simulate.names import pair_names
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.rule_pairs import RulePairs
+from clearance.record.measurement import Measurement, Minima
+from clearance.record.moment import Moment
+from clearance.record.names import pair_names
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import sample_codes
+from clearance.record.steps import RunAnswer
+from clearance.simulate.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.rule_pairs import MeasuredRule, RulePairs, measured_rule
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, rule_limits
-from clearance.simulate.status import sample_codes
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.rules import DEFAULT
 
 
-@dataclass(frozen=True, eq=False)
-class RunAnswer:
-    """What was found of a run.
+class JudgedRun(NamedTuple):
+    """What a run comes to, and each of its rules with what can measure more of it."""
 
-    Attributes:
-        rules: what each rule comes to, in the order of the case; at least one.
-        found: of each step the row that stands worst. rule: (n,) the place in `rules` of what judged it, or None
-            where there is one rule.
-        nearest: of each step the nearest pair of all, whatever judges it; `found` where there is one rule.
-        certificate: over all rules; None where nothing is proven.
-    """
-
-    rules: tuple[RuleAnswer, ...]
-    found: Measurement
-    rule: np.ndarray | None
-    nearest: Measurement
-    certificate: Certificate | None
-
-    def rules_at(self, steps: slice) -> np.ndarray:
-        """(k,) the place in `rules` of what judged each of some steps."""
-        if self.rule is None:
-            return np.zeros(len(range(*steps.indices(len(self.found.clearance)))), dtype=np.int64)
-        return self.rule[steps]
-
-    def sample_codes(self, steps: slice) -> np.ndarray:
-        """(k,) the status of each of some steps by itself, the worst of all rules; -1 where a bound does not
-        decide.
-        """
-        codes = np.array([sample_codes(r.measurement, r.limits, steps) for r in self.rules])
-        undecided = (codes < 0).any(axis=0) & (codes.max(axis=0) <= 0)
-        return np.where(undecided, -1, codes.max(axis=0))
-
-    def motion_codes(self, steps: slice) -> np.ndarray:
-        """(k,) what is proven of the motion from each of some steps to the next, the worst of all rules."""
-        found = [motion_codes(r.certificate, r.limits, steps) for r in self.rules if r.certificate]
-        return np.max(found, axis=0)
+    answer: RunAnswer
+    rules: tuple[MeasuredRule, ...]
 
 
 def judged(
@@ -70,74 +40,187 @@ def judged(
     answers: Sequence[SectionAnswer],
     case: Case,
     motions: Sequence[Motion],
-) -> RunAnswer:
+) -> JudgedRun:
     """What a run comes to, of what its sections come to."""
-    rules, limits, n_steps = [], case.limits, motions[0].n_steps
+    n_steps = motions[0].n_steps
     samples = SampleMoments(pair_names(case, plan.pairs), motions)
+    rules = []
     for rule in plan.rules:
         own = [answer for answer in answers if answer.section.rule == rule]
+        name = case.limits.rule_names[rule]
         found = joined(own, n_steps, len(plan.pairs))
-        certificate = joined_certificates(own, n_steps, limits.rule_names[rule])
-        name = limits.rule_names[rule]
+        proven = joined_certificates(own, n_steps, name)
+        limits = rule_limits(case, rule, [answer.section for answer in own])
         moment_at = partial(samples.at, found, name)
-        pairs = RulePairs(own, name)
-        own_limits = rule_limits(case, rule, [answer.section for answer in own])
-        rules.append(RuleAnswer(name, own_limits, found, certificate, moment_at, pairs))
+        rules.append(measured_rule(name, limits, found, proven, moment_at, RulePairs(own, name)))
+    return JudgedRun(_over_rules(rules, n_steps), tuple(rules))
+
+
+def _over_rules(rules: Sequence[MeasuredRule], n_steps: int) -> RunAnswer:
+    """Of each step the rule that stands worst."""
+    plain = [rule.answer for rule in rules]
     if len(rules) == 1:
-        only = rules[0]
-        return RunAnswer((only,), only.measurement, None, only.measurement, only.certificate)
-    worst = _worst_rule(rules, n_steps)
-    found = _chosen([rule.measurement for rule in rules], worst)
+        (only,) = plain
+        return RunAnswer(plain, only.measurement, None, only.measurement, only.certificate)
+    whole = slice(0, n_steps)
+    steps = [_Layer(rule.measurement, whole) for rule in rules]
+    worst = _worst_rule(plain, n_steps)
     least = np.argmin([_or_far(rule.measurement.clearance) for rule in rules], axis=0)
-    nearest = _chosen([rule.measurement for rule in rules], least)
-    return RunAnswer(tuple(rules), found, worst, nearest, _over_rules(rules))
+    every = _every([rule.measurement.every for rule in rules])
+    proofs = [_Layer(rule.certificate, whole) for rule in rules if rule.certificate is not None]
+    proven = None if len(proofs) < len(rules) else _least_proof(proofs, n_steps)
+    return RunAnswer(
+        plain,
+        _steps_of(steps, worst, every=every),
+        worst,
+        _steps_of(steps, least, every=every),
+        None if proven is None else proven.data,
+    )
 
 
-def joined(answers: Sequence[SectionAnswer], n_steps: int, n_pairs: int) -> Measurement:
+class _Layer(NamedTuple):
+    """Steps or intervals of a run over which something is known: of a section, or of a rule.
+
+    Attributes:
+        rows: of the run. padding: [m] that clearances are less by. places: (p,) of its pairs in the run; None
+            where they are counted as there. rule: that judges it, if its moments are not yet told of the run.
+    """
+
+    found: MeasuredSteps | ProvenMotion
+    rows: slice
+    padding: float = 0.0
+    places: np.ndarray | None = None
+    rule: str | None = None
+
+    def column(self, name: str) -> np.ndarray:
+        """(rows, ...) a column as the run has it."""
+        n_rows = self.rows.stop - self.rows.start
+        if name == "touching":
+            return self.found.touches(slice(0, n_rows))
+        own = getattr(self.found, name)
+        if own is None:
+            return np.full(n_rows, np.nan)
+        own = own[:n_rows]
+        if name == "pair" and self.places is not None:
+            return np.where(own >= 0, self.places[np.maximum(own, 0)], -1)
+        return own - self.padding if name in _PADDED else own
+
+    def moment_of(self, step: int) -> Moment:
+        """The moment of an interval of a proof."""
+        assert isinstance(self.found, ProvenMotion)
+        moment = self.found.moment_of(step - self.rows.start)
+        if self.rule is None:
+            return moment
+        return moment.of_run(self.rows.start, self.padding, self.rule)
+
+
+_PADDED = ("clearance", "lower_bound", "upper_bound")
+
+
+def _nearest_layer(layers: Sequence[_Layer], n_steps: int, column: str) -> np.ndarray:
+    """(n,) which layer is nearest at each row, contact of bodies first, the first of those alike; -1 for none."""
+    owner, least = np.full(n_steps, -1), np.full(n_steps, np.inf)
+    touching = np.zeros(n_steps, dtype=bool)
+    for i, (layer, rows) in enumerate((layer, layer.rows) for layer in layers):
+        reached, touches = layer.column(column), layer.column("touching")
+        held = touching[rows]
+        nearer = (touches & ~held) | ((touches == held) & (reached < least[rows]))
+        owner[rows][nearer], least[rows][nearer] = i, reached[nearer]
+        touching[rows][nearer] = touches[nearer]
+    return owner
+
+
+def _gathered(
+    layers: Sequence[_Layer], owner: np.ndarray, name: str, rows: np.ndarray
+) -> np.ndarray:
+    """(n, ...) a column of the layer that each row is of; `rows` as given where that is -1."""
+    for i, layer in enumerate(layers):
+        own = owner[layer.rows] == i
+        rows[layer.rows][own] = layer.column(name)[own]
+    return rows
+
+
+def _least_bound(layers: Sequence[_Layer], n_steps: int) -> np.ndarray:
+    """(n,) [m] the least of the proven bounds."""
+    least = np.full(n_steps, np.inf)
+    for layer in layers:
+        np.minimum(least[layer.rows], layer.column("lower_bound"), out=least[layer.rows])
+    return least
+
+
+def _steps_of(
+    layers: Sequence[_Layer],
+    owner: np.ndarray,
+    minima: Callable[[int | None], Minima] | None = None,
+    every: np.ndarray | None = None,
+) -> MeasuredSteps:
+    """Of each step the row of the layer that it is of, and the least bound of all."""
+    n = len(owner)
+    times_b = _gathered(layers, owner, "times_b", np.full(n, np.nan))
+    return MeasuredSteps(
+        _gathered(layers, owner, "clearance", np.full(n, np.nan)),
+        _least_bound(layers, n),
+        _gathered(layers, owner, "pair", np.full(n, -1, dtype=np.int64)),
+        _gathered(layers, owner, "points", np.full((n, 2, 3), np.nan)),
+        _sum([layer.found.tally for layer in layers]),
+        every,
+        any(layer.found.may_cut_pairs for layer in layers if isinstance(layer.found, Measurement)),
+        _gathered(layers, owner, "touching", np.zeros(n, dtype=bool)),
+        None if np.isnan(times_b).all() else times_b,
+        measure_pair_minima=minima,
+    )
+
+
+def _proof_of(layers: Sequence[_Layer], owner: np.ndarray) -> ProvenMotion:
+    """Of each interval the row of the layer that it is of, and the least bound of all."""
+    n = len(owner)
+    own = [layer.found for layer in layers if isinstance(layer.found, ProvenMotion)]
+    return ProvenMotion(
+        _least_bound(layers, n),
+        _gathered(layers, owner, "upper_bound", np.full(n, np.inf)),
+        _gathered(layers, owner, "share", np.full(n, -1.0)),
+        _gathered(layers, owner, "pair", np.full(n, -1, dtype=np.int64)),
+        max(one.gap for one in own),
+        _sum([one.tally for one in own]),
+        tuple(dict.fromkeys(notice for one in own for notice in one.notices)),
+        _gathered(layers, owner, "touching", np.zeros(n, dtype=bool)),
+        moment_of=lambda step: layers[max(0, int(owner[step]))].moment_of(step),
+    )
+
+
+def joined(answers: Sequence[SectionAnswer], n_steps: int, n_pairs: int) -> MeasuredSteps:
     """The measurements of some sections as one of all steps: the nearest of each, less its padding."""
     first = answers[0]
     if len(answers) == 1 and _is_whole(first.section, n_steps, n_pairs):
         return first.found
-    clearance, lower = np.full(n_steps, np.nan), np.full(n_steps, np.inf)
-    unknown = np.full(
-        n_steps, np.inf
-    )  # [m] no pair is nearer of the sections that only have a bound
-    pair, points = np.full(n_steps, -1, dtype=np.int64), np.full((n_steps, 2, 3), np.nan)
-    touching = np.zeros(n_steps, dtype=bool)
-    times_b = np.full(n_steps, np.nan)
-    for answer in answers:
-        own, rows = answer.found, answer.section.steps
-        reached, touches = own.clearance - answer.section.padding, own.touches(slice(None))
-        known = own.pair >= 0
-        have, held = clearance[rows], touching[rows]
-        nearer = known & (
-            np.isnan(have) | (touches & ~held) | ((touches == held) & (reached < have))
-        )
-        bound = own.lower_bound - answer.section.padding
-        np.minimum(lower[rows], bound, out=lower[rows])
-        np.minimum(unknown[rows], bound, out=unknown[rows], where=~known)
-        clearance[rows] = np.where(nearer, reached, have)
-        pair[rows] = np.where(nearer, answer.section.places[np.maximum(own.pair, 0)], pair[rows])
-        points[rows] = np.where(nearer[:, None, None], own.points, points[rows])
-        touching[rows] = np.where(nearer, touches, held)
-        if own.times_b is not None:
-            times_b[rows] = np.where(nearer, own.times_b, times_b[rows])
-    hidden = (clearance > unknown) & ~touching
-    clearance[hidden], pair[hidden], points[hidden] = np.nan, -1, np.nan
-    return Measurement(
-        clearance,
-        lower,
-        pair,
-        points,
-        _sum([answer.found.tally for answer in answers]),
-        _minima(answers, n_pairs) if all(a.found.measure_pair_minima for a in answers) else None,
-        _every(answers, n_steps, n_pairs)
-        if all(a.found.every is not None for a in answers)
-        else None,
-        any(answer.found.may_cut_pairs for answer in answers),
-        touching,
-        None if np.isnan(times_b).all() else times_b,
+    layers = [_of_section(answer.section, answer.found, answer.section.steps) for answer in answers]
+    owner = _nearest_layer(layers, n_steps, "clearance")
+    clearance = _gathered(layers, owner, "clearance", np.full(n_steps, np.nan))
+    touching = _gathered(layers, owner, "touching", np.zeros(n_steps, dtype=bool))
+    hidden = (clearance > _least_unknown(layers, n_steps)) & ~touching
+    every = [_every_of(answer, n_steps, n_pairs) for answer in answers]
+    minima = [answer.found.measure_pair_minima for answer in answers]
+    return _steps_of(
+        layers,
+        np.where(hidden, -1, owner),
+        None if None in minima else _minima(answers, n_pairs),
+        _every(every),
     )
+
+
+def _of_section(
+    section: Section, found: MeasuredSteps | ProvenMotion, rows: slice, rule: str = ""
+) -> _Layer:
+    return _Layer(found, rows, section.padding, section.places, rule)
+
+
+def _least_unknown(layers: Sequence[_Layer], n_steps: int) -> np.ndarray:
+    """(n,) [m] no pair is nearer of the layers that only have a bound."""
+    least = np.full(n_steps, np.inf)
+    for layer in layers:
+        bound, known = layer.column("lower_bound"), layer.column("pair") >= 0
+        np.minimum(least[layer.rows], bound, out=least[layer.rows], where=~known)
+    return least
 
 
 def _is_whole(section: Section, n_steps: int, n_pairs: int) -> bool:
@@ -175,19 +258,25 @@ def _minima(answers: Sequence[SectionAnswer], n_pairs: int) -> Callable[[int | N
     return found
 
 
-def _every(answers: Sequence[SectionAnswer], n_steps: int, n_pairs: int) -> np.ndarray:
-    """(n, pairs) [m] the clearance of each pair at each step; NaN where it is not measured by these sections."""
+def _every(found: Sequence[np.ndarray | None]) -> np.ndarray | None:
+    """(n, pairs) [m] the least of some tables of every pair; None where one is not known."""
+    known = [one for one in found if one is not None]
+    return np.fmin.reduce(known) if len(known) == len(found) else None
+
+
+def _every_of(answer: SectionAnswer, n_steps: int, n_pairs: int) -> np.ndarray | None:
+    """(n, pairs) [m] the clearance of each pair at each step; NaN where a section does not measure it."""
+    if answer.found.every is None:
+        return None
     every = np.full((n_steps, n_pairs), np.nan)
-    for answer in answers:
-        assert answer.found.every is not None
-        where = np.ix_(np.arange(n_steps)[answer.section.steps], answer.section.places)
-        every[where] = np.fmin(every[where], answer.found.every - answer.section.padding)
+    where = np.ix_(np.arange(n_steps)[answer.section.steps], answer.section.places)
+    every[where] = answer.found.every - answer.section.padding
     return every
 
 
 def joined_certificates(
     answers: Sequence[SectionAnswer], n_steps: int, rule: str
-) -> Certificate | None:
+) -> ProvenMotion | None:
     """The certificates of some sections as one of all intervals; infinite where they say nothing."""
     first = answers[0]
     if first.certificate is None:
@@ -197,46 +286,21 @@ def joined_certificates(
         places = first.section.places
         if rule == DEFAULT and np.array_equal(places, np.arange(len(places))):
             return first.certificate
-    lower, upper = np.full(n_steps, np.inf), np.full(n_steps, np.inf)
-    share, pair = np.full(n_steps, -1.0), np.full(n_steps, -1, dtype=np.int64)
-    touching, owner = np.zeros(n_steps, dtype=bool), np.zeros(n_steps, dtype=np.int64)
-    for i, answer in enumerate(answers):
-        own, phase = answer.certificate, answer.section.phase
-        assert own is not None
+    layers = []
+    for answer in answers:
+        assert answer.certificate is not None
+        phase = answer.section.phase
         n_rows = phase.n_steps if phase.last == n_steps - 1 else phase.n_steps - 1
         rows = slice(phase.first, phase.first + n_rows)
-        low, high = (
-            bound[:n_rows] - answer.section.padding for bound in (own.lower_bound, own.upper_bound)
-        )
-        touches = own.touches(slice(0, n_rows))
-        np.minimum(lower[rows], low, out=lower[rows])
-        nearer = (touches & ~touching[rows]) | ((touches == touching[rows]) & (high < upper[rows]))
-        upper[rows] = np.where(nearer, high, upper[rows])
-        share[rows] = np.where(nearer, own.share[:n_rows], share[rows])
-        own_pair = own.pair[:n_rows]
-        places = np.where(own_pair >= 0, answer.section.places[np.maximum(own_pair, 0)], -1)
-        pair[rows] = np.where(nearer, places, pair[rows])
-        touching[rows] = np.where(nearer, touches, touching[rows])
-        owner[rows] = np.where(nearer, i, owner[rows])
+        layers.append(_of_section(answer.section, answer.certificate, rows, rule))
+    return _proof_of(layers, _nearest_layer(layers, n_steps, "upper_bound"))
 
-    def moment_of(step: int) -> Moment:
-        answer = answers[int(owner[step])]
-        assert answer.certificate is not None
-        found = answer.certificate.moment_of(step - answer.section.phase.first)
-        return found.of_run(answer.section.phase.first, answer.section.padding, rule)
 
-    certificates = [answer.certificate for answer in answers if answer.certificate is not None]
-    return Certificate(
-        lower,
-        upper,
-        share,
-        pair,
-        max(certificate.gap for certificate in certificates),
-        _sum([certificate.tally for certificate in certificates]),
-        moment_of,
-        tuple(dict.fromkeys(notice for c in certificates for notice in c.notices)),
-        touching,
-    )
+def _least_proof(layers: Sequence[_Layer], n_steps: int) -> ProvenMotion:
+    """The least of what is proven of all rules; of rules that touch the first."""
+    touching = np.array([layer.column("touching") for layer in layers])
+    uppers = np.array([layer.column("upper_bound") for layer in layers])
+    return _proof_of(layers, np.argmin(np.where(touching, -np.inf, uppers), axis=0))
 
 
 def _worst_rule(rules: Sequence[RuleAnswer], n_steps: int) -> np.ndarray:
@@ -250,55 +314,6 @@ def _worst_rule(rules: Sequence[RuleAnswer], n_steps: int) -> np.ndarray:
     unknown = np.isinf(margins).all(axis=0)
     bounds = np.array([rule.measurement.lower_bound - rule.limits.fail for rule in rules])
     return np.where(unknown, np.argmin(bounds, axis=0), np.argmin(margins, axis=0))
-
-
-def _chosen(found: Sequence[Measurement], which: np.ndarray) -> Measurement:
-    """Of each step the row of one of some measurements."""
-    steps = np.arange(len(which))
-
-    def of(name: str) -> np.ndarray:
-        return np.array([getattr(one, name) for one in found])[which, steps]
-
-    every = [one.every for one in found if one.every is not None]
-    times_b = [np.full(len(which), np.nan) if o.times_b is None else o.times_b for o in found]
-    return Measurement(
-        of("clearance"),
-        np.min([one.lower_bound for one in found], axis=0),
-        of("pair"),
-        of("points"),
-        _sum([one.tally for one in found]),
-        None,
-        np.fmin.reduce(every) if len(every) == len(found) else None,
-        any(one.may_cut_pairs for one in found),
-        np.array([one.touches(slice(None)) for one in found])[which, steps],
-        None if np.isnan(times_b).all() else np.array(times_b)[which, steps],
-    )
-
-
-def _over_rules(rules: Sequence[RuleAnswer]) -> Certificate | None:
-    """The least of what is proven of all rules."""
-    own = [rule.certificate for rule in rules if rule.certificate is not None]
-    if len(own) < len(rules):
-        return None
-    touching = np.array([one.touches(slice(None)) for one in own])
-    uppers = np.array([one.upper_bound for one in own])
-    which = np.argmin(np.where(touching, -np.inf, uppers), axis=0)
-    steps = np.arange(len(which))
-
-    def of(name: str) -> np.ndarray:
-        return np.array([getattr(one, name) for one in own])[which, steps]
-
-    return Certificate(
-        np.min([one.lower_bound for one in own], axis=0),
-        of("upper_bound"),
-        of("share"),
-        of("pair"),
-        max(one.gap for one in own),
-        _sum([one.tally for one in own]),
-        lambda step: own[int(which[step])].moment_of(step),
-        tuple(dict.fromkeys(notice for one in own for notice in one.notices)),
-        touching[which, steps],
-    )
 
 
 def _or_far(clearance: np.ndarray) -> np.ndarray:

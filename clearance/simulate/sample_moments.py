@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.simulate.measurement import Measurement
-from clearance.simulate.moment import Moment
+from clearance.record.measurement import Measurement
+from clearance.record.moment import Moment
 from clearance.world.motion import Motion
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from clearance.simulate.certificate import Certificate
-from clearance.simulate.measurement import Measurement
+from clearance.simulate.measured import MeasuredSteps, ProvenMotion
 from clearance.simulate.sections import Section
 
 
@@ -14,5 +13,5 @@ class SectionAnswer:
     """What was found of a section; pairs and steps are the section's own, distances without padding."""
 
     section: Section
-    found: Measurement
-    certificate: Certificate | None
+    found: MeasuredSteps
+    certificate: ProvenMotion | None

@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from clearance.query.pair_query import Query
-from clearance.simulate.moment import Moment
+from clearance.record.moment import Moment
+from clearance.record.sensitivity import NO_SLOPE, Rate, Sensitivity
+from clearance.simulate.measured_run import MeasuredRun
 from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
-from clearance.simulate.record import Record
 from clearance.simulate.sections import Section
 from clearance.simulate.transfers import Transfers
 from clearance.world.case import Case
@@ -34,60 +34,15 @@ BAND = 1e-5
 LEAST = 1e-5
 """[m] Bodies that are nearer have no slope that would hold on: they are taken for touching."""
 
-TWO_WAYS = 1e-3
-"""[-] Of the greater of both slopes, how far they may add up to be one slope that holds both ways."""
 
-NO_SLOPE = 1e-4
-"""[-] or [m/rad] A smaller slope is none: bodies 1 mm apart that slide past an edge show half of it."""
-
-
-class Rate(NamedTuple):
-    """What the clearance changes by with one variable.
-
-    Attributes:
-        kind: "joint", "base" or "obstacle". of: the robot or obstacle.
-        name: the joint, or "x", "y", "z" of the world.
-        unit: "rad" or "m" of the variable.
-        more, less: [m per unit] what a unit more, and a unit less, add to the clearance.
-    """
-
-    kind: str
-    of: str
-    name: str
-    unit: str
-    more: float
-    less: float
-
-    @property
-    def both_ways(self) -> bool:
-        """True if `less` is `-more`, so that one number says both."""
-        return abs(self.more + self.less) <= max(
-            TWO_WAYS * max(abs(self.more), abs(self.less)), NO_SLOPE
-        )
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """What the clearance of a moment changes by.
-
-    Attributes:
-        pairs: the bodies of each pair that is as near as the nearest. rates: of what moves any of them.
-        why_not: why nothing is worked out; empty if it is.
-    """
-
-    pairs: tuple[tuple[str, str], ...] = ()
-    rates: tuple[Rate, ...] = ()
-    why_not: str = ""
-
-
-def sensitivity_of(record: Record) -> Sensitivity:
+def sensitivity_of(run: MeasuredRun) -> Sensitivity:
     """That of the moment which stands worst."""
-    moment = record.worst
+    moment = run.record.worst
     if moment.touches:
         return Sensitivity(why_not="the bodies are in contact")
     if moment.time_b is not None:
         return Sensitivity(why_not="the clocks of the bodies are not tied")
-    pairs = record.rule(moment.rule).pairs
+    pairs = run.measured(run.record.rule(moment.rule)).pairs
     if pairs is None:
         return Sensitivity(why_not="only the nearest pair of each step is known")
     sections = [one.section for one in pairs.answers if _holds(one.section, moment)]

@@ -11,8 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.record.contact import ContactRows
+from clearance.record.record import Record
 from clearance.simulate.handling import gap_between, handling_hints
-from clearance.simulate.record import Record
 from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
@@ -66,12 +67,7 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     A link that a joint moves against an obstacle that stands is left out: that is what a run looks for.
     """
     rows = record.contacts
-    if not len(rows):
-        return []
-    from clearance.simulate.contact.phases import ContactsOfPhases
-    from clearance.simulate.contact.rows import ContactRows
-
-    if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
+    if not isinstance(rows, ContactRows) or not len(rows) or record.steps.num_rows < 2:
         return []
     case, plan = record.case, section_plan(record.timeline)
     n_steps = np.bincount(rows.pairs, minlength=len(plan.pairs))

@@ -16,19 +16,17 @@ import numpy as np
 from clearance.kernels.motion.certify import CertifiedSteps, IntervalBounds
 from clearance.kernels.motion.twist import CertificateGoal
 from clearance.kernels.search.proof import FINEST_GAP
-from clearance.simulate.certificate import Certificate
+from clearance.record.certificate import Certificate
+from clearance.record.moment import Moment
+from clearance.record.rows.blocks import blocks
 from clearance.simulate.certify import finer_path, prove_path
 from clearance.simulate.measure import nearest_at
-from clearance.simulate.moment import Moment, MomentQuery
-from clearance.simulate.parts import blocks
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.moment_query import MomentQuery
+from clearance.simulate.rule_pairs import MeasuredRule
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.forest import positions_along
-
-LEVELS = ("below_warn", "below_fail", "contact")
-"""The levels, the widest first."""
 
 FINEST_TIME, FINEST_SHARE = 1e-3, 0.01
 """[s] and [-] The length of a part of an interval: the greater of both."""
@@ -85,7 +83,7 @@ class Parts(NamedTuple):
 class RuleStretches:
     """The times at which pairs of a certified rule are below one of `LEVELS`, or below a clearance [m]."""
 
-    rule: RuleAnswer
+    rule: MeasuredRule
     level: str | float
 
     @cached_property

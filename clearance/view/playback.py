@@ -1,4 +1,4 @@
-"""`clearance view`: a record, or the folder of one, playing live in meshcat.
+"""`clearance view`: a replay, or the folder of one, playing live in meshcat.
 
 In the browser: meshcat's panel (open it at the top right) plays, pauses and scrubs; a slider walks
 through the steps and buttons jump to the worst step and to where each limit is entered. Not for:
@@ -21,10 +21,17 @@ import numpy as np
 
 from clearance.errors import MissingFile
 from clearance.extras import importing
-from clearance.simulate.record import Record
-from clearance.simulate.replay.bodies import LINK, MOVING, PART, STANDING, DrawnBody
-from clearance.simulate.replay.replay import FILE_NAME, Replay, load_replay, replay_of
-from clearance.simulate.status import STATUSES
+from clearance.record.replay import (
+    FILE_NAME,
+    LINK,
+    MOVING,
+    PART,
+    STANDING,
+    DrawnBody,
+    Replay,
+    load_replay,
+)
+from clearance.record.status import STATUSES
 
 if TYPE_CHECKING:
     from clearance.view.viewer import LiveScene
@@ -74,8 +81,8 @@ class Playback:
         self.close()
 
 
-def show(what: Record | str | Path, open_browser: bool = True) -> None:
-    """Plays a record, or the folder of a report, until the user interrupts; prints the address.
+def show(what: Replay | str | Path, open_browser: bool = True) -> None:
+    """Plays a replay, or the folder of a report, until the user interrupts; prints the address.
 
     Raises:
         MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
@@ -99,14 +106,14 @@ def _until_interrupted() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def play(what: Record | str | Path) -> Playback:
-    """A live viewer of a record, or of the folder of a report, that runs in the background.
+def play(what: Replay | str | Path) -> Playback:
+    """A live viewer of a replay, or of the folder of a report, that runs in the background.
 
     Raises:
         MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
         Unavailable: a library of the extra `view` is missing.
     """
-    return Playback(replay_of(what) if isinstance(what, Record) else _replay_in(Path(what)))
+    return Playback(what if isinstance(what, Replay) else _replay_in(Path(what)))
 
 
 def _replay_in(folder: Path) -> Replay:

@@ -17,11 +17,11 @@ from inputs import Solid
 from peers import Fcl, available, silenced
 
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNING
-from clearance.simulate.certificate import Certificate
+from clearance.record.certificate import Certificate
+from clearance.record.measurement import Measurement
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
-from clearance.simulate.measurement import Measurement
 from clearance.simulate.resources import Resources
 from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case

@@ -34,7 +34,7 @@ from rows import write_csv
 from trajectory import steps_for
 
 import clearance as cl
-from clearance.simulate.audit.pair import PairStatus
+from clearance.record.audit import PairStatus
 from clearance.simulate.audit.srdf import audit
 from clearance.simulate.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
@@ -237,7 +237,7 @@ def unsynchronised(asked: Arguments) -> list[dict]:
             "what": "unsynchronised",
             "case": "two_arms",
             "method": "check, to 0.1 mm",
-            "pairs": len(run.record.pair_minima),
+            "pairs": len(run.pair_minima),
             "steps": run.steps.num_rows,
             "ms": seconds * 1e3,
             "ratio": seconds,

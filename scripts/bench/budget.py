@@ -19,11 +19,11 @@ from inputs import SCENES
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.query.distance import distance
+from clearance.record.measurement import Measurement
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.measure import measure
-from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import (

@@ -37,10 +37,10 @@ from inputs import SCENES, SHARED
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.kernels.budget.sweep import BudgetRows
+from clearance.record.measurement import Measurement
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
 from clearance.simulate.measure import measure
-from clearance.simulate.measurement import Measurement
 from clearance.simulate.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import Budget

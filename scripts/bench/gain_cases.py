@@ -20,7 +20,7 @@ from clearance.gains.answer import INTERVALS, Gain
 from clearance.gains.joint_ranges import joint_ranges, require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
-from clearance.simulate.record import PairMinimum
+from clearance.record.record import PairMinimum
 from clearance.world.case import Case, Limits, index_of_robot
 
 OURS = (
@@ -233,7 +233,7 @@ def _near_pair(
     case: Case, kind: str, rng: np.random.Generator
 ) -> tuple[Shift, str, PairMinimum] | None:
     """What can be shifted, and the pair of it that it is pushed into."""
-    minima = cl.check(case, certify=False, contact="none").record.pair_minima
+    minima = cl.check(case, certify=False, contact="none").pair_minima
     near = [one for one in minima if 0.0 < one.clearance < NEAR]
     if kind == "base":
         who = str(rng.choice([one.robot.name for one in case.robots if one.mount is None]))

@@ -8,7 +8,7 @@ import pytest
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import read_item
 from clearance.batch.rows import curve_of, row_of
-from clearance.report.intervals import status_counts
+from clearance.record.row_status import status_counts
 from clearance.run import answer
 from tests.batch.batches import write_cell
 

@@ -13,8 +13,8 @@ import pytest
 import clearance as cl
 from clearance.budget.sources import SourceKey, with_sizes
 from clearance.errors import BadInput
+from clearance.record.budget import most_looked_for
 from clearance.report.tolerances import largest_text
-from clearance.simulate.budget_answer import most_looked_for
 from clearance.world.budget import Budget, ObstacleTolerance, RobotTolerance
 from clearance.world.case import Clock
 from tests.budget.budget_cases import random_case
@@ -36,6 +36,11 @@ def test_a_case_without_tolerances_has_no_budget():
     assert not any(name.startswith("clearance.budget") for name in set(sys.modules) - before)
 
 
+def least_sources(run):
+    """What each error takes at the moment at which the first rule is left least."""
+    return run.session.error_sources(run.record.budget[0]).sources
+
+
 def test_columns_of_steps_are_those_of_the_rule(run):
     (budget,) = run.record.budget
     steps = run.record.steps
@@ -49,11 +54,12 @@ def test_no_estimate_is_below_what_is_proven(run):
     """Three deviations of a single error are 1.7 times what it can come to."""
     case = run.record.case
     only = Budget({"arm": RobotTolerance(surfaces={"right_finger": 0.002})})
-    (budget,) = cl.check(replace(case, tolerance=only)).record.budget
+    once = cl.check(replace(case, tolerance=only))
+    (budget,) = once.record.budget
     clearance = run.record.steps["clearance"].to_numpy()
     assert np.array_equal(budget.expected, budget.proven)
     assert budget.proven == pytest.approx(clearance - 0.002, abs=1e-9)
-    (worst, *_) = budget.worst
+    worst = once.session.least_left(budget)[0]
     assert worst.expected == pytest.approx(worst.proven, abs=1e-12)
 
 
@@ -71,7 +77,7 @@ def test_the_motion_is_proven_no_better_than_its_ends(run):
 
 def test_the_worst_moment_is_the_least_and_its_sources_make_it_up(run):
     (budget,) = run.record.budget
-    worst = budget.worst[0]
+    worst = run.session.error_sources(budget)
     assert worst.proven <= budget.proven.min()
     assert worst.proven >= budget.least - 1e-12
     taken = sum(source.proven for source in worst.sources)
@@ -87,13 +93,14 @@ def test_no_moment_is_told_to_leave_less_than_is_proven_of_all():
     late = {"timing": {"arm": 0.05}}
     found = cl.check(SCENES / "turntable_cell" / "case.yaml", tolerance=late)
     for one in found.record.budget:
-        assert len(one.worst)
-        assert all(worst.proven >= one.least for worst in one.worst)
+        moments = found.session.least_left(one)
+        assert len(moments)
+        assert all(worst.proven >= one.least for worst in moments)
 
 
 def test_the_expected_value_is_that_of_the_sources(run):
     (budget,) = run.record.budget
-    worst = budget.worst[0]
+    worst = run.session.error_sources(budget)
     deviation = np.sqrt(sum(source.expected**2 for source in worst.sources))
     assert worst.expected == pytest.approx(worst.moment.clearance - 3.0 * deviation, abs=1e-9)
 
@@ -103,8 +110,7 @@ def test_the_largest_tolerance_keeps_the_limit_and_little_more_does_not(run):
     case = run.record.case
     limit = budget.least - 0.002
     lower = replace(case, limits=cl.Limits(limit, limit), notices=())
-    (again,) = cl.check(lower).record.budget
-    source = again.worst[0].sources[0]
+    source = least_sources(cl.check(lower))[0]
     key = SourceKey(source.owner, source.kind, source.part)
     for factor, keeps in ((1.0, True), (1.01, False)):
         sizes = (source.largest[0] * factor, *(size for size, _ in source.tolerances[1:]))
@@ -115,9 +121,9 @@ def test_the_largest_tolerance_keeps_the_limit_and_little_more_does_not(run):
 
 def test_what_even_none_of_an_error_does_not_keep_has_no_largest(run):
     case = replace(run.record.case, limits=cl.Limits(10.0, 10.0), notices=())
-    (budget,) = cl.check(case).record.budget
-    assert not budget.keeps
-    assert all(number is None for source in budget.worst[0].sources for number in source.largest)
+    run = cl.check(case)
+    assert not run.record.budget[0].keeps
+    assert all(number is None for source in least_sources(run) for number in source.largest)
 
 
 def test_a_budget_of_nothing_takes_nothing():
@@ -126,16 +132,17 @@ def test_a_budget_of_nothing_takes_nothing():
     (budget,) = run.record.budget
     assert budget.proven == pytest.approx(run.record.clearances, abs=1e-9)
     assert budget.expected == pytest.approx(run.record.clearances, abs=1e-12)
-    assert not budget.worst[0].sources
+    assert not least_sources(run)
 
 
 def test_contact_is_never_kept():
     case = random_case(3)
-    (budget,) = cl.check(case).record.budget
+    run = cl.check(case)
+    (budget,) = run.record.budget
     assert budget.least < 0.0
     assert not budget.keeps
     assert np.isnan(budget.expected[budget.proven < -1.0]).all()
-    budget.worst[0].sources[:1]
+    assert least_sources(run)
 
 
 def test_a_report_of_bodies_that_touch_tells_no_deviation(tmp_path):
@@ -173,9 +180,9 @@ def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be()
         "base": {"xyz": 0.002, "angle": 0.001},
         "obstacles": {"default": {"xyz": 0.001}},
     }
-    (budget,) = cl.check(case, tolerance=tolerance).record.budget
-    assert not budget.keeps
-    base = budget.worst[0].sources[0]
+    run = cl.check(case, tolerance=tolerance)
+    assert not run.record.budget[0].keeps
+    base = least_sources(run)[0]
     assert base.kind == "base"
     for place, name in enumerate(("xyz", "angle")):
         for factor, keeps in ((1.0, True), (2.0, False)):
@@ -188,7 +195,7 @@ def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be()
 
 def test_no_more_is_looked_for_than_is_told_as_or_more(run):
     case = replace(run.record.case, limits=cl.Limits(0.0, 0.0), notices=())
-    for source in cl.check(case).record.budget[0].worst[0].sources:
+    for source in least_sources(cl.check(case)):
         told = [part for part in largest_text(source).split(", ") if part]
         for text, value, (given, unit) in zip(told, source.largest, source.tolerances, strict=True):
             most = most_looked_for(unit, given)

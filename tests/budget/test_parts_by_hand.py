@@ -156,7 +156,7 @@ def test_the_clock_of_a_carrier_is_refused_where_it_grips_at_the_start():
 
 def test_sources_are_told_for_each_moment():
     run = cl.check(replace(slid(off_by(0.004)), limits=cl.Limits(0.08, 0.08)))
-    sources = run.record.budget[0].worst[0].sources
+    sources = run.session.error_sources(run.record.budget[0]).sources
     assert sorted(one.moment for one in sources) == ["", "grasp (0 s)"]
     for one in sources:
         assert (one.owner, one.kind, one.part) == ("arm", "tracking", "j")

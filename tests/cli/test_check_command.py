@@ -121,7 +121,7 @@ def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
 KILLED = """
 import os, signal
 from clearance import cli
-from clearance.simulate.rows import resumable as resumable_rows
+from clearance.record.rows import resumable as resumable_rows
 resumable_rows.SAVE_AFTER, note = 0.0, resumable_rows._ResumableLog.note
 def killed(log, done, gathered, *, last):
     note(log, done, gathered, last=last)

@@ -62,20 +62,20 @@ def convert(*arguments: object) -> int:
 
 
 def results(scene: str, said: str = "robot: {urdf: arm.urdf}\n"):
-    """The record of a case that names a scene."""
+    """The run of a case that names a scene."""
     head = CASE.partition("robot:")[0]
     Path("case.yaml").write_text(f"{head}{said}scene: {scene}\ntrajectory: path.csv\n")
-    return check(load_case("case.yaml")).record
+    return check(load_case("case.yaml"))
 
 
 def same_bytes(one, other) -> bool:
-    bounds = [record.certificate.lower_bound for record in (one, other)]
+    bounds = [run.record.certificate.lower_bound for run in (one, other)]
     pairs = [[(pair.link, pair.obstacle) for pair in r.pair_minima] for r in (one, other)]
     return (
-        one.clearances.tobytes() == other.clearances.tobytes()
+        one.record.clearances.tobytes() == other.record.clearances.tobytes()
         and bounds[0].tobytes() == bounds[1].tobytes()
         and pairs[0] == pairs[1]
-        and one.steps.equals(other.steps)
+        and one.record.steps.equals(other.record.steps)
     )
 
 
@@ -143,8 +143,8 @@ def test_padding_that_is_left_out_is_a_warning_of_each_check(capsys):
     Path("held.yaml").write_text(MESSAGE.replace("padding: 0.01", "padding: 0.0"))
     assert convert("held.yaml", "made/scene.yaml") == 0
     theirs, ours = results("held.yaml"), results("made/scene.yaml")
-    pairs = [{(one.link, one.obstacle) for one in record.pair_minima} for record in (theirs, ours)]
-    assert pairs[0] < pairs[1] and ours.clearances.min() <= theirs.clearances.min()
+    pairs = [{(one.link, one.obstacle) for one in run.pair_minima} for run in (theirs, ours)]
+    assert pairs[0] < pairs[1] and ours.record.clearances.min() <= theirs.record.clearances.min()
     Path("held.yaml").write_text(MESSAGE)
     assert convert("held.yaml", "made/scene.yaml", "--force") == 0
     results("made/scene.yaml")

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from clearance.simulate.every_pair import EveryPair
+from clearance.record.every_pair import EveryPair
 from tests.cli.test_check_command import ROOT, files
 
 FILL = ("17", "99")

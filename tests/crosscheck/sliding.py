@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.record import Samples
+from clearance.record.record import Samples
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Omission, PlacedRobot
 from clearance.world.motion import Motion

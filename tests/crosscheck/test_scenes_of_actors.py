@@ -35,7 +35,7 @@ def test_fcl_agrees_with_a_scene_at_every_step(name):
     assert run.cross_check.worst_witness_error <= 1e-9
     parts, statuses = PARTS_AND_STATUSES[name]
     assert set(run.steps["status"].to_pylist()) == statuses and run.passed
-    measured = {body for pair in run.record.pair_minima for body in (pair.link, pair.obstacle)}
+    measured = {body for pair in run.pair_minima for body in (pair.link, pair.obstacle)}
     assert parts <= measured
 
 
@@ -65,6 +65,6 @@ def test_fcl_agrees_with_a_robot_of_two_arms_that_minds_itself(name):
         robot, asked, self_clearance=SelfClearance(load_srdf(srdf, robot), trust_never=True)
     )
     run = cl.check(cl.Case(name, (placed,), ()), certify=False, cross_check=True)
-    assert len(run.record.pair_minima) > 100
+    assert len(run.pair_minima) > 100
     assert run.record.clearances.max() > 0.0
     assert run.cross_check.agrees and run.cross_check.n_steps == N_STEPS

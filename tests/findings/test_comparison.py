@@ -10,7 +10,7 @@ import pytest
 import clearance as cl
 from clearance.findings.comparison import TOLERANCE, FindingChange, compared
 from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
-from clearance.findings.findings_file import FindingList, finding_list_of
+from clearance.findings.findings_file import FindingList
 from tests.findings.gates import load_gates, write_gates, write_way
 
 A, B = "gate_a", "gate_b"
@@ -19,7 +19,7 @@ BEFORE = {A: (-0.5, 0.003), B: (0.5, 0.1)}
 
 def found(folder, gates, *extra, need="steps", certify=True, **changes) -> FindingList:
     run = cl.check(load_gates(folder, gates, *extra, **changes), need=need, certify=certify)
-    return finding_list_of(run.record)
+    return run.finding_list
 
 
 @pytest.fixture
@@ -130,7 +130,7 @@ def test_a_second_occurrence_is_new(before, tmp_path):
     path = write_gates(tmp_path / "now", BEFORE)
     there_and_back = np.concatenate([np.linspace(-1, 1, 41), np.linspace(1, -1, 41)[1:]])
     write_way(tmp_path / "now" / "way.csv", there_and_back)
-    now = finding_list_of(cl.check(path).record)
+    now = cl.check(path).finding_list
     rows = compared(before, now).rows
     assert [(str(row.change), row.finding.occurrence) for row in rows] == [
         ("new", 1),

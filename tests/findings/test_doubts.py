@@ -11,15 +11,14 @@ from clearance.findings.comparison import Comparison, compared
 from clearance.findings.doubts import DISPUTED, NOT_CHECKED, Doubt, doubts_of
 from clearance.findings.findings_file import (
     FindingList,
-    finding_list_of,
     findings_text,
     read_findings,
 )
+from clearance.record.record import CrossCheck, Disagreement
 from clearance.report.comparison_page import page_of
 from clearance.report.comparison_text import comparison_text, doubt_lines
 from clearance.report.markdown import markdown
 from clearance.run import Question, Run, answer
-from clearance.simulate.record import CrossCheck, Disagreement
 from clearance.world.case import Clock
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates
@@ -40,7 +39,7 @@ def run_of(folder, gates=CLEAR, *extra: str, certify=True, method="exact", **cha
 
 
 def listed(folder, *given, **changes) -> FindingList:
-    return finding_list_of(run_of(folder, *given, **changes).record)
+    return run_of(folder, *given, **changes).finding_list
 
 
 TABLE = {
@@ -94,7 +93,7 @@ def test_what_stands_beside_the_findings_of_two_runs(what, tmp_path):
         extra = [given[key] for key in given if key == "extra"]
         changes = {key: value for key, value in given.items() if key != "extra"}
         run = run_of(tmp_path / name, CLEAR, *extra, **changes)
-        lists.append(finding_list_of(run.record))
+        lists.append(run.finding_list)
         assert run.passed is not (
             any(one.fails for one in (*lists[-1].doubts, *lists[-1].findings))
         )
@@ -130,7 +129,7 @@ def test_a_dispute_is_among_the_doubts(tmp_path):
     record = run_of(tmp_path).record
     row = Disagreement(3, 0.1, 0.2, "box", A, "box", A, "differs")
     check = CrossCheck("FCL", 41, 0.1, 3, 1e-9, 0.0, (row,))
-    doubts = doubts_of(dataclasses.replace(record, cross_check=check))
+    doubts = doubts_of(dataclasses.replace(record, cross_check=check), None)
     assert doubts[0] == Doubt(DISPUTED, "FCL", "FCL disagrees at 1 of 41 steps") and doubts[0].fails
 
 

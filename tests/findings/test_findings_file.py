@@ -13,7 +13,6 @@ from clearance.errors import BadInput, BadSyntax, MissingFile
 from clearance.findings.findings_file import (
     FORMAT,
     FindingList,
-    finding_list_of,
     findings_text,
     read_findings,
 )
@@ -25,7 +24,7 @@ SCENES = Path(__file__).parents[2] / "scenes"
 @functools.cache
 def found() -> FindingList:
     case = cl.load_case(SCENES / "box_box" / "case.yaml")
-    return finding_list_of(cl.check(case, limits=Limits(0.04, 0.06)).record)
+    return cl.check(case, limits=Limits(0.04, 0.06)).finding_list
 
 
 def test_a_list_reads_back_as_it_was_written(tmp_path):

@@ -11,13 +11,12 @@ import pytest
 
 import clearance as cl
 from clearance.findings.finding import FindingName
-from clearance.findings.findings_file import finding_list_of
-from clearance.findings.of_record import findings_of, why_incomplete
-from clearance.report.verdict import verdict_of
+from clearance.findings.of_record import why_incomplete
 from clearance.simulate import refine, rule_pairs
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import Rule
+from tests.report.made import findings_of, verdict_of
 from tests.report.records import record
 
 SCENES = Path(__file__).parents[2] / "scenes"
@@ -39,7 +38,7 @@ def run(name: str, limits: Limits | None = None, need: str = "steps", certify: b
 @pytest.mark.slow
 @pytest.mark.parametrize("certify", [True, False])
 def test_findings_are_the_same_whatever_was_asked_for(certify):
-    known = {need: findings_of(run("iiwa_pipe_rack", RACK, need, certify).record)
+    known = {need: run("iiwa_pipe_rack", RACK, need, certify).findings
              for need in ("steps", "pairs", "limit")}  # fmt: skip
     assert sum(finding.broken for finding in known["steps"]) > 3
     for need in ("pairs", "limit"):
@@ -56,7 +55,7 @@ def test_findings_are_the_same_whatever_was_asked_for(certify):
 @pytest.mark.parametrize("fail", [0.0, 0.0349, UNPROVEN, 0.04])
 def test_a_finding_is_broken_exactly_where_the_run_is(fail, need):
     one = run("box_box", Limits(fail, max(fail, 0.02)), need)
-    found = findings_of(one.record)
+    found = one.findings
     assert any(finding.broken for finding in found) is not one.passed
     assert found[0].status == one.verdict.measured
     (worst, *_) = found
@@ -67,8 +66,7 @@ def test_a_finding_is_broken_exactly_where_the_run_is(fail, need):
 
 def test_a_limit_that_is_not_proven_is_a_finding_of_its_own(monkeypatch):
     monkeypatch.setattr(refine, "MOST_QUERIES", -1)
-    record = cl.check(case("box_box"), limits=Limits(UNPROVEN)).record
-    worst = findings_of(record)[0]
+    worst = cl.check(case("box_box"), limits=Limits(UNPROVEN)).findings[0]
     assert (worst.kind, worst.status, worst.body_a, worst.body_b) == (
         "unproven", "violated", "", "",
     )  # fmt: skip
@@ -79,7 +77,7 @@ def test_a_limit_that_is_not_proven_is_a_finding_of_its_own(monkeypatch):
 @pytest.mark.slow
 def test_every_rule_that_judges_something_has_a_finding():
     for need in ("steps", "limit"):
-        found = findings_of(run("dual_arm_handover", None, need).record)
+        found = run("dual_arm_handover", None, need).findings
         rules = [rule.name for rule in run("dual_arm_handover", None, need).record.rules]
         assert sorted(finding.rule for finding in found) == sorted(rules) and len(rules) == 4
         assert {finding.status for finding in found} == {"clear"}
@@ -87,7 +85,7 @@ def test_every_rule_that_judges_something_has_a_finding():
 
 def test_a_rule_of_which_nothing_is_near_has_a_finding_without_bodies():
     rules = (Rule(("lbr_iiwa_link_7", "floor"), name="floor", fail=0.001, warn=0.001),)
-    found = findings_of(run("iiwa_pipe_rack", Limits(0.06, 0.09, rules=rules), "limit").record)
+    found = run("iiwa_pipe_rack", Limits(0.06, 0.09, rules=rules), "limit").findings
     told = {finding.rule: finding for finding in found}
     floor = told["floor"]
     assert floor.status == "clear" and floor.proven is not None and floor.proven >= 0.001
@@ -110,22 +108,22 @@ def test_a_name_is_of_case_rule_bodies_and_occurrence_alone():
 
 def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
     """Other times, other coordinates, more samples: the same names."""
-    before = run("iiwa_pipe_rack", RACK, "limit").record
-    (placed,) = before.case.robots
+    before = run("iiwa_pipe_rack", RACK, "limit")
+    (placed,) = before.record.case.robots
     given = placed.given_trajectory
     n = 2 * given.n_steps - 1
     at = np.linspace(0, given.n_steps - 1, n)
     columns = [np.interp(at, np.arange(given.n_steps), c) for c in given.positions.T]
     positions = np.column_stack(columns) + 2e-4
     times = 1.7 * np.interp(at, np.arange(given.n_steps), given.times) + 3.0
-    slower = before.case.with_trajectory(times, positions)
-    after = cl.check(slower, need="limit", limits=RACK).record
+    slower = before.record.case.with_trajectory(times, positions)
+    after = cl.check(slower, need="limit", limits=RACK)
     names = [{finding.id for finding in findings_of(one)} for one in (before, after)]
     assert names[0] == names[1]
 
 
 def test_samples_alone_prove_nothing():
-    for finding in findings_of(run("iiwa_pipe_rack", RACK, "steps", False).record):
+    for finding in run("iiwa_pipe_rack", RACK, "steps", False).findings:
         assert finding.proven is None and not finding.between
 
 
@@ -153,15 +151,15 @@ def test_joints_beyond_their_limits_are_a_finding_a_robot():
 
 def test_where_too_many_steps_are_near_the_nearest_pairs_are_told_and_that_is_said(monkeypatch):
     one = cl.check(case("iiwa_pipe_rack"), limits=RACK)
-    whole = findings_of(run("iiwa_pipe_rack", RACK).record)
+    whole = run("iiwa_pipe_rack", RACK).findings
     monkeypatch.setattr(rule_pairs, "MOST_NEAR_STEPS", 10)
-    found = findings_of(one.record)
+    found = one.findings
     assert found[0].id == whole[0].id and found[0].clearance == whole[0].clearance
     assert {f.id for f in found} < {f.id for f in whole}
-    assert "only the nearest pair" in finding_list_of(one.record).incomplete
+    assert "only the nearest pair" in one.finding_list.incomplete
 
 
 def test_why_findings_may_be_missing_is_said():
-    assert why_incomplete(run("box_box").record) == ""
-    assert "minimum" in why_incomplete(run("box_box", None, "minimum").record)
-    assert finding_list_of(run("box_box").record).incomplete == ""
+    assert why_incomplete(run("box_box").session) == ""
+    assert "minimum" in why_incomplete(run("box_box", None, "minimum").session)
+    assert run("box_box").finding_list.incomplete == ""

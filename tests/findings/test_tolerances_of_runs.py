@@ -8,10 +8,9 @@ import pytest
 import clearance as cl
 from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
-from clearance.findings.findings_file import finding_list_of
-from clearance.report.junit import write_junit
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
+from tests.report.made import write_junit
 
 GATES = {"left": (-0.5, 0.003), "right": (0.5, 0.008)}
 WAIVER = Waiver(("*", "left"), at_least=0.002, reason="known", by="J. Doe", until=date(2999, 1, 1))
@@ -48,7 +47,7 @@ def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
     assert "not proven to keep the level of its waiver with the tolerances" in " ".join(
         run.verdict.reasons
     )
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     assert 'classname="tolerances"' in (tmp_path / "junit.xml").read_text()
 
 
@@ -75,7 +74,7 @@ def test_at_the_samples_only_the_headline_says_so(tmp_path):
 
 
 def test_a_baseline_tells_the_two_kinds_apart(tmp_path):
-    before, now = (finding_list_of(asked(tmp_path, xyz).record) for xyz in (0.0035, 0.0035))
+    before, now = (asked(tmp_path, xyz).finding_list for xyz in (0.0035, 0.0035))
     rows = [row for row in compared(before, now).rows if row.finding.status == NOT_PROVEN]
     assert [row.change for row in rows] == ["unchanged", "unchanged"]
 

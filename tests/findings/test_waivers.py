@@ -9,8 +9,6 @@ from datetime import date
 import pytest
 
 from clearance.errors import BadInput
-from clearance.findings.judgement import judgement_of
-from clearance.findings.of_record import findings_of
 from clearance.load.case.waiver_file import load_waivers
 from clearance.run import Question, Run, answer
 from clearance.world.waiver import Waiver
@@ -82,7 +80,7 @@ def test_truth_table(what, need, tmp_path):
     assert (verdict.status, verdict.exit_code, verdict.n_waivers) == (status, exit_code, n_waivers)
     assert run.passed is (exit_code == 0)
     assert any(told in reason for reason in verdict.reasons) if told else not verdict.reasons
-    found = findings_of(run.record)
+    found = run.findings
     assert sorted(f.body_b for f in found if f.waived is not None) == sorted(waived)
     assert len(verdict.waived) == len(waived)
     assert any(f.fails for f in found) == (verdict.measured in (VIOLATED, CONTACT))
@@ -94,8 +92,8 @@ def test_truth_table(what, need, tmp_path):
 
 @pytest.mark.parametrize("certify", [True, False])
 def test_what_is_waived_keeps_its_name_and_says_what_is_proven(certify, tmp_path):
-    plain = findings_of(checked(tmp_path, NEAR_BOTH, certify=certify).record)
-    waived = findings_of(checked(tmp_path, NEAR_BOTH, waiver(), certify=certify).record)
+    plain = checked(tmp_path, NEAR_BOTH, certify=certify).findings
+    waived = checked(tmp_path, NEAR_BOTH, waiver(), certify=certify).findings
     assert {f.id for f in plain} == {f.id for f in waived} and len(plain) == 2
     (one,) = [f for f in waived if f.waived is not None]
     assert one.broken and not one.fails
@@ -115,7 +113,7 @@ def test_what_is_near_beside_what_is_waived_is_near(tmp_path):
     for one in (waiver(), waiver("gate_*")):
         run = checked(tmp_path, gates, one)
         assert (run.status, run.verdict.exit_code) == ("near", 0)
-        assert {f.body_b: f.status for f in findings_of(run.record)} == {A: "violated", B: "near"}
+        assert {f.body_b: f.status for f in run.findings} == {A: "violated", B: "near"}
 
 
 def test_the_least_of_all_is_enough_to_judge_waivers(tmp_path):
@@ -127,8 +125,8 @@ def test_the_least_of_all_is_enough_to_judge_waivers(tmp_path):
 def test_a_run_without_waivers_asks_nothing_again(tmp_path):
     run = checked(tmp_path, NEAR_A)
     assert run.record.today is None
-    assert judgement_of(run.record) is judgement_of(run.record)
-    assert judgement_of(run.record).rest is run.record.rules
+    assert run.judgement is run.judgement
+    assert run.judgement.rest is run.record.rules
 
 
 TEXT = """
@@ -153,7 +151,7 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
     assert "waivers.yaml" in [source.path for source in case.sources]
     run = answer(Question(case, today=TODAY))
     assert run.passed and run.verdict.n_waivers == 1
-    assert judgement_of(run.record).n_of_others == 1
+    assert run.judgement.n_of_others == 1
     assert "of other cases, and not looked at: 1 waiver" in run.summary["notes"]
 
 

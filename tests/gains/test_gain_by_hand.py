@@ -103,7 +103,7 @@ def test_a_margin_is_kept_and_costs_more():
     for margin in (0.0, 0.003, 0.006):
         found = gain(slot(), "base", margin=margin)
         assert found.kept
-        nearest = min(pair.clearance for pair in found.after.record.pair_minima)
+        nearest = min(pair.clearance for pair in found.after.pair_minima)
         assert nearest >= 0.04 + margin
         sizes.append(found.size)
     assert sizes == pytest.approx([0.02, 0.023, 0.026], abs=FINE)
@@ -417,7 +417,7 @@ def test_the_curves_of_the_page_go_down_to_what_occurs_between_the_steps():
     found = gain(sweeping(THROUGH, PAST), "base")
     assert found.kept
     for run in (found.before, found.after):
-        curve = motion_curve("one", run.record)
+        curve = motion_curve("one", run)
         assert (np.diff(curve.times) >= 0.0).all()
         assert curve.clearances.min() == pytest.approx(run.record.worst.clearance, abs=1e-12)
         assert run.record.clearances.min() > 0.4

@@ -64,10 +64,10 @@ def test_the_gradient_of_a_turned_motion_is_that_of_distances(x, timing):
     shift = obstacle_shift(past_a_swing(timing), "bar", turn=Turn("z", about=(0.1, 0.2, 0.0)))
 
     def clearances(at):
-        record = cl.check(shift.case_of(at), certify=False).record
-        return record, next(
+        run = cl.check(shift.case_of(at), certify=False)
+        return run.record, next(
             one
-            for one in approaches(record.rules, 0.5)
+            for one in approaches(run.session.rules, 0.5)
             if {body.name_in(one.case) for body in one.pair} == {"tool", "bar"}
         )
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import clearance as cl
-from clearance.simulate.record import PairMinimum, Record
+from clearance.record.record import PairMinimum
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests import oracle
@@ -61,23 +61,23 @@ def reference_of(path: Path) -> dict:
     """The steps of a case and the truth about them."""
     case = without_rules(cl.load_case(path))
     steps = askable_steps(case)
-    record = cl.check(case, certify=False).record
-    clearances = record.clearances
+    run = cl.check(case, certify=False)
+    clearances = run.record.clearances
     nearest = min(steps, key=lambda step: clearances[step])
     spread = np.array(steps)[np.linspace(0, len(steps) - 1, SPREAD).astype(int)].tolist()
     rows = [row(case, step) for step in sorted({nearest, *spread})]
-    parts = [pair_row(case, least) for least in of_parts(record, steps)]
+    parts = [pair_row(case, least) for least in of_parts(run, steps)]
     return {"case": str(path.relative_to(ROOT)), "steps": rows, "parts": parts}
 
 
-def of_parts(record: Record, steps: list[int]) -> list[PairMinimum]:
+def of_parts(run: cl.Run, steps: list[int]) -> list[PairMinimum]:
     """The nearest minima of pairs with an obstacle that moves, rides or is carried, at some of the steps."""
-    case = record.case
+    case = run.record.case
     names = {one.name for one in case.obstacles if not one.stands}
     names |= {carry.part for carry in case.carries}
     found = [
         least
-        for least in record.pair_minima
+        for least in run.pair_minima
         if names & {least.link, least.obstacle} and least.step in steps and least.clearance > 0.0
     ]
     return found[:N_PARTS]

@@ -60,7 +60,7 @@ def test_the_nearest_pair_is_one_of_the_exact_ones(run_and_reference):
 
 def test_pairs_of_what_moves_or_is_carried_are_exact_where_they_come_nearest(run_and_reference):
     run, reference = run_and_reference
-    minima = {(least.link, least.obstacle): least for least in run.record.pair_minima}
+    minima = {(least.link, least.obstacle): least for least in run.pair_minima}
     for truth in reference.get("parts", []):
         least = minima[tuple(truth["pair"])]
         off = abs(Fraction(least.clearance) - Fraction(truth["clearance"]))

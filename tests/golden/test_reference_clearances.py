@@ -61,9 +61,7 @@ def test_witness_points_realise_the_clearance(run_and_reference):
 
 def test_pair_minima_hold_the_least_of_all_steps(run_and_reference):
     run, _ = run_and_reference
-    least = run.record.pair_minima[0]
+    least = run.pair_minima[0]
     assert least.clearance == run.worst_sample["clearance"]
     assert least.step == run.worst_sample["step"]
-    assert [p.clearance for p in run.record.pair_minima] == sorted(
-        p.clearance for p in run.record.pair_minima
-    )
+    assert [p.clearance for p in run.pair_minima] == sorted(p.clearance for p in run.pair_minima)

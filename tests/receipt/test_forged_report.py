@@ -18,10 +18,9 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, BadSyntax, MissingFile
 from clearance.findings.comparison import compared
-from clearance.findings.findings_file import finding_list_of
 from clearance.receipt import remade_report, verifying
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
-from clearance.report.output import write
+from clearance.run import Run
 from clearance.world.waiver import Waiver
 from tests.receipt.receipts import rewritten, saved, turning_arm
 from tests.receipt.test_forged import loose
@@ -48,12 +47,14 @@ def answered_once(monkeypatch, tmp_path):
     """A case is answered, proven and reported once, however often one asks: it is the same each time."""
     made = tmp_path / "made"
 
-    def again(record, place):
+    save = Run.save
+
+    def again(run, place):
         if not made.exists():
-            write(record, made)
+            save(run, made)
         shutil.copytree(made, place, dirs_exist_ok=True, copy_function=os.symlink)
 
-    monkeypatch.setattr(remade_report, "write", again)
+    monkeypatch.setattr(Run, "save", again)
     monkeypatch.setattr(remade_report, "maker", once(remade_report.maker))
     for name in ("answer", "proven", "case_data"):
         monkeypatch.setattr(verifying, name, once(getattr(verifying, name)))
@@ -331,7 +332,7 @@ def test_a_verdict_that_rests_on_waivers_says_so_and_of_which_day(tmp_path):
 
 def test_a_page_that_shows_a_comparison_is_not_called_verified(tmp_path):
     run = cl.check(turning_arm())
-    findings = finding_list_of(run.record)
+    findings = run.finding_list
     run.save(tmp_path, compared(findings, findings))
     cl.write_receipt(run, tmp_path)
     found = cl.verify(tmp_path, turning_arm())

@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pyarrow as pa
 
-from clearance.simulate.budget_answer import BudgetMoment, ErrorSource, RuleBudget
-from clearance.simulate.record import Record
+from clearance.record.budget import ErrorSource, RuleBudget
+from clearance.record.record import Record
 from clearance.world.budget import Budget
 
 SOURCES = (
@@ -40,15 +40,12 @@ def with_budget(
 
 def _of_rule(made, rule, taken, between, changes) -> RuleBudget:
     nominal = rule.measurement.clearance
-    moment = rule.moment_at(int(np.nanargmin(nominal)))
     proven = nominal - taken
-    worst = BudgetMoment(moment, float(proven.min()), moment.clearance - taken / 3, SOURCES)
     budget = RuleBudget(
         rule.name,
         rule.limits,
         proven,
         nominal - taken / 3,
         proven - 0.0001 if between else None,
-        (worst,),
     )
     return dataclasses.replace(budget, **changes)

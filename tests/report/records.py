@@ -11,12 +11,13 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.measurement import Measurement
-from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
-from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
+from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import STATUSES
+from clearance.simulate.measured import MeasuredSteps
+from clearance.simulate.rule_pairs import measured_rule
 from clearance.simulate.sample_moments import SampleMoments
-from clearance.simulate.status import STATUSES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion
@@ -121,17 +122,19 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
         sources=sources,
         notes=("joint slide: no limit given for velocity",),
     )
-    rows, minima = measure(motions, case)
-    steps = table(rows, limits)
+    steps = table(measure(motions, case)[0], limits)
+    rules = rules_of(case, motions, steps)
     made = Record(
         case,
         motions,
         steps,
         (Omission("base", "*", "excluded: bolted"),),
-        minima,
         {"pairs": 9 * n_steps, "polygon_tests": 36 * n_steps},
-        rules=rules_of(case, motions, steps),
+        rules=rules,
         timeline=timeline_of(case, motions),
+        pairs=measured_pairs(case)[0],
+        worst_sample=rules[0].worst_sample,
+        worst=rules[0].worst,
     )
     return dataclasses.replace(made, **changes)
 
@@ -149,7 +152,15 @@ def with_steps(made: Record, steps: pa.Table) -> Record:
         for one in made.motions
     )
     rules, timeline = rules_of(made.case, motions, steps), timeline_of(made.case, motions)
-    return dataclasses.replace(made, table=steps, motions=motions, rules=rules, timeline=timeline)
+    return dataclasses.replace(
+        made,
+        table=steps,
+        motions=motions,
+        rules=rules,
+        timeline=timeline,
+        worst_sample=rules[0].worst_sample,
+        worst=rules[0].worst,
+    )
 
 
 def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
@@ -160,16 +171,16 @@ def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
     who = zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
     clearances = steps["clearance"].to_numpy()
     points = np.stack([steps[name].to_numpy() for name in columns_of(LINK_AND_OBSTACLE)[2:]], 1)
-    found = Measurement(
+    found = MeasuredSteps(
         clearances,
         clearances,
         np.array([places[pair] for pair in who]),
         points.reshape(-1, 2, 3),
         {},
-        None,
+        measure_pair_minima=None,
     )
     moment_at = partial(SampleMoments(names, motions).at, found, DEFAULT)
-    return (RuleAnswer(DEFAULT, case.limits, found, None, moment_at),)
+    return (measured_rule(DEFAULT, case.limits, found, None, moment_at).answer,)
 
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
@@ -181,7 +192,7 @@ def with_contacts(made: Record, work_out: str = "every") -> Record:
     links, obstacles = (made.steps[name].to_pylist() for name in ("link", "obstacle"))
     nearest = [named.index(pair) for pair in zip(links, obstacles, strict=True)]
     asked = made.case, made.motions, pairs, made.clearances, np.array(nearest)
-    return dataclasses.replace(made, contacts=find_contacts(*asked, work_out))
+    return dataclasses.replace(made, contacts=find_contacts(*asked, work_out).rows)
 
 
 def measure(motions, case):

@@ -14,12 +14,10 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.findings.findings_file import finding_list_of
 from clearance.load.motion.trajectory_lines import line_of_sample
 from clearance.report.annotations import MOST, annotation_lines, command
 from clearance.report.markdown import MOST_ROWS, markdown, plain
 from clearance.report.trajectory_row import row_of, sample_at
-from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
@@ -141,7 +139,7 @@ def test_markdown_of_a_run(run, folder):
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == 4 and len({row.count("|") for row in rows}) == 1
     assert "| violated | default limits | box - gate&#95;a | 3.000 | 5 | 2.9" in rows[2]
-    same = compared(finding_list_of(run.record), finding_list_of(run.record))
+    same = compared(run.finding_list, run.finding_list)
     told = markdown(run.record, run.verdict, run.findings, same)
     assert "since the baseline: 2 unchanged" in told and "unchanged, was 3.000 mm" in told
 
@@ -158,7 +156,7 @@ def test_names_from_files_do_not_break_out_of_the_table(run):
 
 def test_a_clear_run_says_what_is_nearest(tmp_path):
     one = cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)}))
-    text = markdown(one.record, verdict_of(one.record), one.findings)
+    text = markdown(one.record, one.verdict, one.findings)
     assert "### gates: CLEAR" in text and "100.0 mm: box - gate" in text
     assert write_gates(tmp_path, {"gate": (0.0, 0.1)}).is_file()
 

@@ -7,13 +7,11 @@ import pytest
 
 import clearance as cl
 from clearance.cli import run
+from clearance.record.record import Record
 from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from clearance.report.page import page_of
-from clearance.report.summary import summary_of
-from clearance.report.verdict import verdict_of
-from clearance.simulate.record import Record
-from clearance.simulate.replay.replay import replay_of
 from tests.load.making import CASE, write_case
+from tests.report.made import replay_of, run_of, summary_of, verdict_of
 from tests.report.test_verdict import made
 
 
@@ -23,8 +21,8 @@ def swing() -> Record:
 
 
 def test_a_gap_may_catch_what_needs_more(tmp_path):
-    near = [one for one in swing().pair_minima if one.clearance < 0.5]
-    told = body_gaps_of(swing())
+    near = [one for one in run_of(swing()).pair_minima if one.clearance < 0.5]
+    told = body_gaps_of(run_of(swing()).pair_minima, frozenset({"post", "table", "wall </script>"}))
     assert len(told) == len(near)
     for one, minimum in zip(told, near, strict=True):
         assert one["gap"] == minimum.clearance
@@ -38,15 +36,16 @@ def test_pairs_that_both_stand_are_left_out(tmp_path):
     assert text != CASE
     file = write_case(tmp_path, text)
     found = cl.answer(cl.Question(cl.load_case(file), body_gaps=True))
-    pairs = {(one["body_a"], one["body_b"]) for one in body_gaps_of(found.record)}
-    nearest = {(one.link, one.obstacle): one.clearance for one in found.record.pair_minima}
+    told = body_gaps_of(found.pair_minima, found.session.standing_bodies)
+    pairs = {(one["body_a"], one["body_b"]) for one in told}
+    nearest = {(one.link, one.obstacle): one.clearance for one in found.pair_minima}
     assert ("base", "post") in nearest and nearest["base", "post"] < 0.5
     assert pairs == {("upper", "post")}
 
 
 def test_it_is_told_with_its_source_and_decides_nothing():
     assert verdict_of(swing()) == verdict_of(made())
-    assert list(gap_lines(swing()))[-1].endswith(
+    assert list(gap_lines(summary_of(swing())["body_gaps"]))[-1].endswith(
         "widths of ISO 13854 as AUVA (app.auva.at) gives them; no verdict depends on it"
     )
     page = page_of(summary_of(swing()), replay_of(swing()))

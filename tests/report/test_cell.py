@@ -15,19 +15,17 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report.junit import write_junit
 from clearance.report.output import json_text
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.pair_judge import PairJudge
-from clearance.report.summary import summary_of
-from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
 from clearance.world.case import Clock, Limits, SelfClearance
 from clearance.world.rules import Allowance, Rule
 from clearance.world.timing import Window
 from tests.made_cases import at
 from tests.report.cells import RULES, box, cell, sliding
+from tests.report.made import replay_of, summary_of, write_junit
 from tests.report.records import record as plain_record
 
 FENCE = (
@@ -47,7 +45,12 @@ def summary(run):
 
 @pytest.fixture(scope="module")
 def page(run) -> str:
-    found = page_of(run.summary, replay_of(run.record), {}, pair_curves(run.record))
+    found = page_of(
+        run.summary,
+        replay_of(run.session),
+        {},
+        pair_curves(run.record, run.session.motion_minima()),
+    )
     return re.sub(r"<script.*?</script>", "", found, flags=re.DOTALL)
 
 
@@ -118,16 +121,16 @@ def test_the_summary_says_what_moves_and_who_carries(summary):
 
 def test_a_rule_that_judges_nothing_is_listed_without_a_status():
     covered = (*RULES[:1], Rule(("*", "*"), name="all", fail=0.001))
-    summary = summary_of(cl.check(cell(rules=covered)).record)
+    summary = cl.check(cell(rules=covered)).summary
     assert {rule["name"]: rule["status"] for rule in summary["rules"]} == {
         "default": None, "fence": None, "all": "violated" if summary["verdict"] == "violated" else "clear",
     }  # fmt: skip
-    assert "judges nothing" in page_of(summary, replay_of(cl.check(cell(rules=covered)).record))
+    assert "judges nothing" in page_of(summary, replay_of(cl.check(cell(rules=covered))))
 
 
 def test_what_carries_and_is_no_robot_has_its_own_tint_and_pairs_count_once_for_all_rules():
     carries = (Carry("part", "left/tool", Window(1.0, 2.0)), Carry("part", "door", Window(2.0)))
-    record = cl.check(cell(carries=carries)).record
+    record = cl.check(cell(carries=carries))
     summary = summary_of(record)
     page = page_of(summary, replay_of(record))
     assert 'class="bar hand0"' in page and 'class="bar thing"' in page
@@ -169,7 +172,7 @@ def test_each_event_names_the_rule(run, summary):
 
 
 def test_junit_has_a_case_for_each_rule_and_for_each_pair_by_each_rule(run, tmp_path):
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     cases = {case.get("name"): case for case in suite.findall("testcase")}
     failed = {name for name, case in cases.items() if case.find("failure") is not None}
@@ -198,7 +201,7 @@ def test_tables_have_the_sides_of_any_two_bodies_and_the_rule(run, tmp_path):
         if row["rule"] is not None:
             key = row["body_a"], row["body_b"], row["rule"]
             least[key] = min(least.get(key, row["clearance"]), row["clearance"])
-    minima = {(one.link, one.obstacle, one.rule): one.clearance for one in run.record.pair_minima}
+    minima = {(one.link, one.obstacle, one.rule): one.clearance for one in run.pair_minima}
     assert least.items() <= minima.items()
     assert {key[:2] for key in minima} == {key[:2] for key in least}
 
@@ -233,7 +236,7 @@ def test_one_robot_among_what_stands_keeps_its_names_first_and_has_the_others_to
 def test_every_need_has_its_report(need, tmp_path):
     run = cl.check(cell(), need=need)
     run.save(tmp_path / "out")
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     assert run.status == "violated" and FENCE in printed(run)
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["need"] == need
 
@@ -250,10 +253,10 @@ def test_padding_alone_is_no_contact_anywhere(tmp_path):
     )
     run = cl.check(cell((), robots, obstacles, ()))
     assert run.status == "violated" and run.worst["clearance"] == pytest.approx(-0.002)
-    (minimum,) = run.record.pair_minima
+    (minimum,) = run.pair_minima
     assert PairJudge.of(run.record).status_of(minimum) == "violated"
-    assert summary_of(run.record)["status_counts"]["contact"] == 0
-    replay = replay_of(run.record)
+    assert run.summary["status_counts"]["contact"] == 0
+    replay = replay_of(run.session)
     assert set(replay.status.tolist()) == {2}
     text = re.sub(r"<script.*?</script>", "", page_of(run.summary, replay), flags=re.DOTALL)
     assert 'class="cell violated"' in text and 'class="cell contact"' not in text
@@ -279,17 +282,23 @@ def test_self_collision_is_said_robot_by_robot():
 )
 def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told):
     """The times are written into the record by hand: what is said of them is asked here."""
-    record = cl.check(cell((), carries=())).record
-    worst = dataclasses.replace(record.worst, time_b=2.5)
-    record = dataclasses.replace(record, case=dataclasses.replace(record.case, clock=Clock(slack)))
-    record.__dict__["worst"] = record.__dict__["worst_sample"] = worst
-    run = cl.Run(record)
+    found = cl.check(cell((), carries=()))
+    worst = dataclasses.replace(found.record.worst, time_b=2.5)
+    record = dataclasses.replace(
+        found.record,
+        case=dataclasses.replace(found.record.case, clock=Clock(slack)),
+        worst=worst,
+        worst_sample=worst,
+    )
+    run = dataclasses.replace(
+        found, record=record, session=dataclasses.replace(found.session, record=record)
+    )
     assert run.verdict.text().endswith(told)
-    summary = summary_of(record)
+    summary = run.summary
     assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
     text = printed(run)
     assert f"with {worst.obstacle} at 2.500 s" in text and told.upper() not in text
-    html = page_of(summary, replay_of(record))
+    html = page_of(summary, replay_of(run))
     assert f"with {worst.obstacle} at 2.500 s" in html and told in html
 
 
@@ -317,12 +326,12 @@ def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_pa
     )
     run.save(tmp_path / "out")
     json.loads((tmp_path / "out" / "summary.json").read_text())
-    replay = replay_of(run.record)
+    replay = replay_of(run.session)
     assert replay.steps[replay.known == 0].tolist() == [2]
     assert replay.nearest[replay.known == 0].tolist() == [[-1, -1]]
     assert (
         "Infinity"
         not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]
     )
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     assert printed(run)

@@ -11,8 +11,6 @@ from clearance.report.still.glb import glb_of
 from clearance.report.still.picture import png_of
 from clearance.report.still.points import MOST, as_solids
 from clearance.report.still.scene import still_of
-from clearance.report.summary import summary_of
-from clearance.simulate.replay.replay import replay_of
 from clearance.view import play
 from tests.made_cases import flying
 from tests.report.browser import chromium, executable
@@ -38,7 +36,7 @@ def below() -> np.ndarray:
 
 
 def test_the_summary_tells_of_balls():
-    summary = summary_of(cl.check(scanned()).record)
+    summary = cl.check(scanned()).summary
     (scan,) = [body for body in summary["obstacles"] if body["name"] == "scan"]
     assert (scan["points"], scan["ball_radius"]) == (3600, 0.02)
     assert (scan["triangles"], scan["polygons"], scan["closed"], scan["volume"]) == (
@@ -67,7 +65,7 @@ def test_the_page_draws_points(tmp_path):
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_live_viewer_draws_points():
     points = "(() => { let n = 0; viewer.scene.traverse(o => { n += o.type === 'Points'; }); return n; })()"
-    with play(cl.check(scanned()).record) as playback, chromium() as page:
+    with play(cl.check(scanned()).session.replay()) as playback, chromium() as page:
         page.open(playback.url, f"window.viewer && {points}")
         assert page.run(points) == 1
 
@@ -75,12 +73,13 @@ def test_the_live_viewer_draws_points():
 @pytest.mark.slow
 def test_stills_show_points_as_solids():
     """In a picture and in a model; of many points some."""
-    record = cl.check(scanned()).record
-    still = still_of(replay_of(record))
+    run = cl.check(scanned())
+    record, replay = run.record, run.session.replay()
+    still = still_of(replay)
     sizes = sorted(len(triangles) for _, triangles in still.shapes)
     assert sizes[-1] == 8 * 3600
-    assert png_of(record, replay_of(record)).startswith(b"\x89PNG")
-    shape = mesh_from_bytes(glb_of(record, replay_of(record)), "moment.glb")
+    assert png_of(record, replay).startswith(b"\x89PNG")
+    shape = mesh_from_bytes(glb_of(record, replay), "moment.glb")
     assert shape.n_triangles > 8 * 3600
     points = np.random.default_rng(1).uniform(-1.0, 1.0, (2 * MOST + 1, 3)).astype(np.float32)
     vertices, triangles = as_solids(points, np.empty((0, 3), dtype=np.int32))

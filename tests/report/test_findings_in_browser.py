@@ -10,7 +10,6 @@ import pytest
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.findings.findings_file import finding_list_of
 from clearance.report.comparison_page import write_comparison
 from clearance.run import Question, answer
 from clearance.world.waiver import Waiver
@@ -35,7 +34,7 @@ def folder(tmp_path_factory) -> Path:
     waiver = Waiver(("box", "gate_a"), at_least=0.002, reason=reason, by="N. N.", until=until)
     case = dataclasses.replace(case, waivers=(waiver,))
     now = answer(Question(case, today=date(2026, 11, 1)))
-    comparison = compared(finding_list_of(before.record), finding_list_of(now.record))
+    comparison = compared(before.finding_list, now.finding_list)
     now.save(place / "now", comparison)
     write_comparison(comparison, place / "before", place / "now", place / "both")
     return place

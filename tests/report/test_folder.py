@@ -13,7 +13,8 @@ import pytest
 
 from clearance.errors import Unwritable
 from clearance.report.folder import fill_folder, write_file
-from clearance.report.output import OWN, write
+from clearance.report.output import OWN
+from tests.report.made import write
 from tests.report.records import record
 
 NAMES = {

@@ -10,7 +10,7 @@ import pytest
 from clearance.load.mesh.mesh_file import mesh_from_bytes
 from clearance.report.still.glb import glb_of
 from clearance.report.still.scene import still_of
-from clearance.simulate.replay.replay import replay_of
+from tests.report.made import replay_of
 from tests.report.records import record
 
 RUN = record()

@@ -5,15 +5,11 @@ from __future__ import annotations
 import pyarrow as pa
 import pytest
 
-from clearance.report import intervals as room
-from clearance.report.intervals import (
-    events,
-    extent,
-    intervals,
-    not_listed,
-    status_counts,
-)
-from clearance.report.verdict import verdict_of
+from clearance.record.row_status import status_counts
+from clearance.simulate import intervals as room
+from clearance.simulate.intervals import events, extent, intervals, not_listed
+from tests.report.made import run_of as made_run
+from tests.report.made import verdict_of
 from tests.report.records import record, with_steps
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
@@ -22,16 +18,16 @@ GAP_OF = {"c": 0.1, "n": 0.03, "v": 0.003, "x": 0.0}
 WORDS = {"c": "clear", "n": "near", "v": "violated", "x": "contact"}
 
 
-def run_of(letters: str, gaps: list[float]):
+def session_of(letters: str, gaps: list[float]):
     made = record(n_steps=len(gaps))
     steps = made.steps.set_column(2, "clearance", pa.array(gaps))
     words = pa.array([WORDS[letter] for letter in letters.split()])
     steps = steps.set_column(steps.column_names.index("status"), "status", words)
-    return with_steps(made, steps)
+    return made_run(with_steps(made, steps)).session
 
 
 def test_intervals_by_hand():
-    found = intervals(run_of(LETTERS, GAPS))
+    found = intervals(session_of(LETTERS, GAPS))
     spans = {
         level: [(i.first_step, i.last_step, i.worst_step) for i in some]
         for level, some in found.items()
@@ -44,14 +40,14 @@ def test_intervals_by_hand():
 
 
 def test_intervals_carry_times_and_the_least_clearance():
-    run = run_of(LETTERS, GAPS)
+    run = session_of(LETTERS, GAPS)
     interval = intervals(run)["below_fail"][0]
-    times = run.steps["time"].to_pylist()
+    times = run.record.steps["time"].to_pylist()
     assert (interval.start, interval.end, interval.clearance) == (times[2], times[5], 0.0)
 
 
 def test_events_by_hand():
-    found = [(event.step, event.what) for event in events(run_of(LETTERS, GAPS))]
+    found = [(event.step, event.what) for event in events(session_of(LETTERS, GAPS))]
     assert found == [
         (1, "warn limit entered"),
         (2, "fail limit entered"),
@@ -64,7 +60,7 @@ def test_events_by_hand():
 
 
 def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepest_first():
-    found = [(event.step, event.what) for event in events(run_of("c x c", [0.1, 0.0, 0.1]))]
+    found = [(event.step, event.what) for event in events(session_of("c x c", [0.1, 0.0, 0.1]))]
     assert found == [
         (1, "warn limit entered"),
         (1, "fail limit entered"),
@@ -81,23 +77,23 @@ def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepes
 )
 def test_the_verdict_is_the_worst_status(letters, expected):
     gaps = [GAP_OF[letter] for letter in letters.split()]
-    assert verdict_of(run_of(letters, gaps)).status == expected
+    assert verdict_of(session_of(letters, gaps).record).status == expected
 
 
 def test_events_tell_the_least_until_the_level_is_left():
-    told = {(event.step, event.what): event.least for event in events(run_of(LETTERS, GAPS))}
+    told = {(event.step, event.what): event.least for event in events(session_of(LETTERS, GAPS))}
     assert told[1, "warn limit entered"] == told[2, "fail limit entered"] == 0.0
     assert told[8, "warn limit entered"] == 0.015
     assert told[7, "warn limit left"] is None
 
 
 def test_counts():
-    counts = status_counts(run_of(LETTERS, GAPS))
+    counts = status_counts(session_of(LETTERS, GAPS).record)
     assert counts == {"clear": 2, "near": 3, "violated": 2, "contact": 2}
 
 
 def test_a_run_that_never_rests_lists_its_first_intervals_and_says_how_many_more(monkeypatch):
-    whole = run_of(LETTERS, GAPS)
+    whole = session_of(LETTERS, GAPS)
     all_events, all_intervals = events(whole), intervals(whole)
     assert set(not_listed(whole).values()) == {0}
     monkeypatch.setattr(room, "MOST_LISTED", 1)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import dataclasses
 from xml.etree import ElementTree
 
-from clearance.report.junit import write_junit
-from clearance.simulate.record import ProfileAnswer
+from clearance.record.record import ProfileAnswer
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
+from tests.report.made import run_of, write_junit
 from tests.report.records import disagreeing, record
 
 
@@ -70,7 +70,6 @@ def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
         (0, 0),
         "fore",
         7,
-        "",
     )
     door = dataclasses.replace(floor, name="door", passed=True, gap=0.03)
     notices = (
@@ -85,9 +84,9 @@ def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
 def test_names_that_xml_has_no_room_for_are_escaped(tmp_path):
     made = record()
     minimum = dataclasses.replace(
-        made.pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800"
+        run_of(made).pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800"
     )
-    write_junit(dataclasses.replace(made, pair_minima=(minimum,)), tmp_path / "junit.xml")
+    write_junit(run_of(made, (minimum,)), tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").getroot().find("testsuite")
     names = {case.get("name") for case in suite.findall("testcase")}
     assert "arm\\uffff\\x1b[31m - post\\ud800" in names

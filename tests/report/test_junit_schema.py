@@ -9,14 +9,13 @@ import pytest
 
 import clearance as cl
 from clearance.report import junit
-from clearance.report.junit import write_junit
-from clearance.report.verdict import verdict_of
 from clearance.run import Question, answer
 from clearance.world.case import Limits, Omission
 from clearance.world.notice import Notice, Severity
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 from tests.report.junit_schema import valid_suite
+from tests.report.made import verdict_of, write_junit
 from tests.report.records import disagreeing, record
 
 GATES = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004), "gate_c": (0.8, 0.015)}
@@ -55,7 +54,7 @@ def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
     )  # fmt: skip
     case = dataclasses.replace(load_gates(tmp_path, GATES), waivers=waivers)
     run = answer(Question(case, need=need, today=date(2026, 11, 1)))
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     suite = valid_suite(tmp_path / "junit.xml")
     failed = {case.get("name") for case in suite if case.find("failure") is not None}
     assert ("verdict" in failed) == (not run.passed) and bool(failed) == (not run.passed)
@@ -69,7 +68,7 @@ def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
 
 def test_each_time_that_a_limit_is_broken_is_a_case(tmp_path):
     run = cl.check(load_gates(tmp_path, GATES))
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     failed = {case.get("name"): case.find("failure") for case in valid_suite(tmp_path / "junit.xml")
               if case.find("failure") is not None}  # fmt: skip
     assert set(failed) == {"verdict", "box - gate_a", "box - gate_b", "motion between the samples"}

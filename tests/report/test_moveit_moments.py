@@ -4,15 +4,18 @@ import pytest
 from ruamel.yaml import YAML
 
 import clearance as cl
-from clearance.report import moveit_moments
-from clearance.report.moments_file import moments_text
-from clearance.report.output import write
+from clearance.report import moments_file, moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
+from tests.report.made import data_of, run_of, write
 from tests.report.records import record, with_contacts
 
 WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
 LIMITS = cl.Limits(fail=0.01, warn=0.3)
+
+
+def moments_text(made) -> str:
+    return moments_file.moments_text(data_of(made))
 
 
 def read(text: str):
@@ -22,7 +25,10 @@ def read(text: str):
 def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
     run = record(limits=LIMITS)
     told = read(moments_text(run))
-    worst, minima = told["moments"][0], {(one.link, one.obstacle): one for one in run.pair_minima}
+    worst, minima = (
+        told["moments"][0],
+        {(one.link, one.obstacle): one for one in run_of(run).pair_minima},
+    )
     assert worst["clearance"] == run.worst.clearance and worst["step"] == run.worst.step
     names = [(m["bodies"][0]["link_name"], m["bodies"][1]["id"]) for m in told["moments"]]
     below = {pair for pair, one in minima.items() if one.clearance < LIMITS.warn}
@@ -57,14 +63,14 @@ def test_a_clear_run_has_its_worst_moment_alone():
             obstacles=(box("table", (4, 4, 0.1)),),
         )
     )
-    told = read(moments_text(clear.record))
+    told = read(moments_text(clear))
     assert len(told["moments"]) == 1 and told["moments"][0]["status"] == "clear"
     assert told["need"] == "steps"
 
 
 def test_a_run_that_asks_for_less_says_so():
     case = cell(WIDE, (sliding("arm", LEFT),), (box("wall", (0.1, 1, 1), at(1.6)),), ())
-    told = read(moments_text(cl.check(case, need="minimum").record))
+    told = read(moments_text(cl.check(case, need="minimum")))
     assert told["need"] == "minimum" and len(told["moments"]) == 1
 
 
@@ -81,7 +87,7 @@ def test_links_name_their_robot_where_there_are_several_and_held_parts_the_link(
     carries = (cl.Carry("part", "left/tool", cl.Window(0.0)),)
     robots = sliding("left", LEFT), sliding("right", LEFT, at(0.0, 3.0))
     case = cell(WIDE, robots, (part, wall), carries)
-    moments = read(moments_text(cl.check(case).record))["moments"]
+    moments = read(moments_text(cl.check(case)))["moments"]
     bodies = [body for moment in moments for body in moment["bodies"]]
     assert {"type": "ROBOT_LINK", "link_name": "tool", "robot": "left"} in bodies
     assert {"type": "ROBOT_ATTACHED", "id": "part", "link_name": "tool", "robot": "left"} in bodies
@@ -100,7 +106,7 @@ def test_padding_and_depth_are_told_where_there_are_some():
         assert not touching or ("depth" in moment) == (moment["status"] == "contact")
     wall = box("wall", (0.1, 1, 1), at(1.6), padding=0.01)
     case = cell(WIDE, (sliding("arm", LEFT),), (wall,), ())
-    moment = read(moments_text(cl.check(case).record))["moments"][0]
+    moment = read(moments_text(cl.check(case)))["moments"][0]
     assert moment["padding"] == 0.01
     assert moment["distance"] == pytest.approx(moment["clearance"] + 0.01, abs=1e-15)
 

@@ -9,14 +9,13 @@ import re
 import numpy as np
 import pytest
 
+from clearance.record.every_pair import EveryPair
 from clearance.report import pair_curves as room
 from clearance.report.page import _bands, page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.sections import MAX_EVENT_ROWS, events
-from clearance.report.summary import summary_of
-from clearance.simulate.every_pair import EveryPair
-from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import SignOff
+from tests.report.made import replay_of, run_of, summary_of
 from tests.report.records import disagreeing, record
 
 
@@ -69,7 +68,7 @@ def test_the_matrix_leads_to_the_step_of_each_pair(page):
     run = record()
     assert {(name, int(step)) for _, step, name in cells} == {
         (f"{p.link} - {p.obstacle}".replace("<", "&lt;").replace(">", "&gt;"), p.step)
-        for p in run.pair_minima
+        for p in run_of(run).pair_minima
     }
     assert [shade for shade, *_ in cells].count("contact") == 1
 
@@ -119,21 +118,21 @@ def test_pairs_without_a_curve_of_their_own_have_their_line():
     data = json.loads(
         re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)[1]
     )
-    assert data["curves"] is None and len(data["pairs"]) == len(run.pair_minima)
+    assert data["curves"] is None and len(data["pairs"]) == len(run_of(run).pair_minima)
     names = [[data["bodies"][i]["name"] for i in pair["bodies"]] for pair in data["pairs"]]
-    assert names == [[one.link, one.obstacle] for one in run.pair_minima]
+    assert names == [[one.link, one.obstacle] for one in run_of(run).pair_minima]
 
 
 def test_curves_are_never_above_the_clearance_and_few_where_there_are_many_pairs(monkeypatch):
     clearance = np.random.default_rng(0).uniform(0.0, 1.0, (240, 9))
     run = record()
-    pairs = [(one.link, one.obstacle) for one in run.pair_minima][::-1]
+    pairs = [(one.link, one.obstacle) for one in run_of(run).pair_minima][::-1]
     every = EveryPair([a for a, _ in pairs], [b for _, b in pairs], clearance)
-    whole = pair_curves(dataclasses.replace(run, every_pair=every))
+    whole = pair_curves(dataclasses.replace(run, every_pair=every), run_of(run).pair_minima)
     assert whole.clearances.shape == (9, 240) and (whole.times == run.motions[0].times).all()
     assert (whole.clearances[::-1].T <= clearance).all()
     assert np.abs(whole.clearances[::-1].T - clearance).max() < 1e-7
     monkeypatch.setattr(room, "MOST_NUMBERS", 9 * 20)
-    few = pair_curves(dataclasses.replace(run, every_pair=every))
+    few = pair_curves(dataclasses.replace(run, every_pair=every), run_of(run).pair_minima)
     assert few.clearances.shape == (9, 20) and few.times.shape == (20,)
     assert np.abs(few.clearances[::-1].min(axis=1) - clearance.min(axis=0)).max() < 1e-7

@@ -7,17 +7,16 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.report.output import write
+from clearance.record.wording import mm
 from clearance.report.still.camera import overview
 from clearance.report.still.scene import still_of
-from clearance.report.wording import mm
-from clearance.simulate.replay.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
+from tests.report.made import replay_of, run_of, write
 from tests.report.records import record
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
@@ -179,8 +178,8 @@ def click_pair(page: Page, place: int) -> None:
 
 
 def test_a_clicked_pair_has_its_own_line_and_its_place_on_the_curve(page):
-    pair = max(RUN.pair_minima, key=lambda minimum: minimum.clearance)
-    place = list(RUN.pair_minima).index(pair)
+    pair = max(run_of(RUN).pair_minima, key=lambda minimum: minimum.clearance)
+    place = list(run_of(RUN).pair_minima).index(pair)
     click_pair(page, place)
     state = page.run("window.clearance.state()")
     assert (state["step"], state["nearest"]) == (pair.step, [pair.link, pair.obstacle])
@@ -271,7 +270,7 @@ def test_a_clicked_pair_shows_its_own_curve_where_every_pair_was_measured(crowde
     place = 1000
     click_pair(page, place)
     drawn = np.array(page.run("document.getElementById('curve').data.at(-2).y")) / 1000.0
-    pair = record.pair_minima[place]
+    pair = crowded.run_of.session.motion_minima()[place]
     named = list(zip(record.every_pair.links, record.every_pair.obstacles, strict=True))
     truth = record.every_pair.clearance[:, named.index((pair.link, pair.obstacle))]
     assert (drawn <= truth).all() and np.abs(drawn - truth).max() < 1e-6

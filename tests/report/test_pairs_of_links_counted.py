@@ -10,7 +10,6 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report.junit import write_junit
 from clearance.report.markdown import markdown
 from clearance.report.notebook import run_html
 from clearance.report.sections import header
@@ -19,6 +18,7 @@ from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
+from tests.report.made import write_junit
 
 
 def snake(n_links, *, fixed=(), name="snake"):
@@ -70,13 +70,13 @@ def test_every_answer_says_how_many_pairs_are_measured_and_why_not_the_others(tm
         "robot": "snake", "n_pairs": 10, "n_measured": 6, "n_not_always": 0,
         "left_out": {"neighbours": 4}, "text": line,
     }  # fmt: skip
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     properties = {one.get("name"): one.get("value") for one in suite.iter("property")}
     assert properties["self_clearance"] == line
     assert line in suite.find("testcase[@classname='verdict']").findtext("system-out")
     assert f"S{line[1:]}" in header(run.summary)
-    assert line in run_html(run.record)
+    assert line in run_html(run.record, run.verdict, ())
     assert "6 of 10 pairs measured, 4 neighbours" in markdown(run.record, run.verdict, ())
 
 

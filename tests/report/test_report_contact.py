@@ -9,15 +9,14 @@ import json
 import numpy as np
 import pytest
 
+from clearance.record.record import Record
+from clearance.record.replay import load_replay
+from clearance.record.wording import contact_text, depth_mm, least_cm3, volume_cm3
 from clearance.report.contact import contacts
-from clearance.report.output import write
 from clearance.report.page import page_of
-from clearance.report.summary import summary_of
-from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
-from clearance.simulate.record import Record
 from clearance.simulate.replay import contact as replay_contact
-from clearance.simulate.replay.replay import load_replay, replay_of
 from tests.report.browser import chromium, executable
+from tests.report.made import replay_of, summary_of, write
 from tests.report.records import record, with_contacts
 
 
@@ -30,10 +29,10 @@ def run() -> Record:
 def test_the_summary_tells_the_deepest_contact_and_each_pair():
     told = summary_of(run())["contact"]
     assert told["deepest"]["step"] == run().deepest.step
-    assert told["deepest"]["penetration"] == run().deepest.found.penetration
-    assert told["deepest"]["direction"] == run().deepest.found.direction.tolist()
+    assert told["deepest"]["penetration"] == run().deepest.known.penetration
+    assert told["deepest"]["direction"] == run().deepest.known.direction.tolist()
     depths = [pair["penetration"] for pair in told["pairs"]]
-    assert depths == sorted(depths, reverse=True) and depths[0] == run().deepest.found.penetration
+    assert depths == sorted(depths, reverse=True) and depths[0] == run().deepest.known.penetration
     assert sum(pair["n_steps"] for pair in told["pairs"]) == len(run().contacts)
     json.dumps(told, allow_nan=False)
 
@@ -52,7 +51,7 @@ def test_contact_that_was_not_worked_out_is_said():
 
 def test_the_page_says_the_deepest_contact():
     page = page_of(summary_of(run()), replay_of(run()))
-    assert f"{depth_mm(run().deepest.found.penetration)} mm along" in page
+    assert f"{depth_mm(run().deepest.known.penetration)} mm along" in page
 
 
 def test_a_bound_is_worded_as_one():
@@ -89,7 +88,7 @@ def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
     monkeypatch.setattr(replay_contact, "MOST_CONTACTS", 5)
     replay = replay_of(run())
     assert 2 <= len(replay.contacts) <= 5
-    assert max(one.penetration for one in replay.contacts) == run().deepest.found.penetration
+    assert max(one.penetration for one in replay.contacts) == run().deepest.known.penetration
 
 
 def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
@@ -100,7 +99,7 @@ def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
         (c.step, c.link) for c in run().contacts
     ]
     for row, contact in zip(rows, run().contacts, strict=True):
-        found = contact.found
+        found = contact.known
         assert float(row["penetration"]) == found.penetration
         assert float(row["volume_at_least"]) == found.volume_at_least
         assert [float(row[f"direction_{k}"]) for k in "xyz"] == found.direction.tolist()
@@ -126,7 +125,7 @@ def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
         state = page.run("window.clearance.state()")
         assert page.errors == []
     assert counts[0] == 0 and counts[run().deepest.step] > 400
-    here = [row.found for row in run().contacts if row.step == run().deepest.step]
+    here = [row.known for row in run().contacts if row.step == run().deepest.step]
     assert len(state["contacts"]) == len(here)
     for drawn, found in zip(state["contacts"], here, strict=True):
         assert drawn["foot"] == pytest.approx(found.centroid, abs=1e-6)

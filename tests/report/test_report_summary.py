@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from clearance.report.background import loaded
-from clearance.report.output import json_text, write
+from clearance.report.output import json_text
 from clearance.report.provenance import public_path
-from clearance.report.summary import summary_of
 from clearance.world.robot import Joint, JointKind
 from tests.made_cases import with_copies
+from tests.report.made import summary_of, write
 from tests.report.records import disagreeing, record
 
 

@@ -55,7 +55,7 @@ def test_the_worst_moment_names_its_bodies_in_both_ways_whatever_moves(certify):
 def test_a_notebook_shows_verdict_and_closest_pairs(run):
     html = run._repr_html_()
     assert run.verdict.text() in html and "self-collision not checked" in html
-    assert html.count("<tr>") == 1 + min(5, len(run.record.pair_minima))
+    assert html.count("<tr>") == 1 + min(5, len(run.pair_minima))
 
 
 def test_names_are_escaped_in_a_notebook(run):

@@ -6,7 +6,7 @@ from tests.gains.gantries import along_x, gantry, slot, standing
 
 
 def table_of(case):
-    data = sensitivity_data(cl.check(case).record)
+    data = sensitivity_data(cl.check(case).session.sensitivity)
     return data, str(sensitivity_table(data, several_robots=False))
 
 

@@ -15,7 +15,7 @@ from clearance.report.still.drawing import edges_of
 from clearance.report.still.edges import seen_edges
 from clearance.report.still.raster import NONE, Screen, covered, drawn_segments
 from clearance.report.still.scene import COLOURS, rgb, still_of
-from clearance.simulate.replay.replay import replay_of
+from tests.report.made import replay_of
 from tests.report.records import record, with_contacts
 
 pytest.importorskip("matplotlib", reason="sets the words")

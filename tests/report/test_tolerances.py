@@ -12,21 +12,24 @@ import pytest
 
 from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES
-from clearance.findings.findings_file import finding_list_of, findings_text, read_findings
-from clearance.findings.of_record import findings_of
+from clearance.findings.findings_file import findings_text, read_findings
+from clearance.record.budget import ErrorSource
 from clearance.report.annotations import annotation_lines
 from clearance.report.comparison_page import page_of as comparison_page
-from clearance.report.junit import write_junit
 from clearance.report.markdown import markdown
-from clearance.report.output import write
-from clearance.report.summary import summary_of
 from clearance.report.tolerances import largest_text
-from clearance.report.verdict import verdict_of
-from clearance.run import Run
-from clearance.simulate.budget_answer import ErrorSource
 from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.case import Limits
 from tests.report.budgets import with_budget
+from tests.report.made import (
+    finding_list_of,
+    findings_of,
+    run_of,
+    summary_of,
+    verdict_of,
+    write,
+    write_junit,
+)
 from tests.report.records import record
 from tests.report.test_verdict import UNITS, made, printed
 
@@ -55,7 +58,7 @@ SUSPECT = dataclasses.replace(OPEN, notices=(UNITS,))
     ],
 )  # fmt: skip
 def test_every_answer_says_the_same(one, status, exit_code, text, tmp_path):
-    verdict, run = verdict_of(one), Run(one)
+    verdict, run = verdict_of(one), run_of(one)
     assert (verdict.status, verdict.exit_code, verdict.text(str.upper)) == (status, exit_code, text)
     assert (run.status, run.passed) == (status, exit_code == 0)
     summary = summary_of(one)
@@ -114,11 +117,13 @@ def test_what_is_not_proven_comes_before_what_is_near():
 
 
 def test_its_name_does_not_depend_on_numbers_or_bodies():
-    moved = dataclasses.replace(OPEN.budget[0].worst[0].moment, link="fore", clearance=0.002)
-    worst = dataclasses.replace(OPEN.budget[0].worst[0], moment=moved)
-    other = with_budget(NEAR, 0.003, worst=(worst,))
+    open_run = run_of(OPEN)
+    (worst,) = open_run.session.least_left(OPEN.budget[0])
+    moved = dataclasses.replace(worst.moment, link="fore", clearance=0.002)
+    left = {OPEN.budget[0].rule: (dataclasses.replace(worst, moment=moved),)}
+    other = run_of(with_budget(NEAR, 0.003), left=left)
     first, second = (
-        next(f for f in findings_of(one) if f.kind == TOLERANCES) for one in (OPEN, other)
+        next(f for f in findings_of(one) if f.kind == TOLERANCES) for one in (open_run, other)
     )
     assert first.id == second.id and first.body_a != second.body_a
 
@@ -197,19 +202,19 @@ def test_where_numbers_are_from_is_no_part_of_the_comparison():
 
 def test_the_steps_have_columns_of_it(tmp_path):
     certified = with_budget(NEAR, 0.001, between=True)
-    table = Run(certified).steps
+    table = run_of(certified).steps
     assert table.column_names[-3:] == ["proven", "expected", "proven_between"]
     assert np.array_equal(table["proven"].to_numpy(), certified.budget[0].proven)
     write(certified, tmp_path / "out")
     read = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
     assert np.array_equal(read["expected"].to_numpy(), certified.budget[0].expected)
-    assert Run(KEPT).steps.column_names[-2:] == ["proven", "expected"]
+    assert run_of(KEPT).steps.column_names[-2:] == ["proven", "expected"]
 
 
 def test_what_is_not_known_is_null():
     expected = np.full(8, np.nan)
     one = with_budget(NEAR, 0.001, expected=expected)
-    assert Run(one).steps["expected"].null_count == 8
+    assert run_of(one).steps["expected"].null_count == 8
     assert summary_of(one)["tolerances"]["rules"][0]["expected"] is None
     assert "Expected" not in verdict_of(one).with_tolerances[0]
 
@@ -267,7 +272,7 @@ def test_several_rules_are_told_apart():
     )
     both = dataclasses.replace(OPEN, budget=(budget, other))
     assert " of rule 'fence'; proven" in verdict_of(both).with_tolerances[1]
-    assert Run(both).steps["proven"].to_pylist() == budget.proven.tolist()
+    assert both.steps["proven"].to_pylist() == budget.proven.tolist()
 
 
 def test_a_budget_without_any_error_is_known_as_one():

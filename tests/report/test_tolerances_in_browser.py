@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from clearance.report.output import write
 from clearance.world.case import Limits
 from tests.report.browser import chromium, executable
 from tests.report.budgets import with_budget
+from tests.report.made import write
 from tests.report.test_verdict import made
 
 pytestmark = [

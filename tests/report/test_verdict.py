@@ -12,16 +12,12 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report.junit import write_junit
+from clearance.record.record import ProfileAnswer, Record
 from clearance.report.page import page_of
-from clearance.report.summary import summary_of
-from clearance.report.verdict import verdict_of
-from clearance.run import Run
 from clearance.simulate import refine
-from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
+from tests.report.made import replay_of, run_of, summary_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record, with_steps
 
 NO_LIMITS = Limits()
@@ -29,7 +25,7 @@ UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale mi
 RULE = Notice(Severity.VIOLATED, "joint limits", "elbow leaves its limits by 0.1 rad")
 WARNING = Notice(Severity.WARNING, "geometry", "links without a collision shape: antenna")
 NOT_KEPT = ProfileAnswer(
-    "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7, ""
+    "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7
 )
 
 
@@ -39,9 +35,8 @@ def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
     if limits.fail > 0.0:
         return whole
     case = dataclasses.replace(whole.case, accept=tuple(accept))
-    minima = tuple(one for one in whole.pair_minima if one.step < 8)
     short = with_steps(whole, whole.steps.slice(0, 8))
-    return dataclasses.replace(short, case=case, pair_minima=minima, notices=tuple(notices))
+    return dataclasses.replace(short, case=case, notices=tuple(notices))
 
 
 CASES = {
@@ -64,7 +59,7 @@ CASES = {
 
 def printed(one: Record) -> list[str]:
     console = Console(file=io.StringIO(), width=200)
-    print_verdict(Run(one), None, console)
+    print_verdict(run_of(one), None, console)
     return console.file.getvalue().splitlines()
 
 
@@ -77,7 +72,7 @@ def test_every_answer_says_the_same(name, tmp_path):
         exit_code,
         exit_code == 0,
     )
-    run, summary = Run(one), summary_of(one)
+    run, summary = run_of(one), summary_of(one)
     assert (run.status, run.passed, run.verdict) == (status, exit_code == 0, verdict)
     assert (summary["verdict"], summary["passed"], summary["exit_code"]) == (
         status,
@@ -154,7 +149,7 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
         fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail)
     )
     assert run.save(str(tmp_path / "out")) == tmp_path / "out"
-    write_junit(run.record, tmp_path / "junit.xml")
+    write_junit(run.report_data, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     failed = {
         case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None
@@ -162,7 +157,7 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
     assert ("verdict" in failed) == (not run.passed)
     assert ("certificate" in failed) == (not run.passed)
     assert bool(failed) == (not run.passed)
-    assert "at the samples only" not in verdict_of(run.record).text()
+    assert "at the samples only" not in run.verdict.text()
 
 
 @pytest.mark.parametrize("name", ["fail", "warn"])
@@ -175,20 +170,20 @@ def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name, monkey
     run = cl.check(case, limits=limits)
     assert run.status == ("violated" if name == "fail" else "near")
     assert limit <= run.worst["clearance"] and "not proven" in run.verdict.unproven
-    lines = printed(run.record)
+    lines = printed(run)
     assert lines[2].startswith("  unproven ") and f"the {name} limit" in lines[2]
-    assert "Not proven" in page_of(summary_of(run.record), replay_of(run.record)).split("<main>")[0]
+    assert "Not proven" in page_of(run.summary, replay_of(run.session)).split("<main>")[0]
 
 
 def test_the_certified_minimum_has_a_row_of_its_own():
     run = cl.check(cl.load_case(BOX))
-    lines = printed(run.record)
+    lines = printed(run)
     assert any(line.startswith("  certified   at least 34.8") for line in lines)
     assert any(line.startswith("  samples     35.07 mm at step 133") for line in lines)
-    summary = summary_of(run.record)
+    summary = run.summary
     worst, sample = summary["worst"]["clearance"], summary["worst_sample"]["clearance"]
     assert summary["certified"]["lower_bound"] < worst < sample
-    head = page_of(summary, replay_of(run.record)).split("<main>")[0]
+    head = page_of(summary, replay_of(run.session)).split("<main>")[0]
     assert "at least 34.8" in head and "34.98" in head
 
 

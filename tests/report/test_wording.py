@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from clearance.report.wording import joint_value, limit_mm, mm
+from clearance.record.wording import joint_value, limit_mm, mm
 
 
 @pytest.mark.parametrize(

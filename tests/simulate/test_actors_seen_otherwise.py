@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.simulate.names import sides_in
+from clearance.record.names import sides_in
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
 from clearance.world.forest import link_poses_at

@@ -12,9 +12,9 @@ STEP = 1e-6
 
 
 def near_rows(case, beyond=0.3):
-    record = cl.check(case, certify=False).record
-    return record, [
-        one for one in approaches(record.rules, beyond) if (one.clearances > 1e-3).any()
+    run = cl.check(case, certify=False)
+    return run.record, [
+        one for one in approaches(run.session.rules, beyond) if (one.clearances > 1e-3).any()
     ]
 
 

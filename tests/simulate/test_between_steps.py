@@ -152,7 +152,7 @@ def test_a_step_below_a_limit_makes_no_other_step_of_a_minimum_violated():
 
 def test_the_replay_stops_at_the_moment_with_the_right_bodies():
     run = cl.check(sweeping([[-1.2, 0.0], *THROUGH]))
-    replay = replay_of(run.record)
+    replay = replay_of(run.session)
     worst = replay.i_worst
     assert (replay.steps[worst], replay.between[worst]) == (1, 1)
     assert replay.times[worst] == run.worst["time"] and replay.status[worst] == 3
@@ -164,7 +164,7 @@ def test_the_replay_stops_at_the_moment_with_the_right_bodies():
 
 def test_the_replay_goes_the_way_between_far_samples_with_what_is_measured_there():
     case = sweeping([[-1.2, 0.0], *THROUGH], PAST)
-    replay, record = replay_of(cl.check(case).record), cl.check(case).record
+    replay, record = replay_of(cl.check(case).session), cl.check(case).record
     assert (np.diff(replay.times) > 0.0).all() and np.diff(replay.times).max() <= 4.0 / 199
     shoulders = np.interp(replay.times, [0.0, 2.0, 4.0], [-1.2, -1.0, 1.0])
     there = cl.check(sweeping(np.column_stack([shoulders, 0.0 * shoulders]), PAST), certify=False)

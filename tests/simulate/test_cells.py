@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.rows import resumable as resumable_rows
+from clearance.record.rows import resumable as resumable_rows
 from clearance.simulate.sections import section_plan
 from clearance.world.case import Limits
 from clearance.world.rules import Rule

@@ -181,10 +181,9 @@ def test_the_steps_do_not_depend_on_the_velocities(certified):
 
 
 def test_the_summary_says_on_what_path_it_is_proven(certified):
-    from clearance.report.summary import summary_of
-    from clearance.report.wording import certified_text
+    from clearance.record.wording import certified_text
 
-    told = summary_of(certified.record)["certified"]
+    told = certified.summary["certified"]
     assert told["joints"] == "cubic"
     assert "on cubics through the given velocities" in certified_text(told)
 

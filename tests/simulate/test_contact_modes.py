@@ -73,12 +73,11 @@ def asked(monkeypatch):
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
 @pytest.mark.cold
-def test_the_verdict_works_out_what_is_asked_for_and_no_more(asked, shape):
+def test_a_run_works_out_what_is_asked_for_and_no_more(asked, shape):
     """It says how deep, unless nothing was asked for; between the steps nothing is looked at here."""
     for how, n_asked in (("none", 0), ("events", 2), ("every", 5)):
         asked.clear()
         run = cl.check(sliding(shape), contact=how, certify=False)
-        assert asked == []
         assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
         assert (run.worst["penetration"] is None) == (how == "none")
         assert len(asked) == n_asked
@@ -102,15 +101,16 @@ def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
 @pytest.mark.cold
-def test_the_other_rows_are_worked_out_when_they_are_looked_at(asked, shape):
+def test_the_other_rows_are_worked_out_by_the_session(asked, shape):
     run = cl.check(sliding(shape), contact="none")
     row = run.record.contacts[1]
     assert row.known is None and run.record.deepest is None and asked == []
-    assert row.numbers.penetration == pytest.approx(WAY[3] + 0.1 - 0.885, abs=1e-9)
-    assert not row.found.region.is_empty and len(asked) == 1
-    every = cl.check(sliding(shape), contact="every").record.contacts[1]
-    assert every.numbers.penetration_at_least <= row.numbers.penetration * (1.0 + 1e-12)
-    assert row.numbers.penetration_at_least <= every.numbers.penetration * (1.0 + 1e-12)
+    found = run.session.overlap(row)
+    assert found.penetration == pytest.approx(WAY[3] + 0.1 - 0.885, abs=1e-9)
+    assert not found.region.is_empty and len(asked) == 1
+    every = cl.check(sliding(shape), contact="every").record.contacts[1].known
+    assert every.penetration_at_least <= found.penetration * (1.0 + 1e-12)
+    assert found.penetration_at_least <= every.penetration * (1.0 + 1e-12)
 
 
 @pytest.mark.slow
@@ -159,10 +159,9 @@ def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
 
 def test_progress_is_told_event_by_event():
     told = []
-    cl.check(sliding(wall())).record.work_out_contacts(
-        lambda done, total: told.append((done, total))
-    )
-    assert told == [(1, 2), (2, 2)]
+    resources = cl.Resources(progress=lambda done, total: told.append((done, total)))
+    cl.check(sliding(wall()), resources=resources)
+    assert told[-2:] == [(1, 2), (2, 2)]
 
 
 def test_a_way_that_is_not_known_is_refused():

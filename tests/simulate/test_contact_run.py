@@ -12,10 +12,10 @@ from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
+from clearance.record.names import pair_names
 from clearance.simulate.contact import contacts as contact
 from clearance.simulate.contact import rows as contact_rows
 from clearance.simulate.contact.contacts import find_contacts
-from clearance.simulate.names import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import measured_pairs
@@ -43,12 +43,12 @@ def confirm(run, row):
 
     def after(length):
         moved = pose.copy()
-        moved[:3, 3] += length * row.found.direction
+        moved[:3, 3] += length * row.known.direction
         there = obstacle.world_from_body
         return cl.distance(body.shape, obstacle.body.shape, pose_a=moved, pose_b=there)
 
-    assert after(row.found.penetration * (1 + 1e-9) + 1e-12).distance > 0.0
-    assert after(0.999 * row.found.penetration_at_least - 1e-12).contact
+    assert after(row.known.penetration * (1 + 1e-9) + 1e-12).distance > 0.0
+    assert after(0.999 * row.known.penetration_at_least - 1e-12).contact
 
 
 @pytest.mark.slow
@@ -64,7 +64,7 @@ def test_the_scene_in_contact_has_depth_and_volume_at_its_22_steps(shelf):
 @pytest.mark.slow
 def test_the_row_of_a_step_is_its_deepest_pair_and_the_sum_of_its_volumes(shelf):
     for step in (136, 148, 157):
-        found = [row.found for row in shelf.record.contacts if row.step == step]
+        found = [row.known for row in shelf.record.contacts if row.step == step]
         row = shelf.steps.slice(step, 1).to_pylist()[0]
         assert row["penetration"] == max(one.penetration for one in found)
         assert row["volume"] == pytest.approx(sum(one.volume for one in found), rel=1e-15)
@@ -75,9 +75,9 @@ def test_the_way_out_of_the_carton_is_back_out_of_the_shelf(shelf):
     deepest = shelf.record.deepest
     assert deepest.step == 148 and deepest.obstacle == "carton"
     face = [-np.cos(0.1), -np.sin(0.1), 0.0]  # the carton's front, turned by 0.1 rad
-    assert deepest.found.direction == pytest.approx(face, abs=1e-9)
-    assert deepest.found.penetration == pytest.approx(0.03206, abs=1e-5)
-    assert deepest.found.penetration - deepest.found.penetration_at_least < 1e-4
+    assert deepest.known.direction == pytest.approx(face, abs=1e-9)
+    assert deepest.known.penetration == pytest.approx(0.03206, abs=1e-5)
+    assert deepest.known.penetration - deepest.known.penetration_at_least < 1e-4
     for row in shelf.record.contacts[::5]:
         confirm(shelf, row)
 
@@ -87,10 +87,10 @@ def test_the_shared_region_lies_in_the_carton(shelf):
     carton = next(o for o in shelf.record.case.obstacles if o.name == "carton")
     low, high = carton.body.shape.bounds
     for row in shelf.record.contacts:
-        corners = row.found.region.vertices - carton.world_from_body[:3, 3]
+        corners = row.known.region.vertices - carton.world_from_body[:3, 3]
         inside = corners @ carton.world_from_body[:3, :3]
         assert (inside >= low - 1e-9).all() and (inside <= high + 1e-9).all()
-        assert row.found.region.volume == pytest.approx(row.found.volume, rel=1e-12)
+        assert row.known.region.volume == pytest.approx(row.known.volume, rel=1e-12)
 
 
 def test_what_stands_for_a_body_reaches_the_notes(shelf):
@@ -129,7 +129,7 @@ def test_a_pose_that_repeats_is_asked_once(monkeypatch):
     nearest = np.full(5, named.index((deep.link, deep.obstacle)))
     asked = []
     monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
-    found = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest, "every")
+    found = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest, "every").rows
     assert [row.step for row in found] == sorted(row.step for row in found)
     assert len(found) == 5 * len([row for row in found if row.step == 0])
     assert len(asked) <= len(pairs)
@@ -185,8 +185,8 @@ def test_a_real_case_pushed_into_an_obstacle(pushed):
     assert not run.passed
     here = [row for row in run.record.contacts if row.step == step]
     hit = next(row for row in here if (row.link, row.obstacle) == (link, obstacle))
-    assert 0.0 < hit.found.penetration <= 0.0205
-    assert hit.found.volume > 0.0
+    assert 0.0 < hit.known.penetration <= 0.0205
+    assert hit.known.volume > 0.0
     for row in here:
         confirm(run, row)
     in_contact = {row.step for row in run.record.contacts}

@@ -67,19 +67,20 @@ def test_without_depth_the_first_is_named_and_said_to_have_none():
 def test_each_rule_has_its_own_deepest():
     case = passing([0.0, 0.01, 0.02], block("a", at(0.2, 0.15)), block("b", at(-0.17, -0.15)))
     limits = replace(case.limits, rules=(Rule(("l6", "a"), fail=0.001, warn=0.002, name="of a"),))
-    record = cl.check(replace(case, limits=limits)).record
+    run = cl.check(replace(case, limits=limits))
+    record = run.record
     assert (record.worst.obstacle, record.worst.rule) == ("b", "default")
-    own = record.worst_among([record.rule("of a")])
+    own = run.session.worst_among([record.rule("of a")])
     assert (own.obstacle, own.step) == ("a", 2)
     assert own.depth.penetration == pytest.approx(0.02, abs=1e-12)
 
 
 def test_a_waived_contact_does_not_hide_the_deepest_that_decides():
     case = passing([0.0, 0.01, 0.02], block("a", at(0.2, 0.15)), block("b", at(-0.17, -0.15)))
-    record = cl.check(case).record
-    some = record.of_pairs(lambda rule, one, other: "a" in other)
-    assert record.worst_among(some).obstacle == "a"
-    assert record.worst_among(some).depth.penetration == pytest.approx(0.02, abs=1e-12)
+    session = cl.check(case).session
+    some = session.of_pairs(lambda rule, one, other: "a" in other)
+    assert session.worst_among(some).obstacle == "a"
+    assert session.worst_among(some).depth.penetration == pytest.approx(0.02, abs=1e-12)
 
 
 def test_a_cloud_has_no_depth_and_a_body_that_has_is_worse():

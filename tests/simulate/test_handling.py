@@ -45,7 +45,7 @@ def test_the_part_and_what_it_stands_on_are_named_with_the_time_of_contact(recor
         ("part", "pad", "picked up by left/tool at 2 s", 2.0, 3.0),
         ("part", "pad", "let go by left/tool at 4 s", 3.0, 4.0),
     ]
-    notes = notes_of(record)
+    notes = notes_of(record, standing_hint(record))
     assert any(
         "part touches pad when it is picked up by left/tool at 2 s" in note for note in notes
     )

@@ -44,7 +44,7 @@ def test_two_carts_on_a_bare_world_meet():
     run = run_of(joints, {"left": cube, "right": cube}, ends)
     assert met(run) == ("contact", {"left", "right"})
     assert run.record.clearances.tolist() == pytest.approx([0.9, 0.4, 0.0])
-    deepest = run.record.deepest.numbers.penetration
+    deepest = run.record.deepest.penetration
     assert deepest == pytest.approx(0.1)  # the cubes coincide, and have sides of 0.1 m
 
 
@@ -76,7 +76,7 @@ def test_a_trunk_meets_the_wall_that_stands_in_the_world_of_its_base():
     run = run_of(joints, shapes, {"base_trunk": 1.0})
     assert met(run) == ("contact", {"trunk", "wall"})
     assert run.record.clearances.tolist() == pytest.approx([0.9, 0.4, 0.0])
-    assert run.record.deepest.numbers.penetration == pytest.approx(0.1)
+    assert run.record.deepest.penetration == pytest.approx(0.1)
 
 
 def test_a_finger_meets_what_is_bolted_to_its_palm():

@@ -18,12 +18,12 @@ import pytest
 
 import clearance as cl
 from clearance.errors import Unwritable
-from clearance.report.summary import summary_of
+from clearance.record.rows import blocks
+from clearance.record.rows import resumable as resumable_rows
+from clearance.record.rows.resumable import open_resumable_rows
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
 from clearance.simulate import parts
 from clearance.simulate.replay.replay import replay_of
-from clearance.simulate.rows import resumable as resumable_rows
-from clearance.simulate.rows.resumable import open_resumable_rows
 from clearance.world.case import Case
 from tests.examples import first_fast
 
@@ -78,7 +78,7 @@ def told(run: cl.Run) -> dict[str, object]:
     record = run.record
     found = {
         "steps": [run.steps.schema.names, *(column.to_pylist() for column in run.steps.columns)],
-        "minima": list(record.pair_minima),
+        "minima": list(run.pair_minima),
         "pairs": None if run.pairs is None else run.pairs.to_pydict(),
         "tally": record.tally,
     }
@@ -130,7 +130,7 @@ def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In one block of rows or in many, interrupted or not."""
-    monkeypatch.setattr(parts, "BLOCK", 100)
+    monkeypatch.setattr(blocks, "BLOCK", 100)
     asked = {"need": "pairs", "certify": True}
     cl.check(case, **asked).save(tmp_path / "memory")
     with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", print) as kept:
@@ -197,8 +197,9 @@ KILLED = """
 import os, pathlib, signal, sys
 import clearance as cl
 from clearance.simulate import parts
-from clearance.simulate.rows import resumable as resumable_rows
-from clearance.simulate.rows.resumable import open_resumable_rows
+from clearance.record.rows import blocks
+from clearance.record.rows import resumable as resumable_rows
+from clearance.record.rows.resumable import open_resumable_rows
 resumable_rows.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
 def progress(done, total):
     calls.append(done)
@@ -237,7 +238,7 @@ def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
 ) -> None:
     with open_resumable_rows(tmp_path / "kept", print) as kept:
         run = cl.check(case, resources=cl.Resources(rows=kept))
-    assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
+    assert list(run.pair_minima) == list(cl.check(case).pair_minima)
     run.save(tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
@@ -303,13 +304,13 @@ def check_and_write(case: Case, folder: Path, jobs: int) -> None:
         write_parquet(step_batches(run.record, kept), folder / "steps.parquet")
         write_csv(lambda: step_batches(run.record, kept), folder / "steps.csv")
         write_parquet(pair_batches(run.record, kept), folder / "pairs.parquet")
-        summary_of(run.record)
-        replay_of(run.record, 300, kept)
+        assert run.summary
+        replay_of(run.session, 300, kept)
 
 
 def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     """[bytes] of 2000 and of 20,000 steps on one thread, and of 20,000 on two."""
-    parts.LONGEST_PART, parts.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
+    parts.LONGEST_PART, blocks.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     check_and_write(resampled(case, 500), folder, 2)  # loads and compiles, slow where traced
     few, many = resampled(case, 2_000), resampled(case, 20_000)

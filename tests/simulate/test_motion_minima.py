@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.record.record import PairMinimum
 from clearance.report.pair_judge import PairJudge
 from clearance.simulate import motion_minima as room
-from clearance.simulate.motion_minima import motion_minima
 from clearance.simulate.pairs_alone import least_between, near_alone
-from clearance.simulate.record import PairMinimum
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from tests.made_cases import at
@@ -29,11 +28,11 @@ def two_posts(post: float = PAST) -> Case:
 
 def statuses(case: Case) -> dict[tuple[str, str], tuple[float, str]]:
     """The least clearance [m] and the status of each pair."""
-    record = cl.check(case).record
-    judge = PairJudge.of(record)
+    run = cl.check(case)
+    judge = PairJudge.of(run.record)
     return {
         (one.link, one.obstacle): (one.clearance, judge.status_of(one))
-        for one in motion_minima(record)
+        for one in run.session.motion_minima()
     }
 
 
@@ -50,10 +49,10 @@ def test_pairs_stand_as_at_a_hundred_times_as_many_samples(case):
 def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
     run = cl.check(two_posts())
     assert {one.body_b for one in run.findings if one.broken} == {"post", "other"}
-    nearest = motion_minima(run.record, 2)
+    nearest = run.session.motion_minima(2)
     assert [one.obstacle for one in nearest] == ["post", "other"]
     assert nearest[1].between and 0.0038 < nearest[1].proven <= nearest[1].clearance < 0.0041
-    sampled = {one.obstacle: one.clearance for one in run.record.pair_minima}
+    sampled = {one.obstacle: one.clearance for one in run.pair_minima}
     assert sampled["other"] > 0.5
 
 
@@ -61,32 +60,32 @@ def test_a_pair_that_another_hides_has_a_finding_and_a_row_of_its_own():
 def test_the_least_of_the_nearest_pair_is_that_of_the_run(fail):
     """From samples half a metre away, a hundredth of the samples' clearance is more than the dip is deep."""
     case = sweeping(THROUGH, PAST)
-    record = cl.check(replace(case, limits=cl.Limits(fail=fail))).record
-    (nearest,) = motion_minima(record, 1)
-    assert nearest.clearance == record.worst.clearance
+    run = cl.check(replace(case, limits=cl.Limits(fail=fail)))
+    (nearest,) = run.session.motion_minima(1)
+    assert nearest.clearance == run.record.worst.clearance
     assert nearest.proven <= nearest.clearance < nearest.proven + 2e-4
 
 
 def test_the_first_few_are_those_of_all():
-    record = cl.check(sweeping(TWICE, PAST)).record
-    every = motion_minima(record)
+    session = cl.check(sweeping(TWICE, PAST)).session
+    every = session.motion_minima()
     assert [one.clearance for one in every] == sorted(one.clearance for one in every)
     for most in (1, 2, 3):
-        few = motion_minima(record, most)
+        few = session.motion_minima(most)
         assert [(a.link, a.obstacle) for a in few] == [(a.link, a.obstacle) for a in every[:most]]
 
 
 def test_what_is_proven_of_each_pair_is_never_above_many_samples():
     case = sweeping(TWICE, 0.47)
-    record, dense = cl.check(case).record, cl.check(finer(case, 2000), certify=False).record
+    session, dense = cl.check(case).session, cl.check(finer(case, 2000), certify=False)
     least = {(one.link, one.obstacle): one.clearance for one in dense.pair_minima}
-    for one in motion_minima(record):
+    for one in session.motion_minima():
         assert one.proven <= least[one.link, one.obstacle] <= one.clearance + 1e-12
 
 
 def test_where_pairs_are_too_many_those_that_are_far_are_of_the_samples(monkeypatch):
     monkeypatch.setattr(room, "MOST_INTERVALS", 0)
-    minima = motion_minima(cl.check(two_posts()).record)
+    minima = cl.check(two_posts()).session.motion_minima()
     found = {one.obstacle: one for one in minima if one.link == "fore"}
     assert found["other"].proven is not None and found["wall"].proven is None
 
@@ -102,18 +101,18 @@ def test_where_no_pair_can_be_proven_by_itself_those_that_the_proof_saw_nearest_
 
 
 def test_a_hidden_pair_that_comes_much_nearer_than_at_its_samples_is_told_to_a_hundredth():
-    record = cl.check(replace(two_posts(), limits=cl.Limits())).record
-    other = next(one for one in motion_minima(record) if one.obstacle == "other")
+    session = cl.check(replace(two_posts(), limits=cl.Limits())).session
+    other = next(one for one in session.motion_minima() if one.obstacle == "other")
     assert 0.0038 < other.proven <= other.clearance < other.proven + 2e-4
 
 
 def test_without_a_proof_they_are_of_the_samples():
-    record = cl.check(two_posts(), certify=False).record
-    assert motion_minima(record) == tuple(record.pair_minima)
+    run = cl.check(two_posts(), certify=False)
+    assert run.session.motion_minima() == run.pair_minima
 
 
 def test_a_pair_alone_has_the_certificate_of_the_rule_where_it_is_the_nearest():
-    rule = cl.check(sweeping(TWICE, PAST)).record.rules[0]
+    rule = cl.check(sweeping(TWICE, PAST)).session.rules[0]
     for pair, answer in near_alone(rule, 0.02).items():
         own = rule.certificate.pair == pair
         assert np.array_equal(
@@ -123,7 +122,7 @@ def test_a_pair_alone_has_the_certificate_of_the_rule_where_it_is_the_nearest():
 
 
 def test_a_pair_that_is_not_nearer_than_asked_has_no_moment():
-    rule = cl.check(two_posts()).record.rules[0]
+    rule = cl.check(two_posts()).session.rules[0]
     for proven, moment in least_between(rule, {0: 0.001, 1: 0.001}).values():
         assert moment is None and proven > 0.0009
 

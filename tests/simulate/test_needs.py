@@ -36,7 +36,7 @@ def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, c
 
 
 def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> None:
-    lazy, known = runs["steps"].record.pair_minima, runs["pairs"].record.pair_minima
+    lazy, known = runs["steps"].pair_minima, runs["pairs"].pair_minima
     numbers = (1, 2, 5, 20, 60, 1000)
     first = [lazy[:most] for most in numbers]  # before all are known: only these are measured
     assert list(lazy) == list(known)
@@ -62,11 +62,11 @@ def test_the_nearest_pairs_are_found_without_the_least_of_all(
         return real(self, name, steps, within)
 
     monkeypatch.setattr(measure._Sweep, "least_rows", least_rows)
-    few = run.record.pair_minima[:5]
+    few = run.session.pair_minima(5)
     assert list(asked) == ["first", "nearest"]
     fifth = few[-1].clearance
     assert fifth <= asked["nearest"].max() < 2.0 * fifth
-    assert few == tuple(run.record.pair_minima)[:5]
+    assert few == run.pair_minima[:5]
 
 
 def test_the_minimum_is_that_of_all_steps(runs: dict[str, cl.Run]) -> None:
@@ -122,7 +122,7 @@ def test_threads_change_nothing(need: str) -> None:
     for other in (two, four):
         assert one.steps.equals(other.steps)
         assert one.record.tally == other.record.tally
-        assert list(one.record.pair_minima) == list(other.record.pair_minima)
+        assert list(one.pair_minima) == list(other.pair_minima)
 
 
 @pytest.mark.parametrize("longest", first_fast([7, 2, 50, 1000], 1))
@@ -157,7 +157,7 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
     monkeypatch.setattr(parts, "LONGEST_PART", 1)  # nothing is carried from step to step
     afresh = cl.check(case, need=need, certify=False)
     assert afresh.steps.equals(run.steps)
-    assert list(afresh.record.pair_minima) == list(run.record.pair_minima)
+    assert list(afresh.pair_minima) == list(run.pair_minima)
     assert need == "steps" or afresh.pairs.equals(run.pairs)
 
 

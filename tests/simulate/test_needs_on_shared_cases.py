@@ -47,7 +47,7 @@ def test_all_needs_agree(runs):
 
 
 def test_pairs_asks_every_pair_at_every_step_and_steps_a_quarter_at_most(runs):
-    every = len(runs["steps"].record.clearances) * len(runs["steps"].record.pair_minima)
+    every = len(runs["steps"].record.clearances) * len(runs["steps"].pair_minima)
     pairs = tally(runs, "pairs")
     assert pairs["queries"] + pairs["pairs_skipped"] == every
     steps = tally(runs, "steps")

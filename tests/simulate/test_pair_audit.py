@@ -12,8 +12,9 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
 from clearance.query.distance import distance
 from clearance.query.pair_query import Query
+from clearance.record.audit import PairStatus
 from clearance.simulate.audit.joint_box import BoxDistances, JointBox
-from clearance.simulate.audit.pair import GAP, PairStatus, audit_pair
+from clearance.simulate.audit.pair import GAP, audit_pair
 from clearance.world.body import Body
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.report.intervals import intervals
 from clearance.report.junit_cases import results_of
 from clearance.simulate import refine
 from clearance.world.body import Body, Obstacle
@@ -50,7 +49,7 @@ def test_a_gap_that_is_as_wide_as_its_limit_keeps_it(made, limit, status):
     assert 0.0 < limits.rounding < 2e-11
     told = f"equal to the {limit} limit but for rounding"
     assert told in run.verdict.at_level and run.summary["at_level"] == run.verdict.at_level
-    first = next(results_of(run.record, run.verdict))
+    first = next(results_of(run.report_data))
     assert told in first.text and not first.fault
 
 
@@ -97,7 +96,7 @@ def test_bodies_that_pass_at_a_few_nanometres_are_proven_apart(off):
     run = cl.check(turning(off, cl.Limits()))
     assert (run.status, run.verdict.unproven, run.verdict.at_level) == ("clear", None, "")
     assert 0.0 < run.certificate.lower_bound.min() <= off
-    assert not any(intervals(run.record).values())
+    assert not any(run.session.intervals.values())
 
 
 def test_contact_that_is_neither_seen_nor_excluded_is_not_clear(monkeypatch):
@@ -112,7 +111,7 @@ def test_what_touches_but_for_rounding_says_so_and_has_no_stretch_of_contact():
     run = cl.check(sliding(1e-15, cl.Limits()))
     assert (run.status, run.passed) == ("clear", True)
     assert run.verdict.at_level.startswith("touches but for rounding (")
-    assert not any(intervals(run.record).values())
+    assert not any(run.session.intervals.values())
     assert cl.check(sliding(-1e-15, cl.Limits())).status == "contact"
 
 

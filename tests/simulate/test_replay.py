@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax, MissingFile
-from clearance.simulate.replay.replay import kept_steps, load_replay, replay_of
+from clearance.record.replay import load_replay
+from clearance.simulate.replay.replay import kept_steps
+from tests.report.made import replay_of, run_of
 from tests.report.records import record
 
 
@@ -19,10 +21,12 @@ def test_a_short_run_is_kept_whole():
 @pytest.mark.parametrize("max_frames", [30, 50, 333])
 def test_a_long_run_keeps_the_least_of_every_stretch(max_frames):
     run = record(n_steps=1200)
-    kept = kept_steps(run, max_frames)
+    kept = kept_steps(run_of(run).session, max_frames)
     assert len(kept) <= max_frames
     assert (np.diff(kept) > 0).all()
-    assert {0, 1199, run.worst_step, *(minimum.step for minimum in run.pair_minima)} <= set(kept)
+    assert {0, 1199, run.worst_step, *(minimum.step for minimum in run_of(run).pair_minima)} <= set(
+        kept
+    )
     stretch = 2 * 1200 // (max_frames - 12) + 2
     for start in range(0, 1200, 7):
         window = slice(max(0, start - stretch), start + 2 * stretch)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.record.replay import load_replay
 from clearance.simulate.replay.bodies import FramePlace, bodies_of, placed_bodies
-from clearance.simulate.replay.replay import load_replay, replay_of
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.mount import Mount
@@ -19,13 +20,18 @@ from tests.report.cells import box, cell, sliding, table_of
 
 
 @pytest.fixture(scope="module")
-def record():
-    return cl.check(cell()).record
+def run():
+    return cl.check(cell())
 
 
 @pytest.fixture(scope="module")
-def replay(record):
-    return replay_of(record)
+def record(run):
+    return run.record
+
+
+@pytest.fixture(scope="module")
+def replay(run):
+    return replay_of(run.session)
 
 
 def frame_at(replay, time: float) -> int:
@@ -113,7 +119,7 @@ def test_a_robot_on_a_moving_base_is_drawn_on_it():
         sliding("right", [(0, 3), (2, 3)]),
     )
     obstacles = (box("cart", (0.2, 0.2, 0.2), moves=table_of([(0, 0, 0, 0), (2, 0, 1, 0)])),)
-    replay = replay_of(cl.check(cell((), robots, obstacles, ())).record)
+    replay = replay_of(cl.check(cell((), robots, obstacles, ())).session)
     assert place(replay, "left/tool", 0) == pytest.approx([0, 0, 0.4])
     assert place(replay, "left/tool", 2) == pytest.approx([1, 1, 0.4])
 
@@ -126,9 +132,9 @@ def test_moments_between_steps_are_drawn_where_things_are_then():
         box("part", (0.1, 0.1, 0.1), at(-1, 0, 0.38)),
     )
     carries = (Carry("part", "cart", Window(0.0)),)
-    record = cl.check(cell((), robots, obstacles, carries)).record
+    run = cl.check(cell((), robots, obstacles, carries))
+    record, replay = run.record, replay_of(run.session)
     assert record.worst.between
-    replay = replay_of(record)
     i = replay.i_worst
     assert replay.between[i] and replay.times[i] == record.worst.time
     share = record.worst.time
@@ -153,7 +159,7 @@ def test_a_robot_that_comes_and_goes_is_hidden_before_and_after():
         sliding("left", [(0, 0), (3, 0)]),
         sliding("right", [(1, 3), (2, 1)], timing=Timing(after="absent")),
     )
-    replay = replay_of(cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ())).record)
+    replay = replay_of(cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ())).session)
     assert shown(replay, "right/tool")[0] == 1.0
     assert max(shown(replay, "right/tool")) <= 2.0
 
@@ -164,7 +170,7 @@ def test_a_step_at_which_something_goes_shows_what_was_nearest_until_then(after)
     robots = (sliding("left", [(0, 0), (4, 0)]), sliding("right", [(0, 3), (4, 3)]))
     ways = table_of([(0, 0.5, 0, 0.5), (2, 0.11, 0, 0.5)], after=after)
     obstacles = (box("cart", (0.1, 0.1, 0.1), moves=ways), box("table", (4, 4, 0.1)))
-    replay = replay_of(cl.check(cell((), robots, obstacles, ())).record)
+    replay = replay_of(cl.check(cell((), robots, obstacles, ())).session)
     assert replay.times[replay.i_worst] == 2.0
     assert 2.0 in shown(replay, "cart")
     assert place(replay, "cart", 2.0) == pytest.approx([0.11, 0, 0.5], abs=1e-6)

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from clearance.errors import Unwritable
-from clearance.simulate.rows import folder as rows_folder
-from clearance.simulate.rows.folder import LOCK, MARK
-from clearance.simulate.rows.resumable import open_resumable_rows
+from clearance.record.rows import folder as rows_folder
+from clearance.record.rows.folder import LOCK, MARK
+from clearance.record.rows.resumable import open_resumable_rows
 
 
 class Interrupted(BaseException):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.record.rule_answer import NearRows
 from clearance.simulate.measure import NearestPairs, measure, pairs_within
-from clearance.simulate.rule_pairs import NearRows
 from clearance.simulate.sections import section_plan
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
@@ -26,7 +26,7 @@ def checked(name: str, need: str = "steps") -> cl.Run:
 
 
 def near_rows(name: str, need: str, within: float = WITHIN) -> list[NearRows]:
-    return [rule.pairs.near(within) for rule in checked(name, need).record.rules]
+    return [rule.pairs.near(within) for rule in checked(name, need).session.rules]
 
 
 @pytest.mark.slow
@@ -44,7 +44,7 @@ def test_near_pairs_are_those_of_a_run_with_every_pair(name, need):
 
 @pytest.mark.slow
 def test_the_moment_of_a_pair_is_what_its_row_says():
-    (rule,) = checked("iiwa_pipe_rack").record.rules
+    (rule,) = checked("iiwa_pipe_rack").session.rules
     rows = rule.pairs.near(WITHIN)
     for i in (0, len(rows.steps) // 2, len(rows.steps) - 1):
         moment = rule.pairs.moment(int(rows.steps[i]), int(rows.pairs[i]))
@@ -58,7 +58,7 @@ def test_the_moment_of_a_pair_is_what_its_row_says():
 @pytest.mark.parametrize("name", ["iiwa_pipe_rack", "panda_shelf", "dual_arm_handover"])
 @pytest.mark.parametrize("need", ["steps", "limit"])
 def test_what_is_known_of_the_nearest_pairs_is_what_they_would_be_measured_as(name, need):
-    for rule in checked(name, need).record.rules:
+    for rule in checked(name, need).session.rules:
         for answer in rule.pairs.answers:
             found, what = answer.found, answer.section.in_motion
             steps = np.flatnonzero(found.clearance < WITHIN)

@@ -8,7 +8,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, BadShape
 from clearance.profiles.sweep import swept_profile
-from clearance.simulate.fingerprint import fingerprint
+from clearance.record.fingerprint import fingerprint
 from clearance.simulate.replay.bodies import MOST_DRAWN
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
@@ -130,7 +130,7 @@ def test_contact_with_a_cloud_is_said_to_have_no_depth():
     block = cl.Obstacle(cl.Body("block", cl.box([0.2, 0.2, 0.2])))
     both = cl.check(replace(case, obstacles=(*case.obstacles, block))).record
     assert {row.obstacle for row in both.contacts} == {"block"}
-    assert both.deepest.numbers.penetration > 0.05
+    assert both.deepest.penetration > 0.05
 
 
 @pytest.mark.peer
@@ -162,8 +162,9 @@ def test_a_cloud_that_is_too_large_for_fcl_is_left_out_and_named(monkeypatch):
 def test_the_picture_has_points_and_says_how_many(monkeypatch):
     case = case_of(scan(998), way(5))
     monkeypatch.setattr("clearance.simulate.replay.bodies.MOST_DRAWN", 300)
-    record = cl.check(case).record
-    (shape,) = [shape for shape in replay_of(record).shapes if not len(shape[1])]
+    run = cl.check(case)
+    record = run.record
+    (shape,) = [shape for shape in replay_of(run.session).shapes if not len(shape[1])]
     assert len(shape[0]) == 250
     assert "scan: the pictures show one in 4 of its 1,000 points; all are measured" in record.notes
     assert MOST_DRAWN > 1000

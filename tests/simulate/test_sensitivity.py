@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.simulate.approaches import approach_at
-from clearance.simulate.sensitivity import n_joint_columns, sensitivity_of
+from clearance.simulate.sensitivity import n_joint_columns
 from clearance.world.robot import Joint, JointKind
 from tests.gains.gantries import along_x, gantry, slot, standing
 
@@ -15,7 +15,7 @@ Z = np.array([0.0, 0.0, 1.0])
 
 
 def rates_of(case):
-    found = sensitivity_of(cl.check(case).record)
+    found = cl.check(case).session.sensitivity
     assert not found.why_not
     return found, {(rate.kind, rate.of, rate.name): rate for rate in found.rates}
 
@@ -91,19 +91,19 @@ def test_a_turn_is_as_differences_say(tilt):
 
 def test_rates_are_the_rows_of_the_nearest_points():
     case = spinner(tilt=0.2)
-    record = cl.check(case, certify=False).record
-    rule = record.rules[0]
+    run = cl.check(case, certify=False)
+    rule = run.session.rules[0]
     (section,) = (one.section for one in rule.pairs.answers)
     pair = next(one for one in section.pairs if one.b.name_in(case) == "post")
-    row = approach_at(rule, section, pair, np.array([record.worst_step])).by_columns()[0]
-    found = sensitivity_of(record)
+    row = approach_at(rule, section, pair, np.array([run.record.worst_step])).by_columns()[0]
+    found = run.session.sensitivity
     assert found.rates[0].more == pytest.approx(row[0], abs=1e-7)
     assert n_joint_columns(case) == len(row) == 1
 
 
 def test_two_that_touch_have_none():
     case = cl.Case("hit", (along_x(gantry()),), (standing("post", cl.box((0.1,) * 3), (0, 0, 0)),))
-    assert "contact" in sensitivity_of(cl.check(case).record).why_not
+    assert "contact" in cl.check(case).session.sensitivity.why_not
 
 
 def test_padding_changes_no_slope():

@@ -31,7 +31,7 @@ def test_only_links_that_never_move_are_named(run):
 def test_the_hint_holds_the_line_to_paste_and_the_line_leaves_them_out(run, tmp_path):
     (hint,) = standing_hint(run.record)
     assert hint.startswith("2 pairs touch all the time, since the link never moves")
-    assert notes_of(run.record).count(hint) == 1
+    assert notes_of(run.record, run.session.hints).count(hint) == 1
     line = hint.partition("case: ")[2]
     again = check(load_case(write_case(tmp_path, TABLES + line + "\n")))
     assert standing_hint(again.record) == []

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from clearance.simulate.status import STATUSES, status_codes, status_of
+from clearance.record.status import STATUSES, status_codes, status_of
 from clearance.world.case import Limits
 
 

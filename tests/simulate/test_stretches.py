@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.report.intervals import events, intervals
-from clearance.report.motion_intervals import motion_levels
+from clearance.record.levels import LEVELS
 from clearance.simulate import stretches
 from clearance.simulate.replay.curve_moments import nearest_moments
-from clearance.simulate.stretches import LEVELS, joined_spans
+from clearance.simulate.stretches import joined_spans
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
@@ -30,7 +29,7 @@ TWICE = [[-1.0, 0.0], [1.0, 0.0], [-0.3, 0.3], [0.2, -0.4], [-1.1, 0.1], [-1.0, 
 
 def spans_of(case: Case) -> dict[str, np.ndarray]:
     """(k, 2) [s] of each level."""
-    found = motion_levels(cl.check(case).record)
+    found = cl.check(case).session.motion_levels
     assert found is not None
     return {level: np.array(spans).reshape(-1, 2) for level, spans in found.spans.items()}
 
@@ -128,19 +127,19 @@ def test_paddings_and_rules_are_those_of_the_pair():
 
 
 def test_intervals_and_events_are_of_the_motion():
-    record = cl.check(sweeping(THROUGH, PAST)).record
-    (below,) = intervals(record)["below_fail"]
+    session = cl.check(sweeping(THROUGH, PAST)).session
+    (below,) = session.intervals["below_fail"]
     assert below.start < 0.9325 and below.end > 1.0675 and below.end - below.start < 0.18
     assert below.between and below.clearance == pytest.approx(0.003, abs=1e-4)
     assert (below.first_step, below.last_step) == (0, 0)
-    told = [(event.what, event.between) for event in events(record)]
+    told = [(event.what, event.between) for event in session.events]
     assert told == [
         ("warn limit entered", True),
         ("fail limit entered", True),
         ("fail limit left", True),
         ("warn limit left", True),
     ]
-    entered = events(record)[1]
+    entered = session.events[1]
     assert (entered.link, entered.obstacle) == ("fore", "post")
     there = cl.check(sweeping([[entered.time - 1.0, 0.0]], PAST)).worst["clearance"]
     assert entered.time == below.start and entered.clearance == pytest.approx(there, abs=1e-12)
@@ -172,9 +171,10 @@ def test_a_body_that_goes_wholly_into_another_stays_in_contact():
 def test_moments_of_cells_that_are_below_lie_in_the_stretches(scene):
     """Doors and turntables that move by tables, parts that are carried, rules; samples that are far apart."""
     case = cl.load_case(SCENES / scene / "case.yaml")
-    record = cl.check(replace(case, robots=tuple(map(thinned, case.robots)), waivers=())).record
-    spans, rng = motion_levels(record).spans, np.random.default_rng(5)
-    for rule in record.rules:
+    told = replace(case, robots=tuple(map(thinned, case.robots)), waivers=())
+    session = cl.check(told).session
+    spans, rng = session.motion_levels.spans, np.random.default_rng(5)
+    for rule in session.rules:
         for answer in rule.pairs.answers:
             for step in range(answer.section.phase.first, answer.section.phase.last):
                 for moment in nearest_moments(rule, answer, step, np.sort(rng.random(3))):

@@ -125,7 +125,7 @@ def test_the_cross_check_says_what_it_leaves_out():
 def test_every_pair_has_its_least():
     case = loose(3, np.inf)
     run = cl.check(case, certify=False)
-    told = {(row.link, row.obstacle): row.clearance for row in run.record.pair_minima}
+    told = {(row.link, row.obstacle): row.clearance for row in run.pair_minima}
     names = {
         (p.a.name_in(case), p.b.name_in(case)) for p in section_plan(run.record.timeline).pairs
     }

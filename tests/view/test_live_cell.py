@@ -19,7 +19,7 @@ RUN = cell()
 def page() -> Page:
     if executable() is None:
         pytest.skip("no Chromium is installed")
-    with play(cl.check(RUN).record) as playback, chromium() as page:
+    with play(cl.check(RUN).session.replay()) as playback, chromium() as page:
         page.open(playback.url, "window.viewer && Object.keys(viewer.gui_controllers).length >= 4")
         page.wait("viewer.animator.duration > 0")
         page.settle()

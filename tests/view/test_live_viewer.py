@@ -15,11 +15,10 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadSyntax, MissingFile
-from clearance.report.output import write
-from clearance.simulate.replay.replay import replay_of
 from clearance.view import play, show
 from clearance.view.playback import line_tracks
 from tests.report.browser import Page, chromium, executable
+from tests.report.made import replay_of, write
 from tests.report.records import record, with_contacts
 
 RUN = with_contacts(record())
@@ -36,7 +35,7 @@ WORLD = """(name) => {
 def page() -> Page:
     if executable() is None:
         pytest.skip("no Chromium is installed")
-    with play(RUN) as playback, chromium() as page:
+    with play(replay_of(RUN)) as playback, chromium() as page:
         page.open(playback.url, "window.viewer && Object.keys(viewer.gui_controllers).length >= 4")
         page.wait("viewer.animator.duration > 0")
         page.settle()

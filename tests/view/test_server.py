@@ -17,8 +17,8 @@ import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from clearance.simulate.replay.replay import replay_of
 from clearance.view.server import PageServer
+from tests.report.made import replay_of
 from tests.report.records import record
 
 ROOT = Path(__file__).parents[2]

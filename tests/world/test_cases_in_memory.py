@@ -174,9 +174,7 @@ def test_two_robots_are_measured_against_each_other_and_each_against_itself_wher
     left, right = still("left"), still("right")
     run = cl.check(cl.Case("two", (left, right), posts("post")))
     assert run.verdict.not_checked == ("self-collision",)
-    between = {
-        (row.link.split("/")[0], row.obstacle.split("/")[0]) for row in run.record.pair_minima
-    }
+    between = {(row.link.split("/")[0], row.obstacle.split("/")[0]) for row in run.pair_minima}
     assert between == {("left", "post"), ("right", "post"), ("left", "right")}
     alone = dataclasses.replace(left, self_clearance=cl.SelfClearance())
     run = cl.check(cl.Case("two", (alone, right), posts("post")))

@@ -20,9 +20,9 @@ import numpy as np
 from clearance import __version__
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import cylinder, sphere
+from clearance.record.record import Record
+from clearance.record.replay import Replay
 from clearance.report.still.scene import Still, StillBody, still_of
-from clearance.simulate.record import Record
-from clearance.simulate.replay.replay import Replay
 
 FLOAT, UNSIGNED = 5126, 5125
 VERTICES, INDICES = 34962, 34963

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.extras import importing
+from clearance.findings.verdict import Verdict, moment_line, verdict_of
+from clearance.record.record import Record
+from clearance.record.replay import Replay
+from clearance.record.wording import limits_text
 from clearance.report.still.camera import at_gap, overview
 from clearance.report.still.drawing import drawn, edges_of
 from clearance.report.still.scene import COLOURS, Still, still_of
-from clearance.report.verdict import Verdict, moment_line, verdict_of
-from clearance.report.wording import limits_text
-from clearance.simulate.record import Record
-from clearance.simulate.replay.replay import Replay
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.pose import pose_from_quaternion
+from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnBody, Replay
+from clearance.record.status import STATUSES
 from clearance.report.still.points import as_solids
-from clearance.simulate.replay.bodies import LINK, MOVING, PART, STANDING, DrawnBody
-from clearance.simulate.replay.replay import Replay
-from clearance.simulate.status import STATUSES
 
 ROBOTS = (0x5C7390, 0x7D6796, 0x4B7F78, 0x94705C)
 """Of the robots in turn."""

@@ -9,12 +9,11 @@ motions (`certify`), the bounds (`joint_box`), and which pairs are asked (`world
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
 from clearance.query.pair_query import Query
+from clearance.record.audit import PairFinding, PairStatus
 from clearance.simulate.audit.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.robot import JointKind, Robot
@@ -42,36 +41,6 @@ N_STARTS = 8
 
 MOST_STEPS = 40
 """Of one way downhill."""
-
-
-class PairStatus(StrEnum):
-    """What is known of a pair."""
-
-    APART = "apart"
-    MEETS = "meets"
-    UNDECIDED = "undecided"
-
-
-@dataclass(frozen=True)
-class PairFinding:
-    """Whether two links can meet.
-
-    Attributes:
-        lower_bound: [m] proven for all positions; 0 unless apart.
-        least: [m] the least distance that was seen; 0 where they meet.
-        positions: of the joints between them, by name [rad or m], where that was seen.
-        n_boxes: that were looked at.
-        why: of what is undecided.
-    """
-
-    link_a: str
-    link_b: str
-    status: PairStatus
-    lower_bound: float
-    least: float
-    positions: dict[str, float]
-    n_boxes: int
-    why: str = ""
 
 
 def audit_pair(robot: Robot, link_a: str, link_b: str, most_boxes: int = MOST_BOXES) -> PairFinding:

@@ -5,31 +5,12 @@ Not for: one pair (`pair`), nor how it is reported (`report.srdf`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from clearance.progress import Progress
-from clearance.simulate.audit.pair import PairFinding, PairStatus, audit_pair
+from clearance.record.audit import ExcusedPair, PairStatus, ProposedPair
+from clearance.simulate.audit.pair import audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import Robot
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
-
-
-@dataclass(frozen=True)
-class ExcusedPair:
-    """A pair that a file excuses, for a reason, and whether it can meet."""
-
-    reason: str
-    finding: PairFinding
-
-    @property
-    def refuted(self) -> bool:
-        """It is said never to meet, and a pose is known in which it does."""
-        return self.reason == NEVER and self.finding.status is PairStatus.MEETS
-
-    @property
-    def unproven(self) -> bool:
-        """It is said never to meet, and neither that nor the contrary is known."""
-        return self.reason == NEVER and self.finding.status is PairStatus.UNDECIDED
 
 
 def audit(
@@ -47,19 +28,6 @@ def audit(
         if progress:
             progress(i, len(excused))
     return found
-
-
-@dataclass(frozen=True)
-class ProposedPair:
-    """A pair of links, and the reason to excuse it, or None where it has to be measured.
-
-    Attributes:
-        finding: whether it can meet; None of neighbours, which are not asked.
-    """
-
-    pair: SelfPair
-    reason: str | None
-    finding: PairFinding | None
 
 
 def propose(robot: Robot, progress: Progress | None = None) -> list[ProposedPair]:

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.simulate.certificate import Certificate
+from clearance.record.measurement import SWEEP_COUNTERS, Minima
 from clearance.simulate.clocks.pairs import PairsOfTwoClocks
 from clearance.simulate.clocks.unsynchronised import (
     UnsynchronisedAnswers,
@@ -18,7 +18,7 @@ from clearance.simulate.clocks.unsynchronised import (
     least_of_all_steps,
     least_unsynchronised,
 )
-from clearance.simulate.measurement import SWEEP_COUNTERS, Measurement, Minima
+from clearance.simulate.measured import MeasuredSteps, ProvenMotion
 from clearance.simulate.resources import Resources
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
@@ -27,7 +27,7 @@ ROUNDED_DOWN = 1.0 - 2.0**-50
 
 def measure_two_clocks(
     what: PairsOfTwoClocks, gap: float | None, resources: Resources
-) -> tuple[Measurement, Certificate | None]:
+) -> tuple[MeasuredSteps, ProvenMotion | None]:
     """The clearances at the steps of the first clock, and what is proven between; nothing without a `gap` [m]."""
     found = least_unsynchronised(what, gap, resources)
     return _measurement(what, found, resources), _certificate(what, found)
@@ -35,18 +35,18 @@ def measure_two_clocks(
 
 def _measurement(
     what: PairsOfTwoClocks, found: UnsynchronisedAnswers, resources: Resources
-) -> Measurement:
+) -> MeasuredSteps:
     steps, known = found.steps, found.steps.pair >= 0
     tally = dict.fromkeys(SWEEP_COUNTERS, 0)
     tally |= {name: number for name, number in found.steps_tally.items() if name in tally}
     quiet = Resources(resources.jobs)
-    return Measurement(
+    return MeasuredSteps(
         np.where(known, steps.clearance, np.nan),
         steps.clearance * ROUNDED_DOWN,
         steps.pair,
         steps.points,
         tally,
-        lambda most: _minima(what, quiet),
+        measure_pair_minima=lambda most: _minima(what, quiet),
         times_b=np.where(known, what.b.times[np.maximum(steps.step_b, 0)], np.nan),
     )
 
@@ -65,21 +65,21 @@ def _minima(what: PairsOfTwoClocks, resources: Resources) -> Minima:
     return least
 
 
-def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> Certificate | None:
+def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> ProvenMotion | None:
     """Rows as those of one clock: one for each interval, and the last step's."""
     if found.intervals is None:
         return None
     own, last = found.intervals, found.steps.clearance[-1:]
     occurs = np.isfinite(own.upper_bound)
-    return Certificate(
+    return ProvenMotion(
         np.append(own.lower_bound, last * ROUNDED_DOWN),
         np.append(own.upper_bound, last),
         np.append(np.where(occurs, own.share_a, -1.0), -1.0),
         np.append(np.where(occurs, own.pair, -1), -1),
         _widest(own, found.gap),
         {name: n for name, n in found.intervals_tally.items() if name in SWEEP_COUNTERS},
-        found.moment_of,
         found.notices,
+        moment_of=found.moment_of,
     )
 
 

@@ -37,6 +37,8 @@ from clearance.kernels.motion.twist import CertificateGoal
 from clearance.kernels.motion.world import World
 from clearance.ordered import ascending
 from clearance.query.distance import distance
+from clearance.record.moment import Moment
+from clearance.record.names import pair_names
 from clearance.simulate.certify import (
     joint_path,
     no_finer_than_rounding,
@@ -44,8 +46,6 @@ from clearance.simulate.certify import (
 )
 from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
 from clearance.simulate.layout import lay_out, with_whole_faces
-from clearance.simulate.moment import Moment
-from clearance.simulate.names import pair_names
 from clearance.simulate.parts import in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.world.forest import forest_of, positions_between

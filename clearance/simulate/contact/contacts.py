@@ -1,7 +1,7 @@
 """Looks closer at the steps in contact: which pairs overlap, how deep, in which region.
 
 Called when the clearance of every step is known and some of them are 0; a run without contact does not even
-load this room, and nothing is found before somebody looks. Not for: whether there is contact (`measure`).
+load this room. Not for: whether there is contact (`measure`).
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ from clearance.progress import Progress
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
+from clearance.record.names import pair_names
+from clearance.record.rows.blocks import blocks
 from clearance.simulate.contact.events import (
     MOST_DEEPER,
     MOST_RATED,
@@ -28,12 +30,11 @@ from clearance.simulate.contact.events import (
     hull_depths,
     rated_places,
 )
-from clearance.simulate.contact.rows import ContactRows
+from clearance.simulate.contact.rows import ContactPart, FoundContacts, joined_contacts
 from clearance.simulate.contact.work import ContactWork
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import pairs_in_contact
-from clearance.simulate.names import pair_names
-from clearance.simulate.parts import blocks
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.motion import Motion
@@ -46,6 +47,46 @@ MOST_VOLUMES = 9
 """Steps of an event at which the volume shared is asked for, and as many again about the best."""
 
 
+def contacts_of(
+    case: Case,
+    pairs: Sequence[Pair],
+    answers: Sequence[SectionAnswer],
+    times: np.ndarray,
+    work_out: str,
+    progress: Progress | None = None,
+) -> FoundContacts | None:
+    """The contacts of a run, of what its sections have found; None where no pair that one time has touches.
+
+    Args:
+        pairs: those of the run. times: (n,) [s] of its steps.
+        work_out: of which rows depth, volume and way out are found: the deepest moment of each of the "events",
+            "every" one, or "none".
+        progress: called with how many of how many.
+    """
+    parts = [
+        _part_of(answer, work_out, progress)
+        for answer in answers
+        if answer.section.tied
+        and (answer.found.clearance <= 0.0).any()
+        and not all(pair.has_cloud(case) for pair in answer.section.pairs)
+    ]
+    names = list(zip(*pair_names(case, pairs), strict=True))
+    return joined_contacts(parts, names, times) if parts else None
+
+
+def _part_of(answer: SectionAnswer, work_out: str, progress: Progress | None) -> ContactPart:
+    section, found = answer.section, answer.found
+    finder = overlap_finder(
+        section.phase.case,
+        section.phase.motions,
+        section.pairs,
+        found.clearance,
+        found.pair,
+        work_out,
+    )
+    return ContactPart.of(finder, section.phase.first, section.places, progress)
+
+
 def find_contacts(
     case: Case,
     motions: Sequence[Motion],
@@ -53,24 +94,37 @@ def find_contacts(
     clearance: np.ndarray,
     nearest: np.ndarray,
     work_out: str = "events",
-) -> ContactRows:
-    """The overlap of every pair in contact, step by step and pair by pair.
+) -> FoundContacts:
+    """The contacts of a run in one part; arguments as in `overlap_finder`."""
+    finder = overlap_finder(case, motions, pairs, clearance, nearest, work_out)
+    part = ContactPart.of(finder, 0, np.arange(len(pairs)))
+    return joined_contacts(
+        [part], list(zip(*pair_names(case, pairs), strict=True)), motions[0].times
+    )
+
+
+def overlap_finder(
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    clearance: np.ndarray,
+    nearest: np.ndarray,
+    work_out: str,
+) -> _OverlapFinder:
+    """What finds the overlap of every pair in contact, step by step and pair by pair.
 
     Args:
         clearance: (n,) [m] of every step; those at 0 are looked at.
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
-        work_out: of which rows depth, volume and way out are found with the run: the deepest moment of each of the
-            "events", "every" one, or "none".
+        work_out: as in `contacts_of`.
     """
     touching = [
         block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))
     ]
     steps = np.concatenate(touching)
-    finder = _OverlapFinder(
+    return _OverlapFinder(
         case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out
     )
-    names = list(zip(*pair_names(case, pairs), strict=True))
-    return ContactRows(names, motions[0].times, finder)
 
 
 @dataclass(eq=False)

@@ -1,15 +1,12 @@
-"""The overlaps of a run: which pair at which step, with the figures of those that the run works out.
+"""The contacts of a run in one table, with the overlaps that it asks for.
 
-Which pairs are in contact is asked when somebody looks, and so are depth, volume and way out: of the deepest
-moment of every event, of all, or of none. Any other row is worked out when it is looked at itself. Not for: how
-(`contacts`), and which moment (`events`).
+Not for: finding an overlap (`contacts`), and which moment of an event is worked out (`events`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -17,29 +14,10 @@ import numpy as np
 from clearance.geometry.boolean import ClosedMesh
 from clearance.progress import Progress
 from clearance.query.contact import Contact
-from clearance.simulate.contact.rows_on_demand import RowsOnDemand
-from clearance.simulate.contact.sequence import ContactSequence, StepContact
+from clearance.record.contact import FIGURES, OVERLAP, ContactRows, KnownOverlaps, StepContact
 
 MOST_REGIONS = 2000
-"""Regions that are kept; one takes some 2 to 10 kB."""
-
-_NUMBERS = (
-    "penetration",
-    "penetration_at_least",
-    "volume",
-    "volume_at_least",
-    "direction",
-    "centroid",
-    "exact",
-)
-_ROW = np.dtype(
-    [
-        ("notes", "i4"),
-        *[(name, "f8") for name in _NUMBERS[:4]],
-        *[(name, "f8", 3) for name in _NUMBERS[4:6]],
-        ("exact", "?", 2),
-    ]
-)
+"""Regions of a part that are kept; one takes some 2 to 10 kB."""
 
 
 class ContactFinder(Protocol):
@@ -66,118 +44,120 @@ class ContactFinder(Protocol):
         """What stands for the bodies so far, where it is not they themselves."""
 
 
-@dataclass(eq=False)
-class ContactRows(ContactSequence):
-    """Every pair in contact at every step, steps first.
+@dataclass(frozen=True, eq=False)
+class ContactPart:
+    """The contacts of one part of a run.
 
     Attributes:
-        names: link and obstacle of each pair.
-        times: (n,) [s] of the steps.
-        finder: finds what is looked at.
+        first: the step of the run that it begins with. places: (p,) of its pairs in the run.
+        steps, pairs: (k,) of each row, as the part counts. worked: (m,) rows whose overlaps are known.
     """
 
-    names: Sequence[tuple[str, str]]
-    times: np.ndarray
     finder: ContactFinder
-    _slots: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-    _n_known: int = 0
-    _rows: np.ndarray = field(default_factory=lambda: np.empty(64, dtype=_ROW))
-    _regions: list[ClosedMesh] = field(default_factory=list)
-    _notes: dict[tuple[str, ...], int] = field(default_factory=dict)
-    _told: tuple[str, ...] = ()
-    _is_worked_out: bool = False
+    first: int
+    places: np.ndarray
+    steps: np.ndarray
+    pairs: np.ndarray
+    worked: np.ndarray
+    known: KnownOverlaps
 
-    @cached_property
-    def _touching(self) -> tuple[np.ndarray, np.ndarray]:
-        return self.finder.touching()
+    @staticmethod
+    def of(
+        finder: ContactFinder, first: int, places: np.ndarray, progress: Progress | None = None
+    ) -> ContactPart:
+        """The part with the overlaps that are asked for; `progress` is called with how many of how many."""
+        steps, pairs = finder.touching()
+        worked, known = _gathered(finder.chosen(steps, pairs, progress))
+        return ContactPart(finder, first, places, steps, pairs, worked, known)
 
-    @property
-    def steps(self) -> np.ndarray:
-        """(k,) the step of each, not decreasing."""
-        return self._touching[0]
+    def overlap(self, step: int, pair: int) -> Contact | None:
+        """All of the overlap of a pair at a step, as the run counts them; None if this part has no such row."""
+        own = np.flatnonzero((self.steps + self.first == step) & (self.places[self.pairs] == pair))
+        if not len(own):
+            return None
+        return self.finder.contact(int(self.steps[own[0]]), int(self.pairs[own[0]]))
 
-    @property
-    def pairs(self) -> np.ndarray:
-        """(k,) the pair of each, as an index into `names`."""
-        return self._touching[1]
 
-    @property
-    def are_asked(self) -> bool:
-        """True unless the run asks for the depth of none."""
-        return self.finder.work_out != "none"
-
-    def work_out(self, progress: Progress | None = None) -> None:
-        """Works out what the run asks for, once; `progress` is called with how many of how many."""
-        if not self._is_worked_out:
-            self._slots = np.full(len(self), -1, dtype=np.int64)
-            for i, found in self.finder.chosen(*self._touching, progress):
-                self._add(i, found)
-            self._told = self.finder.notes()
-            self._is_worked_out = True
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What stands for the bodies in contact, where it is not they themselves; one line each."""
-        self.work_out()
-        return self._told
-
-    @property
-    def worked_out(self) -> Sequence[StepContact]:
-        """The rows that the run works out, steps first."""
-        self.work_out()
-        return _SelectedRows(self, np.flatnonzero(self._slots >= 0))
-
-    def numbers_between(self, start: int, stop: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-        """The steps of the rows from a step to before another, their depth and volume; NaN if not worked out."""
-        self.work_out()
-        low, high = np.searchsorted(self.steps, [start, stop])
-        numbers = {name: np.full(high - low, np.nan) for name in ("penetration", "volume")}
-        slots = self._slots[low:high]
-        for name, column in numbers.items():
-            column[slots >= 0] = self._rows[name][slots[slots >= 0]]
-        return self.steps[low:high], numbers
-
-    def _add(self, i: int, found: Contact) -> None:
-        slot = self._n_known
-        self._n_known += 1
-        if slot == len(self._rows):
-            self._rows = np.resize(self._rows, 2 * slot)
-        i_notes = self._notes.setdefault(found.notes, len(self._notes))
-        self._rows[slot] = (i_notes, *(getattr(found, name) for name in _NUMBERS))
-        self._slots[i] = slot
-        if len(self._regions) < MOST_REGIONS:
-            self._regions.append(found.region)
-
-    def _at(self, i: int) -> StepContact:
-        self.work_out()
-        step, i_pair = int(self.steps[i]), int(self.pairs[i])
-        slot = int(self._slots[i])
-        again = (
-            None if 0 <= slot < len(self._regions) else lambda: self.finder.contact(step, i_pair)
-        )
-        known = None if slot < 0 else self._known(slot)
-        return StepContact(step, float(self.times[step]), *self.names[i_pair], known, again)
-
-    def _known(self, slot: int) -> Contact:
-        row = self._rows[slot]
-        return Contact(
-            **{name: row[name].tolist() for name in _NUMBERS[:4]},
-            **{name: row[name].copy() for name in _NUMBERS[4:6]},
-            region=self._regions[slot] if slot < len(self._regions) else ClosedMesh.empty(),
-            exact=tuple(row["exact"].tolist()),
-            notes=tuple(self._notes)[row["notes"]],
-        )
+def _gathered(found: Iterator[tuple[int, Contact]]) -> tuple[np.ndarray, KnownOverlaps]:
+    """(m,) the rows of some overlaps, and these as a table in that order."""
+    notes: dict[tuple[str, ...], int] = {}
+    worked, figures, regions = [], [], {}
+    for place, (row, one) in enumerate(found):
+        i_notes = notes.setdefault(one.notes, len(notes))
+        worked.append(row)
+        figures.append((i_notes, *(getattr(one, name) for name in FIGURES)))
+        if place < MOST_REGIONS:
+            regions[place] = one.region
+    known = KnownOverlaps(np.array(figures, dtype=OVERLAP), regions, tuple(notes))
+    return np.array(worked, dtype=np.int64), known
 
 
 @dataclass(frozen=True, eq=False)
-class _SelectedRows(RowsOnDemand[StepContact]):
-    """Some of the rows, made when they are looked at."""
+class FoundContacts:
+    """The contacts of a run as data, and the parts that can find an overlap once more."""
 
     rows: ContactRows
-    which: np.ndarray
+    parts: Sequence[ContactPart]
 
-    def __len__(self) -> int:
-        return len(self.which)
+    def overlap(self, row: StepContact) -> Contact:
+        """All of an overlap, with its region; worked out now where it is not kept."""
+        if row.known is not None and row.has_region:
+            return row.known
+        pair = self.rows.names.index((row.link, row.obstacle))
+        found = (part.overlap(row.step, pair) for part in reversed(self.parts))
+        return next(one for one in found if one is not None)
 
-    def _at(self, i: int) -> StepContact:
-        return self.rows[int(self.which[i])]
+
+def joined_contacts(
+    parts: Sequence[ContactPart], names: Sequence[tuple[str, str]], times: np.ndarray
+) -> FoundContacts:
+    """The contacts of all parts, steps first.
+
+    Where two parts meet, a pair that both measure is there once, as the later part has it.
+
+    Args:
+        names: the two bodies of each pair of the run. times: (n,) [s] of its steps.
+    """
+    steps = np.concatenate([part.steps + part.first for part in parts])
+    pairs = np.concatenate([part.places[part.pairs] for part in parts])
+    owners = np.repeat(np.arange(len(parts)), [len(part.steps) for part in parts])
+    order = np.lexsort((-owners, pairs, steps))
+    changes = (np.diff(steps[order]) != 0) | (np.diff(pairs[order]) != 0)
+    is_first = np.append(True, changes)[: len(order)]
+    row_of = np.empty(len(order), dtype=np.int64)
+    row_of[order] = np.cumsum(is_first) - 1
+    kept = order[is_first]
+    starts = np.cumsum([0, *(len(part.steps) for part in parts)])
+    worked = np.concatenate([one.worked + start for one, start in zip(parts, starts, strict=False)])
+    places = np.full(len(order), -1)
+    places[worked] = np.arange(len(worked))
+    by_part = np.lexsort((worked, owners[worked], steps[worked]))
+    rows = ContactRows(
+        names,
+        times,
+        steps[kept],
+        pairs[kept],
+        places[kept],
+        np.column_stack([row_of[worked], places[worked]])[by_part],
+        _joined_overlaps([part.known for part in parts]),
+        any(part.finder.work_out != "none" for part in parts),
+        tuple(dict.fromkeys(note for part in parts for note in part.finder.notes())),
+    )
+    return FoundContacts(rows, parts)
+
+
+def _joined_overlaps(known: Sequence[KnownOverlaps]) -> KnownOverlaps:
+    notes = tuple(dict.fromkeys(note for one in known for note in one.notes))
+    figures = np.concatenate([one.figures for one in known])
+    places = [[notes.index(note) for note in one.notes] for one in known]
+    figures["notes"] = np.concatenate(
+        [
+            np.array(place, dtype=np.int32)[one.figures["notes"]]
+            for place, one in zip(places, known, strict=True)
+        ]
+    )
+    starts = np.cumsum([0, *(len(one.figures) for one in known)]).tolist()
+    regions: dict[int, ClosedMesh] = {}
+    for one, start in zip(known, starts, strict=False):
+        regions |= {start + place: region for place, region in one.regions.items()}
+    return KnownOverlaps(figures, regions, notes)

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.simulate.holders import link_below, robots_below
 from clearance.simulate.physics.bullet import GRAVITY, SETTLE_TIME, simulated_motion
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
+from clearance.world.holders import link_below, robots_below
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.timeline import Timeline, timeline_of
 

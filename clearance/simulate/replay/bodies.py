@@ -15,16 +15,13 @@ from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.quaternions import quaternions_of
 from clearance.query.distance import distance
-from clearance.simulate.record import Record
+from clearance.record.record import Record
+from clearance.record.replay import LINK, MOVING, PART, STANDING, DrawnCarry
 from clearance.world.case import Case
 from clearance.world.clocks import clocks_of
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import OBSTACLE, BodyIndex
 from clearance.world.phase import Phase
-
-LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
-"""Kinds of bodies as they are drawn: links, obstacles that stand (a robot's own floor too), that move, and parts
-that are carried at some time."""
 
 SAME_PLACE = 1e-6
 """[m] A clearance that differs by less is that of the poses drawn."""
@@ -32,31 +29,6 @@ SAME_PLACE = 1e-6
 
 MOST_DRAWN = 100_000
 """Points of a cloud that are drawn at most: 1.2 MB."""
-
-
-@dataclass(frozen=True)
-class DrawnBody:
-    """A body as it is drawn: `kind` is one of those above, `i_shape` its place in the shapes, `i_robot` its
-    robot's or -1."""
-
-    name: str
-    kind: str
-    measured: bool
-    i_shape: int
-    i_robot: int = OBSTACLE
-
-
-@dataclass(frozen=True)
-class DrawnCarry:
-    """A part in the hands of a body from a time to another [s]; `i_part`, `i_by` are their places in the bodies,
-    `i_by` -1 where what carries it is not drawn."""
-
-    part: str
-    by: str
-    i_part: int
-    i_by: int
-    start: float
-    end: float
 
 
 @dataclass(frozen=True, eq=False)

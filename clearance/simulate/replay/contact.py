@@ -6,12 +6,13 @@ Not for: finding them (`contact.contacts`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.simulate.contact.sequence import StepContact
-from clearance.simulate.record import Record
+from clearance.query.contact import Contact
+from clearance.record.contact import StepContact
+from clearance.record.replay import DrawnContact
+from clearance.simulate.measured_run import MeasuredRun
 
 MOST_CONTACTS = 600
 """Most overlaps drawn: each is an object of its own in the viewer."""
@@ -20,29 +21,8 @@ MOST_TRIANGLES = 200_000
 """Most triangles of all regions together: about 5 MB on the page."""
 
 
-@dataclass(frozen=True)
-class DrawnContact:
-    """One overlap: in which frame, between whom, where its arrow starts and points (world frame, [m]).
-
-    `exact` and `volume_exact` are False where `penetration` [m] and `volume` [m^3] are upper bounds; lower ones
-    stand beside them.
-    """
-
-    frame: int
-    link: str
-    obstacle: str
-    penetration: float
-    penetration_at_least: float
-    volume: float
-    volume_at_least: float
-    exact: bool
-    volume_exact: bool
-    start: tuple[float, float, float]
-    direction: tuple[float, float, float]
-
-
 def drawn_contacts(
-    record: Record, kept: np.ndarray
+    run: MeasuredRun, kept: np.ndarray
 ) -> tuple[tuple[DrawnContact, ...], tuple[tuple[np.ndarray, np.ndarray], ...]]:
     """The overlaps that the run works out of the steps `kept`, and the region of each: vertices (n, 3) float32,
     triangles (m, 3) int32.
@@ -50,30 +30,26 @@ def drawn_contacts(
     Beyond `MOST_CONTACTS` or `MOST_TRIANGLES`, every second, third, … contact; always the deepest.
     """
     frames = {int(step): i for i, step in enumerate(kept)}
-    rows = [row for row in record.worked_out if row.step in frames]
-    chosen = _thinned(rows, record.deepest)
+    rows = [row for row in run.record.worked_out if row.step in frames]
+    chosen = _thinned(run, rows)
     return (
-        tuple(_drawn(row, frames[row.step]) for row in chosen),
+        tuple(_drawn(row, found, frames[row.step]) for row, found in chosen),
         tuple(
-            (
-                row.found.region.vertices.astype(np.float32),
-                row.found.region.triangles.astype(np.int32),
-            )
-            for row in chosen
+            (found.region.vertices.astype(np.float32), found.region.triangles.astype(np.int32))
+            for _, found in chosen
         ),
     )
 
 
-def _thinned(rows: Sequence[StepContact], deepest: StepContact | None) -> list[StepContact]:
-    every = max(1, -(-len(rows) // MOST_CONTACTS))
+def _thinned(run: MeasuredRun, rows: Sequence[StepContact]) -> list[tuple[StepContact, Contact]]:
+    every, deepest = max(1, -(-len(rows) // MOST_CONTACTS)), run.record.deepest
     while True:
         chosen = [row for i, row in enumerate(rows) if i % every == 0 or _same(row, deepest)]
-        if len(chosen) <= 2:
-            return chosen
         if len(chosen) <= MOST_CONTACTS:
-            n_triangles = sum(len(row.found.region.triangles) for row in chosen)
-            if n_triangles <= MOST_TRIANGLES:
-                return chosen
+            found = [(row, run.overlap(row)) for row in chosen]
+            n_triangles = sum(len(one.region.triangles) for _, one in found)
+            if len(chosen) <= 2 or n_triangles <= MOST_TRIANGLES:
+                return found
         every += 1
 
 
@@ -85,8 +61,7 @@ def _same(row: StepContact, other: StepContact | None) -> bool:
     )
 
 
-def _drawn(row: StepContact, frame: int) -> DrawnContact:
-    found = row.found
+def _drawn(row: StepContact, found: Contact, frame: int) -> DrawnContact:
     return DrawnContact(
         frame=frame,
         link=row.link,

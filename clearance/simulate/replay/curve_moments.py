@@ -5,18 +5,20 @@ Not for: the frames that are made of them (`frames`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from clearance.simulate.certificate import Certificate, motion_codes
+from clearance.record.certificate import Certificate, motion_codes
+from clearance.record.moment import Moment
+from clearance.record.names import pair_names
+from clearance.record.rows.blocks import blocks
+from clearance.record.rule_answer import standing_worst
 from clearance.simulate.measure import nearest_at
-from clearance.simulate.moment import Moment
-from clearance.simulate.names import pair_names
-from clearance.simulate.parts import blocks
-from clearance.simulate.record import Record
-from clearance.simulate.rule_answer import RuleAnswer, standing_worst
+from clearance.simulate.measured import ProvenMotion
+from clearance.simulate.measured_run import MeasuredRun
+from clearance.simulate.rule_pairs import MeasuredRule
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.tolerance import REACH
 from clearance.world.forest import positions_along
@@ -31,20 +33,21 @@ FINE = 200
 """Parts of a run; each has a frame, even if samples are farther apart in time."""
 
 
-def curve_moments(record: Record) -> list[Moment]:
+def curve_moments(run: MeasuredRun) -> list[Moment]:
     """The moments, in order of time, with the most critical and the nearest of all among them."""
+    record = run.record
     if record.certificate is None:
         return []
     told = [one for one in (record.nearest, record.worst) if one.between]
-    found = [*_evenly(record), *_dips(record), *told]  # of one moment the last counts
+    found = [*_evenly(run), *_dips(run.rules), *told]  # of one moment the last counts
     each = {(one.step, one.share): one for one in found}
     return [each[key] for key in sorted(each)]
 
 
-def _dips(record: Record) -> Iterator[Moment]:
+def _dips(rules: Sequence[MeasuredRule]) -> Iterator[Moment]:
     """The least moment of each interval that comes nearer than its ends, by the most critical rule."""
-    worst: dict[int, tuple[float, Certificate]] = {}
-    for rule in record.rules:
+    worst: dict[int, tuple[float, ProvenMotion]] = {}
+    for rule in rules:
         own = rule.certificate
         if own is None:
             continue
@@ -60,12 +63,12 @@ def _dips(record: Record) -> Iterator[Moment]:
         yield own.moment_of(step)
 
 
-def _first(worst: dict[int, tuple[float, Certificate]]) -> dict[int, tuple[float, Certificate]]:
+def _first(worst: dict[int, tuple[float, ProvenMotion]]) -> dict[int, tuple[float, ProvenMotion]]:
     """Those of some steps that stand worst, the worst first."""
     return {step: worst[step] for step in sorted(worst, key=lambda one: worst[one][0])[:MOST_DIPS]}
 
 
-def _is_dip(rule: RuleAnswer, certificate: Certificate, block: slice) -> np.ndarray:
+def _is_dip(rule: MeasuredRule, certificate: Certificate, block: slice) -> np.ndarray:
     """(k,) True where the motion is seen nearer than at both ends by more than the gap, or in contact."""
     clearance = rule.measurement.clearance[block.start : block.stop + 1]
     ends = np.where(np.isnan(clearance), np.inf, clearance)
@@ -76,11 +79,11 @@ def _is_dip(rule: RuleAnswer, certificate: Certificate, block: slice) -> np.ndar
     return (certificate.pair[block] >= 0) & (deeper | touches)
 
 
-def _evenly(record: Record) -> list[Moment]:
+def _evenly(run: MeasuredRun) -> list[Moment]:
     """Moments in intervals that are longer than a part of the run, by the most critical pair."""
-    times = record.motions[0].times
+    times = run.record.motions[0].times
     part = (times[-1] - times[0]) / FINE
-    answers = [(rule, one) for rule in record.rules if rule.pairs for one in rule.pairs.answers]
+    answers = [(rule, one) for rule in run.rules if rule.pairs for one in rule.pairs.answers]
     if part <= 0.0 or not all(answer.section.tied for _, answer in answers):
         return []
     found = []
@@ -101,7 +104,7 @@ def _evenly(record: Record) -> list[Moment]:
 
 
 def nearest_moments(
-    rule: RuleAnswer, answer: SectionAnswer, step: int, shares: np.ndarray
+    rule: MeasuredRule, answer: SectionAnswer, step: int, shares: np.ndarray
 ) -> list[Moment]:
     """The nearest pair of a section at some shares (k,) of the interval after a step of the run."""
     section, phase = answer.section, answer.section.phase

@@ -12,15 +12,18 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import ArrayLike
 
-from clearance.simulate.moment import Moment
-from clearance.simulate.name_codes import codes_of as codes_of_names
-from clearance.simulate.parts import blocks
-from clearance.simulate.record import Record
+from clearance.record.moment import Moment
+from clearance.record.record import Record
+from clearance.record.row_status import (
+    RowStatus,
+    between_of,
+    codes_of_moments,
+    rule_places,
+    status_codes_of,
+)
+from clearance.record.rows.blocks import blocks
+from clearance.record.rows.resumable import MeasuredRows
 from clearance.simulate.replay.bodies import FramePlace
-from clearance.simulate.row_status import RowStatus, codes_of_moments, rule_places
-from clearance.simulate.rows.resumable import MeasuredRows
-from clearance.simulate.status import STATUSES
-from clearance.simulate.steps import between_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +61,7 @@ class ReplayFrames:
             "between": (np.zeros(len(kept), dtype=np.uint8), 1),
             "known": (known.astype(np.uint8), 1),
             "status": (
-                np.where(is_shown, own, codes_of(table)),
+                np.where(is_shown, own, status_codes_of(table)),
                 codes_of_moments(record, list(moments)),
             ),
             "rule": (
@@ -126,9 +129,3 @@ def _lines(record: Record, steps: pa.Table) -> np.ndarray:
     points = record.sides[2:]
     lines = np.column_stack([steps[name].to_numpy() for name in points]).astype(np.float64)
     return np.where(np.isnan(lines), np.tile(record.worst_sample.point_link, 2), lines)
-
-
-def codes_of(steps: pa.Table) -> np.ndarray:
-    """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    found = codes_of_names(steps["status"], [str(status) for status in STATUSES])
-    return np.maximum(found, 0).astype(np.uint8)

@@ -22,10 +22,10 @@ from clearance.geometry.polytope import Polytope
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
 from clearance.simulate.certify import path_of
-from clearance.simulate.holders import holding_link
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.extents import own_floor
 from clearance.world.forest import carried_by, forest_of, link_poses_at
+from clearance.world.holders import holding_link
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
 

@@ -8,7 +8,6 @@ Not for: whether the robots collide at one time.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -20,55 +19,14 @@ from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
 from clearance.query.common_point import common_point
-from clearance.simulate.workspace.robot_in_cell import RobotInCell, robots_in_cell
+from clearance.record.workspace import SharedLinks, Workspace
 from clearance.simulate.workspace.swept_pieces import SweptPiece, swept_pieces
 from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
+from clearance.world.robot_in_cell import RobotInCell, robots_in_cell
 
 WITHIN = 0.005
 """[m] Stretches of the sweep, by default: the pieces then stand out of the sweep by about as much."""
-
-
-@dataclass(frozen=True)
-class SharedLinks:
-    """Two links of different robots, or parts that they have in hand, with swept pieces in common."""
-
-    robot_a: str
-    link_a: str
-    robot_b: str
-    link_b: str
-
-
-@dataclass(frozen=True, eq=False)
-class Workspace:
-    """What robots share.
-
-    Attributes:
-        robots: each with its name. region: the surface of what more than one passes through, world frame.
-        volume: [m^3] of the region: an upper bound. links: which links meet there.
-        n_pieces: convex pieces of each robot's sweep. leaves: [m] the most a piece was made wider by.
-        excluded: links that were left out, `robot/link`.
-        carried: names of robots that stand on another one, and of that: what such two share is not counted.
-    """
-
-    robots: tuple[RobotInCell, ...]
-    region: ClosedMesh
-    links: tuple[SharedLinks, ...]
-    n_pieces: tuple[int, ...]
-    leaves: float
-    within: float
-    excluded: tuple[str, ...]
-    carried: tuple[tuple[str, str], ...] = ()
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """A name for each robot."""
-        return tuple(robot.name for robot in self.robots)
-
-    @property
-    def volume(self) -> float:
-        """[m^3] an upper bound."""
-        return self.region.volume
 
 
 def shared_workspace(

@@ -76,8 +76,7 @@ def test_what_a_robot_holds_is_carried_all_the_time(tmp_path):
     told = "\n".join(case.notes)
     assert "attached objects of the scene's file are carried all the time: tool by tip" in told
     assert "touch_links that are not there are left out: finger_of_another" in told
-    record = cl.check(case).record
-    apart = {(one.link, one.obstacle) for one in record.pair_minima}
+    apart = {(one.link, one.obstacle) for one in cl.check(case).pair_minima}
     assert apart == {("base", "tool"), ("post", "tool"), ("upper", "post")}
 
 

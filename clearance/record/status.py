@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.record.measurement import Measurement
 from clearance.world.case import Limits
-
-if TYPE_CHECKING:
-    from clearance.simulate.measurement import Measurement
 
 
 class Status(StrEnum):

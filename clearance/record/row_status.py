@@ -1,6 +1,6 @@
 """How the rows of a record stand: each step by itself, and the motion to the next, against the rule that is worst.
 
-Not for: what a rule comes to as a whole (`record.RuleAnswer`).
+Not for: what a rule comes to as a whole (`rule_answer`).
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import pyarrow as pa
 
-from clearance.simulate.certificate import motion_codes
-from clearance.simulate.moment import Moment
-from clearance.simulate.name_codes import codes_of
-from clearance.simulate.record import Record
-from clearance.simulate.status import STATUSES, Status, sample_codes
-from clearance.simulate.steps import between_of
+from clearance.record.certificate import motion_codes
+from clearance.record.moment import Moment
+from clearance.record.name_codes import codes_of
+from clearance.record.record import Record
+from clearance.record.status import STATUSES, Status, sample_codes
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,12 +78,6 @@ class RowStatus:
         """(n,) the place among the rules of what judged each step."""
         return rule_places(self.record)
 
-    def moment_between(self, step: int) -> Moment:
-        """The moment after a step that the motion to the next stands worst by."""
-        certificate = self.record.rules[int(self.rule_between[step])].certificate
-        assert certificate is not None
-        return certificate.moment_of(step)
-
 
 def rule_places(record: Record) -> np.ndarray:
     """(n,) the place among the record's rules of what judged each step."""
@@ -97,3 +91,24 @@ def codes_of_moments(record: Record, moments: list[Moment]) -> np.ndarray:
     """(k,) how some moments stand against what judges them, as indices into `STATUSES`."""
     codes = [STATUSES.index(Status(record.status_of(moment))) for moment in moments]
     return np.array(codes, dtype=np.uint8)
+
+
+def between_of(steps: pa.Table) -> np.ndarray:
+    """(n,) True where the status in a table of steps is that of the motion to the next step."""
+    if "between" not in steps.column_names:
+        return np.zeros(steps.num_rows, dtype=bool)
+    return steps["between"].to_numpy()
+
+
+def status_codes_of(steps: pa.Table) -> np.ndarray:
+    """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
+    found = codes_of(steps["status"], [str(status) for status in STATUSES])
+    return np.maximum(found, 0).astype(np.uint8)
+
+
+def status_counts(record: Record) -> dict[str, int]:
+    """How many steps have each status."""
+    names = [str(name) for name in STATUSES]
+    codes = codes_of(record.steps["status"], names)
+    counts = np.bincount(codes[codes >= 0], minlength=len(names))
+    return dict(zip(names, counts.tolist(), strict=True))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.simulate.moment import Moment
+from clearance.record.moment import Moment
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Limits
 from clearance.world.notice import Notice
@@ -26,9 +25,9 @@ class Certificate:
             nearer than at the steps was.
         gap: [m] how far apart the two were allowed to stay.
         tally: counters by name.
-        moment_of: measures the pair of an interval at that moment.
         notices: what a reader must know of it.
         touching: (n,) where bodies touch, if padding has lessened the bounds; None without padding.
+        worst: the moment of the least distance seen between steps; None if all were nearest at a step.
     """
 
     lower_bound: np.ndarray
@@ -37,9 +36,9 @@ class Certificate:
     pair: np.ndarray
     gap: float
     tally: dict[str, int]
-    moment_of: Callable[[int], Moment]
     notices: tuple[Notice, ...] = ()
     touching: np.ndarray | None = None
+    worst: Moment | None = None
 
     def touches(self, steps: slice) -> np.ndarray:
         """(k,) where bodies are seen to touch, at some steps or on the way to the next."""
@@ -55,11 +54,6 @@ class Certificate:
         """The first interval of the least distance seen between steps; None if all were nearest at a step."""
         seen = np.flatnonzero(self.pair >= 0)
         return int(seen[np.argmin(self.upper_bound[seen])]) if len(seen) else None
-
-    @cached_property
-    def worst(self) -> Moment | None:
-        """The moment of that distance."""
-        return None if self.nearest_between is None else self.moment_of(self.nearest_between)
 
 
 def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:

@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from clearance.simulate.record import Record
-from clearance.simulate.sections import section_plan
-from clearance.simulate.steps import CUT
+from clearance.record.record import CUT, Record
 from clearance.world.case import PlacedRobot
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
@@ -60,7 +58,7 @@ def _measured(record: Record, i_robot: int) -> tuple[set[frozenset[str]], set[fr
     case = record.case
     out = {(one.link, one.obstacle): one.reason for one in record.unmeasured}
     measured, not_always = set(), set()
-    for pair in section_plan(record.timeline).pairs:
+    for pair in record.pairs:
         if pair.a.i_robot != i_robot or pair.b.i_robot != i_robot:
             continue
         why = out.get((pair.a.name_in(case), pair.b.name_in(case)))

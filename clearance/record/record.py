@@ -2,44 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 import pyarrow as pa
 
-from clearance.simulate.budget_answer import RuleBudget
-from clearance.simulate.certificate import Certificate
-from clearance.simulate.contact.sequence import ContactSequence, StepContact
-from clearance.simulate.every_pair import EveryPair
-from clearance.simulate.moment import Moment
-from clearance.simulate.names import columns_of, sides_in
-from clearance.simulate.rule_answer import RuleAnswer, standing_worst, worst_of
-from clearance.simulate.status import status_of
+from clearance.record.budget import RuleBudget
+from clearance.record.certificate import Certificate
+from clearance.record.contact import ContactRows, StepContact
+from clearance.record.every_pair import EveryPair
+from clearance.record.moment import Moment
+from clearance.record.names import columns_of, sides_in
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import status_of
+from clearance.record.steps import StepColumns
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice
+from clearance.world.pairs import Pair
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import Timeline
 
-PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
-"""Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
-
-
-class PairMeasurer(Protocol):
-    """Measures and proves some pairs of a run alone."""
-
-    def __call__(
-        self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()
-    ) -> tuple[RuleAnswer, ...]:
-        """What the rules come to of the pairs that are meant.
-
-        Args:
-            need: as of the run if it is not given. levels: [m] that are to be decided beside the limits.
-        """
+CUT = "the paper's rules cut every polygon pair at every step"
+"""Why the paper's method says nothing of a pair."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +120,6 @@ class ProfileAnswer:
     point_sketch: tuple[float, float]
     link: str
     step: int
-    picture: Callable[[], str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,19 +142,21 @@ class Samples:
 
     Attributes:
         motions: one for each of `case.robots`.
-        table: of `steps`, or what makes it, where it may never be looked at.
+        table: of `steps`, or what it is made of, where it may never be read.
         unmeasured: links and pairs that are left out, and why.
     """
 
     case: Case
     motions: tuple[Motion, ...]
-    table: pa.Table | Callable[[], pa.Table]
+    table: pa.Table | StepColumns
     unmeasured: tuple[Omission, ...]
 
     @cached_property
     def steps(self) -> pa.Table:
         """One row a step, as in `Record`."""
-        return self.table() if callable(self.table) else self.table
+        if isinstance(self.table, StepColumns):
+            return pa.concat_tables(self.table.batches())
+        return self.table
 
     @cached_property
     def sides(self) -> tuple[str, ...]:
@@ -182,7 +171,7 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Record(Samples):
-    """The measured run of one case.
+    """The measured run of one case: data, and nothing that measures.
 
     Attributes:
         motions: one for each of `case.robots`.
@@ -197,29 +186,30 @@ class Record(Samples):
             not of the step; else lower_bound of the step where `need` leaves clearances unknown (null);
             penetration [m] of the deepest pair in contact and volume [m3] of all, both null here:
             `Run.steps` fills them in.
-        pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
+        tally: counters by name (pairs, queries, nodes, polygons, …).
+        rules: what each rule comes to; one, "default", where the case has no rules.
+        timeline: when what moves how. pairs: all that were measured at some time, each once.
+        worst_sample: the step that stands worst against what judges it; without rules, the first of least
+            clearance. In contact it is the deepest, as far as depth is known.
+        worst: the same of the whole motion, between two steps if a certificate has found a lesser moment there.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
-        tally: counters by name (pairs, queries, nodes, polygons, …).
-        contacts: every pair in contact at every step, steps first; what the run works out of them is worked out
-            when it is first looked at.
+        contacts: every pair in contact at every step, steps first, with the overlaps that were asked for.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
-        rules: what each rule comes to; one, "default", where the case has no rules.
-        timeline: when what moves how.
         depths_asked: whether it is to be told how deep contact is.
-        of_pairs: what the rules come to of some of the pairs alone; None where no more can be asked.
         today: the day that waivers are held against; None where the case has none.
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic", "simulated" or "recorded". commanded: of recorded motion, in its place.
-        budget_of_pairs: `budget` of some of the pairs alone; None where no more can be asked.
         body_gaps: whether gaps that people may be caught in are to be told.
     """
 
-    pair_minima: Sequence[PairMinimum]
     tally: dict[str, int]
     rules: tuple[RuleAnswer, ...]
     timeline: Timeline
+    pairs: tuple[Pair, ...]
+    worst_sample: Moment
+    worst: Moment
     method: str = "exact"
     paper_tolerance: float | None = None
     motion_kind: str = "kinematic"
@@ -227,17 +217,15 @@ class Record(Samples):
     certificate: Certificate | None = None
     need: str = "steps"
     every_pair: EveryPair | None = None
-    notes: tuple[str, ...] = field(default_factory=tuple)
+    notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
-    contacts: ContactSequence | tuple[()] = ()
+    contacts: ContactRows | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
     depths_asked: bool = False
-    of_pairs: PairMeasurer | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
     commanded: CommandedCourse | None = None
     body_gaps: bool = False
-    budget_of_pairs: Callable[[PairTest], tuple[RuleBudget, ...]] | None = None
 
     @property
     def basis(self) -> str:
@@ -246,80 +234,25 @@ class Record(Samples):
             return "pose"
         return "samples" if self.certificate is None else "motion"
 
-    def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
-        """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
-        if isinstance(self.contacts, ContactSequence) and len(self.contacts):
-            self.contacts.work_out(progress)
-
     @property
     def worked_out(self) -> Sequence[StepContact]:
         """The contacts whose depth the run works out: the deepest moment of each event, all, or none."""
-        return self.contacts.worked_out if isinstance(self.contacts, ContactSequence) else ()
-
-    @property
-    def depths_known(self) -> bool:
-        """True if the run works out how deep contacts are, of one of them at least."""
-        return isinstance(self.contacts, ContactSequence) and self.contacts.are_asked
+        return self.contacts.worked_out if isinstance(self.contacts, ContactRows) else ()
 
     @property
     def contact_notes(self) -> tuple[str, ...]:
         """What stands for the bodies in contact, where it is not they themselves."""
-        return self.contacts.notes if isinstance(self.contacts, ContactSequence) else ()
+        return self.contacts.notes if isinstance(self.contacts, ContactRows) else ()
 
     @cached_property
     def deepest(self) -> StepContact | None:
         """The first of the contacts worked out of greatest penetration; None without any."""
-        return max(self.worked_out, key=lambda row: row.numbers.penetration, default=None)
+        return max(self.worked_out, key=lambda row: row.penetration, default=None)
 
     @property
     def worst_step(self) -> int:
         """The step of `worst_sample`."""
         return self.worst_sample.step
-
-    @cached_property
-    def worst_sample(self) -> Moment:
-        """The step that stands worst against what judges it; without rules, the first of least clearance.
-
-        In contact it is the deepest, as far as depth is known.
-        """
-        worst = standing_worst((rule, rule.worst_sample) for rule in self.rules)
-        assert worst is not None
-        return self._deepest_of(self.rules, worst)
-
-    @cached_property
-    def worst(self) -> Moment:
-        """The same of the whole motion, between two steps if a certificate has found a lesser moment there."""
-        worst = worst_of(self.rules)
-        assert worst is not None
-        known = self.worst_sample if worst.touches and self.worst_sample.depth else worst
-        return self._deeper_between(self.rules, known)
-
-    def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
-        """`worst` as if there were no other rules than some, or than some of the pairs of these."""
-        worst = worst_of(rules)
-        if worst is None:
-            return None
-        return self._deeper_between(rules, self._deepest_of(rules, worst))
-
-    def _deepest_of(self, rules: Sequence[RuleAnswer], worst: Moment) -> Moment:
-        """The deepest of the moments in contact in place of one of them, where depth is known."""
-        if not worst.touches or not self.depths_known:
-            return worst
-        from clearance.simulate.deepest import deepest_moment
-
-        return deepest_moment(self.worked_out, rules) or worst
-
-    def _deeper_between(self, rules: Sequence[RuleAnswer], known: Moment) -> Moment:
-        """The deepest moment between two steps in place of one in contact, if it is deeper and depth is asked."""
-        if not known.touches or not self.depths_asked or self.certificate is None:
-            return known
-        from clearance.simulate.deepest_between import deepest_between
-
-        found = deepest_between(rules)
-        if found is None or found.depth is None:
-            return known
-        deeper = known.depth is None or found.depth.penetration > known.depth.penetration
-        return found if deeper else known
 
     @cached_property
     def nearest(self) -> Moment:

@@ -7,8 +7,8 @@ import math
 from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
-from clearance.simulate.moment import Depth, Moment
-from clearance.simulate.record import PairMinimum
+from clearance.record.moment import Depth, Moment
+from clearance.record.record import PairMinimum
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 

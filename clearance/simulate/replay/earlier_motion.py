@@ -6,28 +6,14 @@ for: what the change is (`gains`).
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from clearance.simulate.record import Record
+from clearance.record.record import Record
+from clearance.record.replay import EarlierBody, Replay
 from clearance.simulate.replay.bodies import FramePlace, bodies_of, packed, placed_bodies
-from clearance.simulate.replay.replay import Replay
 
 APART = 1e-6
 """[m] and, of unit quaternions, [-]: a body that was off by less is not drawn twice."""
-
-
-class EarlierBody(NamedTuple):
-    """Where a body of a replay was before.
-
-    Attributes:
-        i_body: its place in the replay's bodies. poses: as those of `Replay`. shown: (frames,) uint8.
-    """
-
-    i_body: int
-    poses: np.ndarray
-    shown: np.ndarray
 
 
 def earlier_motion(earlier: Record, replay: Replay) -> list[EarlierBody]:

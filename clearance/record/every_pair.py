@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 import pyarrow as pa
 
-from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
-from clearance.simulate.parts import BLOCK
+from clearance.record.names import LINK_AND_OBSTACLE, SIDES
+from clearance.record.rows.blocks import BLOCK
 from clearance.world.rules import DEFAULT
 
 

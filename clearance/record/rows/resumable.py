@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import unwritable
-from clearance.simulate.rows.folder import clear, own_folder, take_away
+from clearance.record.rows.folder import clear, own_folder, take_away
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -170,7 +170,7 @@ class ResumableRows(MeasuredRows):
     def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
         if self._closed:
             return super().table(name, batches)
-        from clearance.simulate.rows.table_file import mapped_table
+        from clearance.record.rows.table_file import mapped_table
 
         table, mapped = mapped_table(self._letting_go(batches), self.place / f"{name}.arrow")
         self._tables.append(mapped)

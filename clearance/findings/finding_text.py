@@ -12,7 +12,7 @@ from clearance.findings.finding import (
     WAIVED_TOLERANCES,
     Finding,
 )
-from clearance.report.wording import (
+from clearance.record.wording import (
     gap_text,
     limit_mm,
     mm,

@@ -8,16 +8,22 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
+from clearance.findings.finding_text import finding_line, waived_lines
+from clearance.findings.judgement import Judgement
+from clearance.findings.self_clearance import self_clearance_lines
 from clearance.findings.standing import code_of, why_undecided
-from clearance.report.finding_text import finding_line, waived_lines
-from clearance.report.self_clearance import self_clearance_lines
-from clearance.report.wording import (
+from clearance.findings.tolerance_lines import tolerance_lines
+from clearance.record.certificate import contact_is_open
+from clearance.record.moment import Moment
+from clearance.record.record import ProfileAnswer, Record
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import STATUSES, Status
+from clearance.record.wording import (
     clock_text,
     count,
     depth_text,
@@ -29,19 +35,11 @@ from clearance.report.wording import (
     of_rule,
     span_text,
 )
-from clearance.simulate.certificate import contact_is_open
-from clearance.simulate.moment import Moment
-from clearance.simulate.record import ProfileAnswer, Record
-from clearance.simulate.rule_answer import RuleAnswer
-from clearance.simulate.status import STATUSES, Status
 from clearance.tolerance import SEEN_AT_LEVEL
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.plausible_recordings import not_measured
 from clearance.world.rules import DEFAULT
-
-if TYPE_CHECKING:
-    from clearance.findings.judgement import Judgement
 
 MOTION, SAMPLES, POSE = "motion", "samples", "pose"
 """What a verdict rests on: a proof for the continuous motion, the samples of the trajectory only, or one pose."""
@@ -173,20 +171,26 @@ def _with_tolerances(text: str, tolerances: str, not_proven: str) -> str:
     return f"{not_proven} with tolerances{accepted}, {text} without"
 
 
-def verdict_of(record: Record) -> Verdict:
-    """The verdict of a record."""
+def verdict_of(
+    record: Record, judgement: Judgement | None = None, of_tolerances: Sequence[Finding] = ()
+) -> Verdict:
+    """The verdict of a record.
+
+    Args:
+        judgement: with the waivers of the case; None where it has none.
+        of_tolerances: the limits that are not proven with the tolerances of the case, as `of_budget` finds them.
+    """
     notices = record.notices
     suspects = open_suspects(record)
-    judgement = _judgement(record)
     measured = _measured(record, judgement)
     check = record.cross_check
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
     unproven = _unproven(record, judging)
-    open_limits, with_tolerances = _of_tolerances(record, judgement)
-    reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
-    of_tolerances = [finding_line(finding) for finding in open_limits]
-    reasons = [*of_tolerances, *reasons] if measured in _PASSING else [*reasons, *of_tolerances]
+    worst = record.worst if judgement is None else judgement.worst
+    reasons = [reason for reason in (_occurring(record, worst), unproven) if reason is not None]
+    open_lines = [finding_line(finding) for finding in of_tolerances]
+    reasons = [*open_lines, *reasons] if measured in _PASSING else [*reasons, *open_lines]
     stale = () if judgement is None else judgement.faults
     reasons += stale
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
@@ -197,7 +201,7 @@ def verdict_of(record: Record) -> Verdict:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
-        status=SUSPECT if suspects else _less_open(measured, open_limits, stale),
+        status=SUSPECT if suspects else _less_open(measured, of_tolerances, stale),
         measured=measured,
         basis=record.basis,
         reasons=tuple(reasons),
@@ -213,22 +217,10 @@ def verdict_of(record: Record) -> Verdict:
         waived=() if judgement is None else waived_lines(judgement),
         n_waivers=0 if judgement is None else len(judgement.covering),
         stale=stale,
-        tolerances=_tolerances(record.case, measured, open_limits),
-        with_tolerances=with_tolerances,
+        tolerances=_tolerances(record.case, measured, of_tolerances),
+        with_tolerances=tolerance_lines(record),
         at_level=_at_level(judging),
     )
-
-
-def _of_tolerances(
-    record: Record, judgement: Judgement | None
-) -> tuple[tuple[Finding, ...], tuple[str, ...]]:
-    """The limits that are not proven with the case's tolerances, and what those leave, in words."""
-    if record.case.tolerance is None:
-        return (), ()
-    from clearance.findings.of_budget import of_budget
-    from clearance.report.tolerances import tolerance_lines
-
-    return of_budget(record, judgement), tolerance_lines(record)
 
 
 def _less_open(measured: str, open_limits: Sequence[Finding], stale: Sequence[str]) -> str:
@@ -245,15 +237,6 @@ def _tolerances(case: Case, measured: str, open_limits: Sequence[Finding]) -> st
     if not open_limits:
         return KEPT
     return ACCEPTED if case.tolerance.unproven_ok else NOT_PROVEN
-
-
-def _judgement(record: Record) -> Judgement | None:
-    """What the waivers of the case make of it; None where it has none."""
-    if not record.case.waivers:
-        return None
-    from clearance.findings.judgement import judgement_of
-
-    return judgement_of(record)
 
 
 def _measured(record: Record, judgement: Judgement | None) -> str:
@@ -294,9 +277,8 @@ def _judged_by(moment: Moment) -> str:
     return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
 
 
-def _occurring(record: Record, judging: Sequence[RuleAnswer]) -> str | None:
+def _occurring(record: Record, worst: Moment | None) -> str | None:
     """The moment that stands worst of what decides, if it is below a limit."""
-    worst = record.worst if judging is record.rules else record.worst_among(judging)
     if worst is None or record.status_of(worst) == Status.CLEAR:
         return None
     return moment_line(record, worst)

@@ -5,42 +5,36 @@ Not for: runs that are not certified (`intervals`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from clearance.simulate.moment import Moment
-from clearance.simulate.record import Record
-from clearance.simulate.rule_answer import standing_worst
-from clearance.simulate.stretches import LEVELS, RuleStretches, joined_spans
+from clearance.record.levels import LEVELS
+from clearance.record.moment import Moment
+from clearance.record.rule_answer import standing_worst
+from clearance.simulate.rule_pairs import MeasuredRule
+from clearance.simulate.stretches import RuleStretches, joined_spans
 
 Span = tuple[float, float]
-
-_KNOWN: WeakKeyDictionary[Record, MotionLevels] = WeakKeyDictionary()
-
-
-def motion_levels(record: Record) -> MotionLevels | None:
-    """The stretches of a record, found once; None where only samples are known."""
-    certified = all(rule.pairs and rule.certificate for rule in record.rules)
-    if record.certificate is None or not certified or record.need == "minimum":
-        return None
-    if record not in _KNOWN:
-        _KNOWN[record] = MotionLevels(record)
-    return _KNOWN[record]
 
 
 @dataclass(frozen=True, eq=False)
 class MotionLevels:
-    """The stretches below each level, over all rules."""
+    """The stretches below each level, over all rules.
 
-    record: Record
+    Attributes:
+        times: (n,) [s] of the steps.
+    """
+
+    times: np.ndarray
+    rules: Sequence[MeasuredRule]
 
     @cached_property
     def _rules(self) -> dict[str, list[RuleStretches]]:
-        return {level: [RuleStretches(one, level) for one in self.record.rules] for level in LEVELS}
+        return {level: [RuleStretches(one, level) for one in self.rules] for level in LEVELS}
 
     @cached_property
     def spans(self) -> dict[str, list[Span]]:
@@ -50,11 +44,6 @@ class MotionLevels:
             joined = joined_spans(np.concatenate([rule.spans for rule in rules]))
             found[level] = [(float(start), float(end)) for start, end in joined]
         return found
-
-    @property
-    def times(self) -> np.ndarray:
-        """(n,) [s] of the steps."""
-        return self.record.motions[0].times
 
     def steps_in(self, span: Span) -> np.ndarray:
         """The steps in a span; the one before it where there is none."""

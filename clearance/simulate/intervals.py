@@ -10,18 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from clearance.report.motion_intervals import MotionLevels, Span, motion_levels, told_moment
-from clearance.simulate.name_codes import codes_of as codes_of_names
-from clearance.simulate.record import Record
-from clearance.simulate.replay.frames import codes_of
-from clearance.simulate.row_status import RowStatus
-from clearance.simulate.status import STATUSES
+from clearance.record.levels import LEVELS, Event, Interval
+from clearance.record.record import Record
+from clearance.record.row_status import RowStatus, status_codes_of
+from clearance.simulate.measured_run import MeasuredRun
+from clearance.simulate.motion_levels import MotionLevels, Span, told_moment
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
 
-LEVELS = {"below_warn": 1, "below_fail": 2, "contact": 3}
-"""Each level and the least status code that belongs to it."""
 
 _ENTERED = {
     "below_warn": "warn limit entered",
@@ -38,73 +35,26 @@ _LEFT = {
 _TOLD = ("time", "clearance", "link", "obstacle", "rule")
 
 
-@dataclass(frozen=True)
-class Interval:
-    """A longest stretch of the motion at one level; of steps where only they are known.
-
-    Attributes:
-        first_step, last_step: both inside; the one before it where no step is.
-        start, end: [s] before and after, the motion is proven to be above the level; of steps first and last.
-        worst_step: the first step that stands worst, or the one before that moment; worst_time [s], clearance
-            [m], the two bodies (link, obstacle) and the rule that judges them are of that moment.
-        between: that moment is between two steps.
-    """
-
-    first_step: int
-    last_step: int
-    start: float
-    end: float
-    worst_step: int
-    worst_time: float
-    between: bool
-    clearance: float
-    link: str
-    obstacle: str
-    rule: str
-
-
-@dataclass(frozen=True)
-class Event:
-    """When a level was entered or left; of steps the first at it, and the first after it.
-
-    Attributes:
-        step: the step, or the one before the moment. between: whether it is between steps.
-        clearance: [m] of the pair that is nearest then; unknown, and so are the names, where a bound decides.
-        rule: what judges it.
-        least: [m] until the level is left again; None where it is left.
-    """
-
-    step: int
-    time: float  # [s]
-    between: bool
-    what: str
-    clearance: float | None
-    link: str | None
-    obstacle: str | None
-    rule: str
-    least: float | None = None
-
-
-def intervals(record: Record) -> dict[str, list[Interval]]:
+def intervals(run: MeasuredRun) -> dict[str, list[Interval]]:
     """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
     known."""
-    motion = motion_levels(record)
+    record, motion = run.record, run.motion_levels
     if motion is not None:
         return {
             level: [_motion_interval(motion, level, span) for span in spans[:MOST_LISTED]]
             for level, spans in motion.spans.items()
         }
-    seen = _Levels.of(record)
+    seen = _Levels.of(run)
     return {
         level: [seen.interval(int(a), int(b)) for a, b in runs[:MOST_LISTED]]
         for level, runs in _level_runs(record).items()
     }
 
 
-def events(record: Record) -> list[Event]:
+def events(run: MeasuredRun) -> list[Event]:
     """The first `MOST_LISTED` enterings and leavings of a level in order of time; on one step, entering the wider
     level first. None where only the least step is known."""
-    motion = motion_levels(record)
+    record, motion = run.record, run.motion_levels
     if motion is not None:
         return _motion_events(motion)
     steps, order, what, stops = [], [], [], []
@@ -116,7 +66,7 @@ def events(record: Record) -> list[Event]:
         what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
     step, stop = np.concatenate(steps), np.concatenate(stops)
     first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
-    seen = _Levels.of(record)
+    seen = _Levels.of(run)
     codes = np.concatenate(order)
     return [seen.event(int(step[i]), int(stop[i]), int(codes[i]), what[i]) for i in first]
 
@@ -163,9 +113,9 @@ def _motion_events(motion: MotionLevels) -> list[Event]:
     return found
 
 
-def not_listed(record: Record) -> dict[str, int]:
+def not_listed(run: MeasuredRun) -> dict[str, int]:
     """How many intervals of each level and how many events `intervals` and `events` leave out."""
-    motion = motion_levels(record)
+    record, motion = run.record, run.motion_levels
     if motion is not None:
         counted = {level: len(spans) for level, spans in motion.spans.items()}
         ends = [span[1] for spans in motion.spans.values() for span in spans]
@@ -178,15 +128,15 @@ def not_listed(record: Record) -> dict[str, int]:
     return {name: max(0, number - MOST_LISTED) for name, number in counted.items()}
 
 
-def extent(record: Record, level: str) -> tuple[int, int]:
+def extent(run: MeasuredRun, level: str) -> tuple[int, int]:
     """How many intervals of a level there are, and of how many steps, not counting those of which only the motion
     to the next is at that level."""
-    motion = motion_levels(record)
+    record, motion = run.record, run.motion_levels
     if motion is not None:
         n_steps = int((RowStatus(record).of_samples() >= LEVELS[level]).sum())
         return len(motion.spans[level]), n_steps
     runs = _level_runs(record)[level]
-    seen = _Levels.of(record)
+    seen = _Levels.of(run)
     n_between = int((seen.rows.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())
     return len(runs), int((runs[:, 1] - runs[:, 0]).sum()) - n_between
 
@@ -200,18 +150,10 @@ def _inside(runs: np.ndarray, record: Record) -> np.ndarray:
 
 def _level_runs(record: Record) -> dict[str, np.ndarray]:
     """For each of `LEVELS` (k, 2) first step and step after the last of its runs."""
-    codes = codes_of(record.steps)
+    codes = status_codes_of(record.steps)
     if record.need == "minimum":
         codes = codes[:0]
     return {level: _runs(codes >= least) for level, least in LEVELS.items()}
-
-
-def status_counts(record: Record) -> dict[str, int]:
-    """How many steps have each status."""
-    names = [str(name) for name in STATUSES]
-    codes = codes_of_names(record.steps["status"], names)
-    counts = np.bincount(codes[codes >= 0], minlength=len(names))
-    return dict(zip(names, counts.tolist(), strict=True))
 
 
 def _runs(inside: np.ndarray) -> np.ndarray:
@@ -228,34 +170,36 @@ class _Levels:
         own: (n,) the status code of each step by itself.
     """
 
-    record: Record
+    run: MeasuredRun
     rows: RowStatus
     own: np.ndarray
 
     @staticmethod
-    def of(record: Record) -> _Levels:
-        rows = RowStatus(record)
-        codes = codes_of(record.steps)
+    def of(run: MeasuredRun) -> _Levels:
+        rows = RowStatus(run.record)
+        codes = status_codes_of(run.record.steps)
         own = codes if not rows.between.any() else np.where(rows.between, rows.of_samples(), codes)
-        return _Levels(record, rows, own)
+        return _Levels(run, rows, own)
 
     def moment(self, step: int) -> dict[str, Any]:
         """What is known of a step, or of the moment after it that gives it its status."""
         if not self.rows.between[step]:
             return self.sample(step)
-        moment = self.rows.moment_between(step)
+        certificate = self.run.rules[int(self.rows.rule_between[step])].certificate
+        assert certificate is not None
+        moment = certificate.moment_of(step)
         return {name: getattr(moment, name) for name in _TOLD}
 
     def sample(self, step: int) -> dict[str, Any]:
         """What is known of a step."""
-        row = self.record.steps.slice(step, 1).to_pylist()[0]
-        columns = ("time", "clearance", *self.record.sides[:2], "rule")
+        row = self.run.record.steps.slice(step, 1).to_pylist()[0]
+        columns = ("time", "clearance", *self.run.record.sides[:2], "rule")
         return {name: row[column] for name, column in zip(_TOLD, columns, strict=True)}
 
     def interval(self, start: int, stop: int) -> Interval:
         worst = start + self._worst(slice(start, stop))
         told = self.moment(worst)
-        times = self.record.motions[0].times
+        times = self.run.record.motions[0].times
         between = self.rows.between
         last = min(stop, len(times) - 1) if between[stop - 1] else stop - 1
         return Interval(
@@ -272,8 +216,10 @@ class _Levels:
     def _worst(self, steps: slice) -> int:
         """The first of some rows that stands worst, and of those alike is nearest to the fail limit."""
         margin = self.rows.margin[steps]
-        if len(self.record.rules) > 1:
-            codes = codes_of(self.record.steps.slice(steps.start, steps.stop - steps.start))
+        if len(self.run.record.rules) > 1:
+            codes = status_codes_of(
+                self.run.record.steps.slice(steps.start, steps.stop - steps.start)
+            )
             margin = np.where(codes == codes.max(), margin, np.inf)
         return int(np.nanargmin(margin))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -32,8 +31,6 @@ class Measurement:
         pair: (n,) index of the pair that attains it, or -1.
         points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
-        measure_pair_minima: the least clearance of each pair, or of those that come nearest, of which there are at
-            least so many; not measured until it is called. None if it was not asked for.
         every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
         touching: (n,) where the nearest bodies touch, if padding has lessened clearances; None without padding.
@@ -46,7 +43,6 @@ class Measurement:
     pair: np.ndarray
     points: np.ndarray
     tally: dict[str, int]
-    measure_pair_minima: Callable[[int | None], Minima] | None
     every: np.ndarray | None = None
     may_cut_pairs: bool = False
     touching: np.ndarray | None = None

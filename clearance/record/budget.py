@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.simulate.moment import Moment
+from clearance.record.moment import Moment
 from clearance.world.case import Limits
 
 GREATEST = {"rad": 0.02, "m": 0.05, "s": 1.0}
@@ -33,7 +32,7 @@ class ErrorSource:
         proven: [m] what it takes of the proven clearance, all others as given. expected: [m] its standard
             deviation at the witness points; None in contact, where no direction leads from one body to the other.
         largest: the greatest single tolerance, in the order of `tolerances`, all others as given, at which the
-            limit is still proven to be kept; None where even 0 does not keep it.
+            limit is still proven to be kept; None where even 0 does not keep it. Empty where not asked for.
         moment: at which a part changed hands, if the error is of then: `grasp (2 s)`. Its `largest` is that of the
             error at every moment.
     """
@@ -44,7 +43,7 @@ class ErrorSource:
     tolerances: tuple[tuple[float, str], ...]
     proven: float
     expected: float | None
-    largest: Sequence[float | None] = ()
+    largest: tuple[float | None, ...] = ()
     moment: str = ""
 
 
@@ -54,13 +53,13 @@ class BudgetMoment:
 
     Attributes:
         moment: as it is said to be, of the pair that the errors bring nearest. proven, expected: [m].
-        sources: what takes most first; worked out when first looked at.
+        sources: what takes most first; empty where that was not asked for.
     """
 
     moment: Moment
     proven: float
     expected: float
-    sources: Sequence[ErrorSource]
+    sources: tuple[ErrorSource, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,8 +72,6 @@ class RuleBudget:
         expected: (n,) [m] estimate: nominal less `coverage` standard deviations, but no less than `proven`; NaN
             where it is not worked out.
         between: (n,) [m] as `proven`, of the motion from each step to the next; None where nothing is certified.
-        worst: the moments that the errors bring nearest, the worst first; worked out when first
-            looked at.
         expected_between: (n,) [m] as `expected`, of the least moment after each step; NaN where no moment is
             nearer than the steps, or nothing is certified.
     """
@@ -84,7 +81,6 @@ class RuleBudget:
     proven: np.ndarray
     expected: np.ndarray
     between: np.ndarray | None
-    worst: Sequence[BudgetMoment]
     expected_between: np.ndarray | None = None
 
     @cached_property

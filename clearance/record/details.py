@@ -1,0 +1,39 @@
+"""What a report shows of a run beside its record, worked out for it by the session of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from clearance.record.budget import BudgetMoment
+from clearance.record.levels import Event, Interval
+from clearance.record.moment import Moment
+from clearance.record.record import PairMinimum
+from clearance.record.sensitivity import Sensitivity
+
+
+@dataclass(frozen=True, eq=False)
+class RunDetails:
+    """What a report shows of a run beside its record.
+
+    Attributes:
+        minima: the least clearance of each pair, over the motion where that is certified, least first.
+        n_pairs: by rule, the number of pairs with a least clearance at the steps.
+        worst: by rule, the moment that stands worst of what it judges, in contact the deepest.
+        intervals, events, not_listed: the times below each level, when each is entered and left, and the number of
+            those that are left out.
+        sensitivity: the slopes of the clearance at the worst moment.
+        hints: on pairs that touch all the time. standing: names of the measured bodies that never move.
+        left: by rule, the moments at which tolerances leave least, with what each error takes.
+    """
+
+    minima: tuple[PairMinimum, ...]
+    n_pairs: Mapping[str, int]
+    worst: Mapping[str, Moment]
+    intervals: Mapping[str, Sequence[Interval]]
+    events: Sequence[Event]
+    not_listed: Mapping[str, int]
+    sensitivity: Sensitivity
+    hints: tuple[str, ...]
+    standing: frozenset[str]
+    left: Mapping[str, tuple[BudgetMoment, ...]]

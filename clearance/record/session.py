@@ -1,0 +1,60 @@
+"""The questions that findings ask of a run beside its record. Not for: answering them (`simulate.session`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from clearance.record.budget import BudgetMoment, RuleBudget
+from clearance.record.moment import Moment
+from clearance.record.record import Record
+from clearance.record.rule_answer import NearRows, RuleAnswer
+
+PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
+"""Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
+
+
+class Session(Protocol):
+    """Works out on demand what a record leaves open; held beside the record by whoever made it."""
+
+    @property
+    def record(self) -> Record:
+        """The record of the run."""
+
+    def is_cut(self, rule: RuleAnswer, within: float) -> bool:
+        """True if only the nearest pair of some steps is known within [m], since there are too many."""
+
+    def near(self, rule: RuleAnswer, within: float) -> NearRows:
+        """All pairs of a rule that come within [m] at each step, as far as they are known."""
+
+    def alone(self, rule: RuleAnswer, within: float) -> tuple[RuleAnswer, ...] | None:
+        """The answer for each pair that comes within [m], proven alone; None where pairs cannot be."""
+
+    def moment(self, rule: RuleAnswer, step: int, pair: int) -> Moment:
+        """The moment of a pair of the run at a step at which it is measured."""
+
+    def moment_between(self, rule: RuleAnswer, step: int) -> Moment:
+        """The moment after a step at which the proof of a rule saw the least distance."""
+
+    def spans_below(self, rule: RuleAnswer, level: float) -> np.ndarray:
+        """(k, 2) [s] start and end of each stretch in which the pairs of a rule are below a level [m]."""
+
+    def worst_among(self, rules: Sequence[RuleAnswer]) -> Moment | None:
+        """The moment that stands worst, as if there were no other rules."""
+
+    def of_pairs(
+        self, is_meant: PairTest, need: str | None = None, levels: tuple[float, ...] = ()
+    ) -> tuple[RuleAnswer, ...]:
+        """The answer of each rule for the pairs that are meant, as if there were no others.
+
+        Args:
+            need: as of the run if it is not given. levels: [m] that are to be decided beside the limits.
+        """
+
+    def budget_of_pairs(self, is_meant: PairTest) -> tuple[RuleBudget, ...]:
+        """What tolerances leave to the pairs that are meant; empty without tolerances."""
+
+    def least_left(self, budget: RuleBudget) -> Sequence[BudgetMoment]:
+        """The moments at which tolerances leave least to a rule, the worst first."""

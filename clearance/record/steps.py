@@ -1,0 +1,191 @@
+"""The table of steps, made of what was found of each: plain data in, a table out. Not for: measuring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.record.certificate import Certificate, motion_codes
+from clearance.record.contact_columns import no_contact_columns
+from clearance.record.measurement import Measurement
+from clearance.record.name_codes import names_of
+from clearance.record.names import SIDES, BodyNames, columns_of
+from clearance.record.rows.blocks import blocks
+from clearance.record.rule_answer import RuleAnswer
+from clearance.record.status import STATUSES, sample_codes
+from clearance.world.case import Case
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+
+@dataclass(frozen=True, eq=False)
+class RunAnswer:
+    """What was found of a run.
+
+    Attributes:
+        rules: what each rule comes to, in the order of the case; at least one.
+        found: of each step the row that stands worst. rule: (n,) the place in `rules` of what judged it, or None
+            where there is one rule.
+        nearest: of each step the nearest pair of all, whatever judges it; `found` where there is one rule.
+        certificate: over all rules; None where nothing is proven.
+    """
+
+    rules: Sequence[RuleAnswer]
+    found: Measurement
+    rule: np.ndarray | None
+    nearest: Measurement
+    certificate: Certificate | None
+
+    def rules_at(self, steps: slice) -> np.ndarray:
+        """(k,) the place in `rules` of what judged each of some steps."""
+        if self.rule is None:
+            return np.zeros(len(range(*steps.indices(len(self.found.clearance)))), dtype=np.int64)
+        return self.rule[steps]
+
+    def sample_codes(self, steps: slice) -> np.ndarray:
+        """(k,) the status of each of some steps by itself, the worst of all rules; -1 where a bound does not
+        decide.
+        """
+        codes = np.array([sample_codes(r.measurement, r.limits, steps) for r in self.rules])
+        undecided = (codes < 0).any(axis=0) & (codes.max(axis=0) <= 0)
+        return np.where(undecided, -1, codes.max(axis=0))
+
+    def motion_codes(self, steps: slice) -> np.ndarray:
+        """(k,) what is proven of the motion from each of some steps to the next, the worst of all rules."""
+        found = [motion_codes(r.certificate, r.limits, steps) for r in self.rules if r.certificate]
+        return np.max(found, axis=0)
+
+
+@dataclass(frozen=True, eq=False)
+class StepColumns:
+    """All that the table of a run's steps is made of.
+
+    Attributes:
+        left: (n,) each [m] what a budget leaves, proven and expected; None without one.
+    """
+
+    case: Case
+    motions: Sequence[Motion]
+    pairs: Sequence[Pair]
+    judged: RunAnswer
+    with_error: bool = False
+    left: tuple[np.ndarray, np.ndarray] | None = None
+
+    def batches(self) -> Iterator[pa.Table]:
+        """The table in blocks of steps."""
+        return step_table(
+            self.case,
+            self.motions,
+            self.pairs,
+            self.judged,
+            with_error=self.with_error,
+            left=self.left,
+        )
+
+
+def step_table(
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    judged: RunAnswer,
+    *,
+    with_error: bool = False,
+    left: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Iterator[pa.Table]:
+    """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps.
+
+    Args:
+        left: (n,) each [m] what a budget leaves, proven and expected; None without one.
+    """
+    names, found, certificate = BodyNames.of(case, pairs), judged.found, judged.certificate
+    n_steps = len(found.clearance)
+    bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
+    for block in blocks(n_steps):
+        columns = _measured_columns(names, found, motions[0].times, block)
+        codes = judged.sample_codes(block)
+        if certificate is not None:
+            columns |= _proven_columns(found, certificate, block)
+            codes, between = _with_motion(judged, block, codes)
+            columns["between"] = pa.array(between)
+        columns["status"] = names_of(codes, [str(status) for status in STATUSES])
+        if certificate is None and bounded:
+            columns["lower_bound"] = pa.array(found.lower_bound[block])
+        if left is not None:
+            columns |= _left_columns(*left, block)
+        if with_error:
+            errors = [motion.tracking_error[block] for motion in motions]
+            columns["tracking_error"] = pa.array(np.max(errors, axis=0))
+        columns |= no_contact_columns(block.stop - block.start)
+        yield pa.table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
+
+
+def _with_motion(judged: RunAnswer, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The status of each of `steps`, or of the motion to the next where that is worse than at both of its ends;
+    and whether it is."""
+    after = judged.sample_codes(slice(steps.start + 1, steps.stop + 1))
+    after = np.append(after, [-1] * (len(own) - len(after)))
+    motion = judged.motion_codes(steps)
+    between = (motion > 0) & (motion > np.maximum(own, after))
+    return np.where(between, motion, own), between
+
+
+def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array]:
+    """The two bodies under the names that every run has, where the run has names of its own for them."""
+    if names.sides == SIDES:
+        return {}
+    told = zip(names.columns, columns_of(SIDES), strict=True)
+    return {general: columns[own] for own, general in told}
+
+
+def _rule_columns(names: BodyNames, judged: RunAnswer, steps: slice) -> dict[str, pa.Array]:
+    """What judged each step, and where there are several rules the nearest pair of all."""
+    columns = {"rule": names_of(judged.rules_at(steps), [rule.name for rule in judged.rules])}
+    if judged.rule is not None:
+        near = judged.nearest
+        columns |= {
+            "nearest_clearance": pa.array(near.clearance[steps], from_pandas=True),
+            "nearest_a": names_of(near.pair[steps], names.a),
+            "nearest_b": names_of(near.pair[steps], names.b),
+        }
+    if judged.found.times_b is not None:
+        columns["time_b"] = pa.array(judged.found.times_b[steps], from_pandas=True)
+    return columns
+
+
+def _proven_columns(
+    found: Measurement, certificate: Certificate, steps: slice
+) -> dict[str, pa.Array]:
+    """What is proven of the motion from each of `steps` to the next, and the least distance seen there."""
+    seen = certificate.pair[steps] >= 0
+    known = found.pair[steps.start : steps.stop + 1] >= 0
+    after = np.append(known[1:], known[-1:])[: len(seen)]
+    unseen = ~(seen | (known[: len(seen)] & after))
+    return {
+        "lower_bound": pa.array(certificate.lower_bound[steps]),
+        "upper_bound": pa.array(certificate.upper_bound[steps], mask=unseen),
+    }
+
+
+def _left_columns(proven: np.ndarray, expected: np.ndarray, steps: slice) -> dict[str, pa.Array]:
+    """What a budget leaves of each step; null where nothing is expected of it."""
+    return {
+        "proven": pa.array(proven[steps]),
+        "expected": pa.array(expected[steps], from_pandas=True),
+    }
+
+
+def _measured_columns(
+    names: BodyNames, found: Measurement, times: np.ndarray, block: slice
+) -> dict[str, pa.Array]:
+    first, second, *places = names.columns
+    points = found.points[block].reshape(-1, 6)
+    return {
+        "step": pa.array(np.arange(block.start, block.stop)),
+        "time": pa.array(times[block]),
+        "clearance": pa.array(found.clearance[block], from_pandas=True),
+        first: names_of(found.pair[block], names.a),
+        second: names_of(found.pair[block], names.b),
+    } | {name: pa.array(points[:, i], from_pandas=True) for i, name in enumerate(places)}
