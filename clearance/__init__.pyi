@@ -36,8 +36,8 @@ from .receipt.writing import write_receipt
 from .record.record import CrossCheck, Record
 from .record.workspace import Workspace
 from .run import Question, Resources, Run, answer, check
-from .simulate.checker import Checker
-from .simulate.workspace.workspace import shared_workspace
+from .simulate.answers.workspace.workspace import shared_workspace
+from .simulate.measure.checker import Checker
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
 from .world.carry import Carry

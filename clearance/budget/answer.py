@@ -17,9 +17,9 @@ from clearance.budget.worst import WorstMoments
 from clearance.errors import BadInput
 from clearance.kernels.budget.sweep_state import SearchRoom
 from clearance.record.budget import RuleBudget
-from clearance.simulate.resources import Resources
-from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import SectionPlan, rule_limits
+from clearance.simulate.measure.resources import Resources
+from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionPlan, rule_limits
 from clearance.world.budget import Budget
 from clearance.world.case import Case
 

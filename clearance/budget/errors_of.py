@@ -1,7 +1,7 @@
 """The errors of a case's budget, laid over the links and bodies that are measured.
 
-Links that are seen from another link (`simulate.layout`) have the errors of the joints between; a part that has
-changed hands has those of its carriers at these moments too. Not for: what the errors do to a distance
+Links that are seen from another link (`simulate.measure.layout`) have the errors of the joints between; a part
+that has changed hands has those of its carriers at these moments too. Not for: what the errors do to a distance
 (`kernels.budget`).
 """
 
@@ -16,7 +16,7 @@ from clearance.errors import BadInput
 from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
-from clearance.simulate.layout import IN_WORLD, Layout, SeenBody
+from clearance.simulate.measure.layout import IN_WORLD, Layout, SeenBody
 from clearance.world.body import Obstacle
 from clearance.world.budget import (
     EXACT,

@@ -34,9 +34,9 @@ from clearance.kernels.budget.sweep_state import (
 )
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.record.measurement import Measurement
-from clearance.simulate.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
-from clearance.simulate.layout import PairsInMotion, positions_at
-from clearance.simulate.parts import in_order, parts
+from clearance.simulate.measure.certify import MOST_PARTS, joint_path, path_of, with_turning_balls
+from clearance.simulate.measure.layout import PairsInMotion, positions_at
+from clearance.simulate.measure.parts import in_order, parts
 from clearance.world.budget import Budget
 from clearance.world.forest import joined_positions
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from clearance.budget.proven import PairsWithErrors
 from clearance.kernels.budget.sweep import BudgetRows
-from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import Section
+from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import Section
 
 
 @dataclass(frozen=True, eq=False)

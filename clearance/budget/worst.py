@@ -27,7 +27,7 @@ from clearance.budget.sources import (
 )
 from clearance.record.budget import BudgetMoment, ErrorSource
 from clearance.record.moment import Moment
-from clearance.simulate.moment_query import MomentQuery
+from clearance.simulate.measure.moment_query import MomentQuery
 from clearance.world.budget import Budget
 from clearance.world.case import Limits
 from clearance.world.forest import forest_of, positions_between

@@ -22,7 +22,7 @@ from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
-from clearance.simulate.parts import usable_cores
+from clearance.simulate.measure.parts import usable_cores
 from clearance.world.waiver import Waiver
 
 FEW = 32

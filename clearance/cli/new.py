@@ -186,7 +186,7 @@ def _proposing(made: NewCase) -> NewCase:
     """The case with links that touch at every step as a comment, where links are measured against each other."""
     from clearance.errors import ClearanceError
     from clearance.run import check
-    from clearance.simulate.standing import touching_throughout
+    from clearance.simulate.answers.standing import touching_throughout
 
     if not any(placed.self_clearance for placed in made.case.robots):
         return made

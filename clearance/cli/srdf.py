@@ -70,7 +70,7 @@ def audit(
     from clearance.load.robot.srdf import load_srdf
     from clearance.report.output import json_text
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
-    from clearance.simulate.audit.srdf import audit as audited
+    from clearance.simulate.answers.audit.srdf import audit as audited
 
     robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
     matrix = load_srdf(srdf_file, robot)
@@ -107,7 +107,7 @@ def make(
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable
     from clearance.report.srdf import proposal_headline, proposed_srdf
-    from clearance.simulate.audit.srdf import propose
+    from clearance.simulate.answers.audit.srdf import propose
 
     require_file_place(out)
     if out is not None:

@@ -60,7 +60,7 @@ def workspace(
     from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
     from clearance.load.case.case_file import load_case
     from clearance.report.workspace import OWN
-    from clearance.simulate.workspace.workspace import WITHIN, shared_workspace
+    from clearance.simulate.answers.workspace.workspace import WITHIN, shared_workspace
 
     require_folder_place(out)
     cases = [load_case(path) for path in case_files]

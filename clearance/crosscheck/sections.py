@@ -14,7 +14,7 @@ from clearance.crosscheck.compare import compared
 from clearance.record.record import CrossCheck, Samples
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.steps import RunAnswer, step_table
-from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.measure.section_answer import SectionAnswer
 
 
 def cross_check_sections(

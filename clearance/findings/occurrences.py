@@ -3,7 +3,7 @@
 A stretch begins where the pair is below the release level and ends where it is not; it counts if the pair is below
 the fail limit in it. The release level is the warn limit, or `HYSTERESIS` above the fail limit where that is more:
 a pair that flickers about its limit is one occurrence, and a pair that parts and comes back is two. Not for: which
-pairs are near when (`simulate.rule_pairs`).
+pairs are near when (`simulate.answers.rule_pairs`).
 """
 
 from __future__ import annotations

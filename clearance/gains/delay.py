@@ -21,9 +21,9 @@ from clearance.gains.obstruction import Obstruction
 from clearance.gains.offsets import columns_of
 from clearance.gains.shortfalls import Requirement, State, keeps, measured, proven
 from clearance.record.record import Record
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import moves_with_joints
-from clearance.simulate.transfers import Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import moves_with_joints
+from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from clearance.gains.obstruction import AT_REST, NOT_MOVED, ON_ITS_WAY, Obstruction, pair_at
 from clearance.gains.shortfalls import SAME, State
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import Thing, owners_of
-from clearance.simulate.transfers import Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import Thing, owners_of
+from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case
 from clearance.world.pairs import names_of
 from clearance.world.rules import PairPattern

@@ -16,8 +16,8 @@ from clearance.gains.offsets import JointOffsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.search import FINE, Search, SearchResult
 from clearance.gains.shortfalls import State
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import moves_apart
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import moves_apart
 
 FLAT = 1e-3
 """[-] Of what is missing: where a first step foretells less, the way is not known from it."""

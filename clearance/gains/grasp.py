@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.pose import inverse
-from clearance.simulate.approaches import Approach
+from clearance.simulate.answers.approaches import Approach
 from clearance.world.forest import WORLD, forest_of, link_poses_at
 from clearance.world.pairs import BodyIndex
 from clearance.world.phase import Phase

@@ -18,7 +18,7 @@ from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import State
 from clearance.gains.tool_path import ToolPathKept
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
-from clearance.simulate.approaches import Approach
+from clearance.simulate.answers.approaches import Approach
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, carried_by, forest_of
 from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses

@@ -12,8 +12,8 @@ import numpy as np
 
 from clearance.gains.shortfalls import Gradient, State
 from clearance.record.record import Record
-from clearance.simulate.approaches import Approach
-from clearance.simulate.transfers import CombinedTransfers, Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.transfers import CombinedTransfers, Transfers
 
 NOT_MOVED = "nothing of this change moves them"
 KEPT_STILL = "that moment is to be kept"

@@ -22,9 +22,9 @@ from clearance.gains.programme import Box, Inequalities, reachable, within_reach
 from clearance.gains.shortfalls import Rows
 from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import motion_of_frame, moves_apart
-from clearance.simulate.transfers import Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import motion_of_frame, moves_apart
+from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair

@@ -13,8 +13,8 @@ import numpy as np
 from clearance.gains.offsets import JointOffsets, least_greatest
 from clearance.gains.programme import Box, Inequalities
 from clearance.gains.shortfalls import Rows
-from clearance.simulate.approaches import Approach
-from clearance.simulate.transfers import CombinedTransfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.transfers import CombinedTransfers
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline

@@ -24,7 +24,7 @@ from clearance.gains.shortfalls import (
     raised,
 )
 from clearance.record.record import Record
-from clearance.simulate.approaches import Approach
+from clearance.simulate.answers.approaches import Approach
 from clearance.world.case import Case
 from clearance.world.pairs import Pair
 from clearance.world.timeline import Timeline

@@ -19,9 +19,9 @@ from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM, Pivot, Turn
 from clearance.geometry.pose import inverse, pose_from_quaternion
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import moves_with_obstacle, moves_with_robot
-from clearance.simulate.transfers import Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.answers.transfers import Transfers
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.extents import reach_of

@@ -18,7 +18,7 @@ from clearance.record.certificate import motion_codes
 from clearance.record.record import Record
 from clearance.record.status import STATUSES, Status
 from clearance.run import Question, Run, answer
-from clearance.simulate.approaches import Approach, OfPair, approaches
+from clearance.simulate.answers.approaches import Approach, OfPair, approaches
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.rules import Rule

@@ -13,8 +13,8 @@ from clearance.gains.obstruction import KEPT_STILL, Obstruction, pair_at
 from clearance.gains.offsets import JointOffsets
 from clearance.gains.shortfalls import SAME, State
 from clearance.gains.tool_poses import ToolKeep
-from clearance.simulate.approaches import Approach
-from clearance.simulate.point_motion import moves_with_joints
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.point_motion import moves_with_joints
 from clearance.world.forest import WORLD, forest_of
 
 

@@ -23,8 +23,8 @@ from clearance.gains.tool_joints import REACHED, joints_for, least_squares
 from clearance.gains.tool_limits import limit_rows
 from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
-from clearance.simulate.approaches import Approach
-from clearance.simulate.transfers import Transfers
+from clearance.simulate.answers.approaches import Approach
+from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex, Pair

@@ -13,7 +13,7 @@ import numpy as np
 from clearance.errors import BadInput, NotFinite
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import quaternions_of
-from clearance.simulate.approaches import Approach
+from clearance.simulate.answers.approaches import Approach
 from clearance.world.pairs import BodyIndex
 from clearance.world.pose_table import PoseTable
 from clearance.world.slerp import product

@@ -1,6 +1,6 @@
 """The instants of a body's poses, so that between two of them no point leaves its chord by too much.
 
-How far it may is bounded by `chain_bounds`. Not for: clearances between the steps (`simulate.certify`).
+How far it may is bounded by `chain_bounds`. Not for: clearances between the steps (`simulate.measure.certify`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Whether pairs of links that a file excuses can meet. Not for: finding out (`simulate.audit`)."""
+"""Whether pairs of links that a file excuses can meet. Not for: finding out (`simulate.answers.audit`)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """The pairs in contact at the steps of a run, and the overlaps that the run works out. Not for: finding them
-(`simulate.contact`).
+(`simulate.answers.contact`).
 """
 
 from __future__ import annotations

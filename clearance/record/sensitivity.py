@@ -1,4 +1,4 @@
-"""The slopes of the clearance at the worst moment. Not for: working them out (`simulate.sensitivity`)."""
+"""The slopes of the clearance at the worst moment. Not for: working them out (`simulate.answers.sensitivity`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The region that several robots pass through. Not for: finding it (`simulate.workspace`)."""
+"""The region that several robots pass through. Not for: finding it (`simulate.answers.workspace`)."""
 
 from __future__ import annotations
 

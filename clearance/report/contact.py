@@ -1,6 +1,6 @@
 """Overlaps in the summary and on the page: the deepest of the run, and the deepest of every pair.
 
-Not for: finding them (`simulate.contact.contacts`).
+Not for: finding them (`simulate.answers.contact.contacts`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The rules of a case in the summary and on the page: limits, when they hold, the moment that stands worst.
 
-Not for: judging (`simulate.run_answer`).
+Not for: judging (`simulate.answers.run_answer`).
 """
 
 from __future__ import annotations

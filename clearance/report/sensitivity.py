@@ -1,5 +1,5 @@
 """What the clearance of the worst moment changes by, as data and as a table. Not for: working it out
-(`simulate.sensitivity`).
+(`simulate.answers.sensitivity`).
 """
 
 from __future__ import annotations

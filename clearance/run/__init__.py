@@ -14,7 +14,7 @@ from clearance.errors import BadInput, nearest_name
 from clearance.run.made import answered
 from clearance.run.question import Question, limited
 from clearance.run.result import Run
-from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 from clearance.world.budget import Budget
 from clearance.world.case import Case, Limits
 

@@ -11,11 +11,11 @@ from itertools import accumulate
 
 from clearance.record.session import PairTest
 from clearance.run.question import Question
-from clearance.simulate.measure import measure
-from clearance.simulate.measured import MeasuredSteps, ProvenMotion
-from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import Section, SectionPlan, section_plan
+from clearance.simulate.measure.measure import measure
+from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
@@ -98,7 +98,7 @@ def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Res
 
 def _of_section(question: Question, section: Section, own: Resources) -> SectionAnswer:
     if not section.tied:
-        from clearance.simulate.clocks.rows import measure_two_clocks
+        from clearance.simulate.measure.clocks.rows import measure_two_clocks
 
         gap = question.certify_gap if question.certify else None
         return SectionAnswer(section, *measure_two_clocks(section.of_two_clocks, gap, own))
@@ -111,7 +111,7 @@ def _measurement(question: Question, section: Section, resources: Resources) -> 
     if question.method == "exact":
         return measure(section.in_motion, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
-    from clearance.simulate.measure_paper import measure_paper
+    from clearance.simulate.measure.measure_paper import measure_paper
 
     tolerance = question.paper_tolerance or NO_TOLERANCE
     return measure_paper(section.in_motion, resources.progress, tolerance, section.phase.first)
@@ -120,7 +120,7 @@ def _measurement(question: Question, section: Section, resources: Resources) -> 
 def _certificate(
     question: Question, section: Section, found: MeasuredSteps, resources: Resources
 ) -> ProvenMotion:
-    from clearance.simulate.certify import certify_motion
+    from clearance.simulate.measure.certify import certify_motion
 
     levels = tuple(level + section.padding for level in section.levels)
     gap, need = question.certify_gap, question.need

@@ -20,13 +20,13 @@ from clearance.run.commanded_case import commanded_case
 from clearance.run.notices import notices_of
 from clearance.run.question import Question
 from clearance.run.session import RunSession
-from clearance.simulate.deepest import WorstMoments
-from clearance.simulate.measure import measure
+from clearance.simulate.answers.deepest import WorstMoments
+from clearance.simulate.answers.run_answer import JudgedRun, judged
+from clearance.simulate.answers.steps import cut_throughout, every_pair
+from clearance.simulate.measure.measure import measure
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
-from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.simulate.run_answer import JudgedRun, judged
-from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.steps import cut_throughout, every_pair
 from clearance.world.case import Case
 from clearance.world.notice import WRAP, Notice
 from clearance.world.plausible_wrap import shortest_reading
@@ -34,7 +34,7 @@ from clearance.world.plausible_wrap import shortest_reading
 if TYPE_CHECKING:
     from clearance.budget.answer import MeasuredBudget
     from clearance.profiles.answer import AnsweredProfile
-    from clearance.simulate.contact.rows import FoundContacts
+    from clearance.simulate.answers.contact.rows import FoundContacts
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +152,7 @@ def _contacts(
     """The pairs in contact and the overlaps asked for; loads what that needs only where there is one."""
     if not any((one.found.clearance[b] <= 0.0).any() for one in found for b in _blocks(one)):
         return None
-    from clearance.simulate.contact.contacts import contacts_of
+    from clearance.simulate.answers.contact.contacts import contacts_of
 
     question, pairs, times = plan.question, plan.sections.pairs, plan.motions[0].times
     return contacts_of(question.case, pairs, found, times, question.contact, resources.progress)

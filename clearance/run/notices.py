@@ -11,9 +11,9 @@ import numpy as np
 
 from clearance.record.certificate import Certificate
 from clearance.run.question import Question
-from clearance.simulate import inside
-from clearance.simulate.section_answer import SectionAnswer
-from clearance.simulate.sections import SectionPlan
+from clearance.simulate.measure import inside
+from clearance.simulate.measure.section_answer import SectionAnswer
+from clearance.simulate.measure.sections import SectionPlan
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.phase import Phase

@@ -11,7 +11,7 @@ from datetime import UTC, date, datetime
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput
-from clearance.simulate.measure import NEEDS
+from clearance.simulate.measure.measure import NEEDS
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.plausibility import notices_of

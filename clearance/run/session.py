@@ -14,8 +14,8 @@ from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest
 from clearance.run.answers import MeasurementPlan, answers_of_pairs
-from clearance.simulate.resources import DEFAULT_RESOURCES
-from clearance.simulate.run_answer import judged
+from clearance.simulate.answers.run_answer import judged
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES
 from clearance.simulate.session import MeasuringSession
 
 if TYPE_CHECKING:

@@ -21,13 +21,13 @@ from clearance.record.replay import EarlierBody, Replay
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.record.rule_answer import NearRows, RuleAnswer
 from clearance.record.sensitivity import Sensitivity
-from clearance.simulate import intervals
-from clearance.simulate.deepest import WorstMoments
-from clearance.simulate.measured_run import MeasuredRun
-from clearance.simulate.motion_minima import motion_minima
-from clearance.simulate.pairs_alone import can_be_alone, near_alone
-from clearance.simulate.standing import standing_bodies, standing_hint
-from clearance.simulate.stretches import RuleStretches
+from clearance.simulate.answers import intervals
+from clearance.simulate.answers.deepest import WorstMoments
+from clearance.simulate.answers.measured_run import MeasuredRun
+from clearance.simulate.answers.motion_minima import motion_minima
+from clearance.simulate.answers.pairs_alone import can_be_alone, near_alone
+from clearance.simulate.answers.standing import standing_bodies, standing_hint
+from clearance.simulate.answers.stretches import RuleStretches
 
 
 class MeasuringSession(MeasuredRun):
@@ -119,7 +119,7 @@ class MeasuringSession(MeasuredRun):
     @cached_property
     def sensitivity(self) -> Sensitivity:
         """The slopes of the clearance at the worst moment."""
-        from clearance.simulate.sensitivity import sensitivity_of
+        from clearance.simulate.answers.sensitivity import sensitivity_of
 
         return sensitivity_of(self)
 

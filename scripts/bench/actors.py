@@ -26,6 +26,7 @@ import numpy as np
 from actor_cases import CASES, PANDA, absent_robots, read, two_arms
 from actor_loops import Actors, certified_sections, loops_of, measured_sections, sections_of
 from against import rows_against
+from clearance.simulate.answers.audit.srdf import audit
 from clock import interleaved
 from peers import absent_peers, versions
 from rich.console import Console
@@ -35,8 +36,7 @@ from trajectory import steps_for
 
 import clearance as cl
 from clearance.record.audit import PairStatus
-from clearance.simulate.audit.srdf import audit
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Clock
 
@@ -213,7 +213,7 @@ def audited(asked: Arguments) -> list[dict]:
         {
             "what": "audit of excused pairs",
             "case": "panda",
-            "method": "clearance.simulate.audit.srdf",
+            "method": "clearance.simulate.answers.audit.srdf",
             "pairs": len(found),
             "ms": seconds * 1e3,
             "ratio": seconds,

@@ -34,12 +34,12 @@ WORKER = r"""
 import hashlib, json, sys, time
 import numpy as np
 from clearance import load_case
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.measure import measure
+from clearance.simulate.measure.resources import Resources
 from clearance.world.pairs import measured_pairs
 
 try:
-    from clearance.simulate.layout import PairsInMotion
+    from clearance.simulate.measure.layout import PairsInMotion
     from clearance.world.motion import kinematic_motion
 
     def work():

@@ -20,6 +20,7 @@ from inputs import Scene, scene_from  # first: it sets the number of threads bef
 
 import numpy as np  # isort: skip
 
+from clearance.simulate.measure.measure import measure
 from clock import interleaved
 from rich.console import Console
 from rich.table import Table
@@ -28,9 +29,8 @@ from rows import write_csv
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
-from clearance.simulate.layout import PairsInMotion, lay_out
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion, lay_out
+from clearance.simulate.measure.resources import Resources
 from tests.made_cases import arm_among_obstacles
 
 COLUMNS = ("what", "triangles", "steps", "threads", "ms_per_step", "ratio", "counters")

@@ -10,13 +10,13 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
+from clearance.simulate.measure.measure import measure
 from inputs import Scene
 from peers import Coal, CoalShapes, Fcl, FclShapes, Klampt, PairPeer, available, silenced
 
 from clearance.crosscheck.peer_run import greatest_displacements
-from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.resources import Resources
 
 SLACK = 0.02
 """[m] How far beyond the best the carried loop still asks, so that an aborted query leaves a bound that
@@ -40,7 +40,7 @@ class StepLoop(Protocol):
 
 
 class OurSteps:
-    """`clearance.simulate.measure.measure`: forward kinematics, laying out and sweep, all in the clock."""
+    """`clearance.simulate.measure.measure.measure`: forward kinematics, laying out and sweep, all in the clock."""
 
     name = "clearance: steps"
     library = "clearance"

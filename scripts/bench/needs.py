@@ -21,14 +21,14 @@ from rows import write_csv
 
 import numpy as np  # isort: skip
 
+from clearance.simulate.measure.certify import certify_motion
+from clearance.simulate.measure.measure import NEEDS, measure
 from clock import geometric_mean
 from loops import AllPairs
 from peers import Fcl, available
 
-from clearance.simulate.certify import certify_motion
-from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import NEEDS, measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 
 COLUMNS = ("scene", "what", "seconds", "ratio_to_steps", "queries", "node_tests", "polygon_tests")

@@ -12,7 +12,8 @@ import pytest
 import clearance as cl
 from clearance.findings.finding import FindingName
 from clearance.findings.of_record import why_incomplete
-from clearance.simulate import refine, rule_pairs
+from clearance.simulate.answers import rule_pairs
+from clearance.simulate.measure import refine
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import Rule

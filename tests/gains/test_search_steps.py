@@ -12,7 +12,7 @@ from clearance.gains.programme import Box, Inequalities, least_norm, within_reac
 from clearance.gains.search import FINE, Search
 from clearance.gains.shift import base_shift
 from clearance.gains.shortfalls import Rows
-from clearance.simulate import inside
+from clearance.simulate.measure import inside
 from tests.gains.gantries import along_x, gantry, slot, standing
 
 

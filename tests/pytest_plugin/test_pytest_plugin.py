@@ -15,7 +15,7 @@ import clearance as cl
 from clearance.errors import BadInput
 from clearance.load.case.case_list import cases_in
 from clearance.pytest_plugin import assert_clear
-from clearance.simulate import refine
+from clearance.simulate.measure import refine
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
 

@@ -86,9 +86,9 @@ def test_reading_a_record_and_its_verdict_measures_nothing_more(run, monkeypatch
         raise AssertionError("a record is read, nothing is measured")
 
     monkeypatch.setattr(Query, "distances", refuse)
-    monkeypatch.setattr("clearance.simulate.moment_query.distance", refuse)
-    monkeypatch.setattr("clearance.simulate.measure.sweep", refuse)
-    monkeypatch.setattr("clearance.simulate.certify.certify", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.moment_query.distance", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.measure.sweep", refuse)
+    monkeypatch.setattr("clearance.simulate.measure.certify.certify", refuse)
     record = run.record
     assert verdict_of(record).status == "violated"
     assert record.worst.clearance < 0.04 and record.nearest is record.worst

@@ -7,6 +7,11 @@ from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
 
+from clearance.simulate.answers.contact.rows import FoundContacts
+from clearance.simulate.answers.rule_pairs import MeasuredRule
+from clearance.simulate.answers.sample_moments import SampleMoments
+from clearance.simulate.measure.measured import MeasuredSteps
+
 from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.names import pair_names
 from clearance.record.record import PairMinimum, Record
@@ -14,11 +19,7 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.report import junit
 from clearance.report.report_data import ReportData
 from clearance.run import Run
-from clearance.simulate.contact.rows import FoundContacts
-from clearance.simulate.measured import MeasuredSteps
 from clearance.simulate.replay import replay
-from clearance.simulate.rule_pairs import MeasuredRule
-from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.session import MeasuringSession
 from tests.report.budgets import SOURCES
 from tests.report.records import measure

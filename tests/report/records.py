@@ -9,15 +9,15 @@ from functools import partial
 
 import numpy as np
 import pyarrow as pa
+from clearance.simulate.answers.rule_pairs import measured_rule
+from clearance.simulate.answers.sample_moments import SampleMoments
+from clearance.simulate.measure.measured import MeasuredSteps
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES
-from clearance.simulate.measured import MeasuredSteps
-from clearance.simulate.rule_pairs import measured_rule
-from clearance.simulate.sample_moments import SampleMoments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion
@@ -185,7 +185,7 @@ def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
-    from clearance.simulate.contact.contacts import find_contacts
+    from clearance.simulate.answers.contact.contacts import find_contacts
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))

@@ -14,7 +14,7 @@ import clearance as cl
 from clearance.cli.verdict import print_verdict
 from clearance.record.record import ProfileAnswer, Record
 from clearance.report.page import page_of
-from clearance.simulate import refine
+from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 from tests.report.made import replay_of, run_of, summary_of, verdict_of, write_junit

@@ -17,7 +17,7 @@ from types import FrameType
 import numpy as np
 
 import clearance as cl
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.resources import Resources
 from clearance.world.case import Case
 from tests.made_cases import at, ball, faces_of, torus
 

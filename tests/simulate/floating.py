@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from clearance.simulate.measure.certify import joint_path, with_turning_balls
 from scipy.spatial.transform import Rotation
 
 from clearance.geometry.polyhedron import Polyhedron
@@ -26,8 +27,7 @@ from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.world import World
 from clearance.query.pair_query import Query
-from clearance.simulate.certify import joint_path, with_turning_balls
-from clearance.simulate.layout import with_whole_faces
+from clearance.simulate.measure.layout import with_whole_faces
 from clearance.world.kinematics import all_links, floating_links, standing_link
 from tests.made_cases import at, dented, torus
 

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
+from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
 from clearance.world.carry import Carry
 from clearance.world.case import PlacedRobot, SelfClearance

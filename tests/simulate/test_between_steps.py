@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate import measure, parts
+from clearance.simulate.measure import measure, parts
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -218,7 +218,7 @@ def test_a_gap_below_rounding_ends_and_says_what_it_became():
 
 
 def test_a_proof_that_takes_too_many_parts_is_widened_and_ends(monkeypatch):
-    from clearance.simulate import certify, refine
+    from clearance.simulate.measure import certify, refine
 
     case = sweeping(THROUGH, post_height=PAST)
     tight = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate

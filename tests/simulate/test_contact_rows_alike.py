@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clearance.simulate.measure.measure import measure
 
 import clearance as cl
-from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.motion import Motion, kinematic_motion

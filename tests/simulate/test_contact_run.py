@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clearance.simulate.answers.contact import contacts as contact
+from clearance.simulate.answers.contact import rows as contact_rows
+from clearance.simulate.answers.contact.contacts import find_contacts
 from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
 from clearance.record.names import pair_names
-from clearance.simulate.contact import contacts as contact
-from clearance.simulate.contact import rows as contact_rows
-from clearance.simulate.contact.contacts import find_contacts
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import measured_pairs
@@ -105,7 +105,7 @@ def test_what_stands_for_a_body_reaches_the_notes(shelf):
 def test_a_run_without_contact_does_not_look(monkeypatch):
     import clearance.run
 
-    monkeypatch.setitem(sys.modules, "clearance.simulate.contact.contacts", None)
+    monkeypatch.setitem(sys.modules, "clearance.simulate.answers.contact.contacts", None)
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     run = clearance.run.check(case)
     assert run.record.contacts == () and run.record.deepest is None
@@ -113,7 +113,7 @@ def test_a_run_without_contact_does_not_look(monkeypatch):
 
 
 def test_a_pose_that_repeats_is_asked_once(monkeypatch):
-    import clearance.simulate.contact.contacts as room
+    import clearance.simulate.answers.contact.contacts as room
 
     run = record()
     pairs = measured_pairs(run.case)[0]

@@ -22,7 +22,7 @@ from clearance.record.rows import blocks
 from clearance.record.rows import resumable as resumable_rows
 from clearance.record.rows.resumable import open_resumable_rows
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
-from clearance.simulate import parts
+from clearance.simulate.measure import parts
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Case
 from tests.examples import first_fast
@@ -196,7 +196,7 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
 KILLED = """
 import os, pathlib, signal, sys
 import clearance as cl
-from clearance.simulate import parts
+from clearance.simulate.measure import parts
 from clearance.record.rows import blocks
 from clearance.record.rows import resumable as resumable_rows
 from clearance.record.rows.resumable import open_resumable_rows

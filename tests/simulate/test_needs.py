@@ -10,7 +10,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.simulate import measure, parts
+from clearance.simulate.measure import measure, parts
 from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 

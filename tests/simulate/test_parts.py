@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from clearance.simulate import parts
-from clearance.simulate.parts import in_order
+from clearance.simulate.measure import parts
+from clearance.simulate.measure.parts import in_order
 
 
 def test_few_results_wait_ahead() -> None:

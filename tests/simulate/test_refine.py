@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.report.junit_cases import results_of
-from clearance.simulate import refine
+from clearance.simulate.measure import refine
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from clearance.simulate.answers.stretches import joined_spans
 
 import clearance as cl
 from clearance.record.levels import LEVELS
-from clearance.simulate import stretches
+from clearance.simulate.answers import stretches
 from clearance.simulate.replay.curve_moments import nearest_moments
-from clearance.simulate.stretches import joined_spans
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot

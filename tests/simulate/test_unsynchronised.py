@@ -4,17 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from clearance.simulate.measure.certify import certify_motion
+from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
+from clearance.simulate.measure.clocks.unsynchronised import (
+    UnsynchronisedAnswers,
+    least_unsynchronised,
+)
+from clearance.simulate.measure.measure import measure
 from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadInput, BadTime
-from clearance.simulate.certify import certify_motion
-from clearance.simulate.clocks.pairs import ClockMotion, PairsOfTwoClocks
-from clearance.simulate.clocks.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
-from clearance.simulate.layout import PairsInMotion
-from clearance.simulate.measure import measure
-from clearance.simulate.resources import Resources
+from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses

@@ -9,7 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
-from clearance.simulate import parts
+from clearance.simulate.measure import parts
 from clearance.world.kinematics import link_poses
 from tests.examples import some_slow
 from tests.made_cases import WORST

@@ -12,7 +12,7 @@ import numpy as np
 from clearance.query.contact import Contact
 from clearance.record.contact import StepContact
 from clearance.record.replay import DrawnContact
-from clearance.simulate.measured_run import MeasuredRun
+from clearance.simulate.answers.measured_run import MeasuredRun
 
 MOST_CONTACTS = 600
 """Most overlaps drawn: each is an object of its own in the viewer."""

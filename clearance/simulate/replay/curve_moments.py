@@ -15,11 +15,11 @@ from clearance.record.moment import Moment
 from clearance.record.names import pair_names
 from clearance.record.rows.blocks import blocks
 from clearance.record.rule_answer import standing_worst
-from clearance.simulate.measure import nearest_at
-from clearance.simulate.measured import ProvenMotion
-from clearance.simulate.measured_run import MeasuredRun
-from clearance.simulate.rule_pairs import MeasuredRule
-from clearance.simulate.section_answer import SectionAnswer
+from clearance.simulate.answers.measured_run import MeasuredRun
+from clearance.simulate.answers.rule_pairs import MeasuredRule
+from clearance.simulate.measure.measure import nearest_at
+from clearance.simulate.measure.measured import ProvenMotion
+from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.tolerance import REACH
 from clearance.world.forest import positions_along
 

@@ -15,7 +15,7 @@ from clearance.record.record import Record
 from clearance.record.replay import LINK, DrawnBody, DrawnRule, Replay
 from clearance.record.row_status import rule_places
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
-from clearance.simulate.measured_run import MeasuredRun
+from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.replay.bodies import (
     bodies_of,
     carries_of,

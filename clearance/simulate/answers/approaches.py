@@ -1,0 +1,150 @@
+"""Where pairs come near: their nearest points at those steps, and the direction in which they part.
+
+What a clearance changes by follows from it: where the points of bodies a and b move by v_a and v_b, it grows by
+direction . (v_b - v_a) in first order. Not for: what moves (`point_motion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.query.pair_query import Query
+from clearance.simulate.answers.overlaps import Overlaps
+from clearance.simulate.answers.point_motion import motion_by_columns
+from clearance.simulate.answers.rule_pairs import MeasuredRule
+from clearance.simulate.measure.sections import Section
+from clearance.world.case import Case
+from clearance.world.forest import link_poses_at
+from clearance.world.pairs import Pair
+
+MOST_DEPTHS = 12
+"""Steps in contact of one pair whose depth is worked out, evenly spread; one takes 2 to 20 ms."""
+
+APART = 1e-9
+"""[m] Nearest points that are nearer have no direction of their own."""
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """A pair at the steps at which it is near.
+
+    Attributes:
+        rule: the answer of what judges it. section: its part of the run.
+        steps: (k,) of the run. poses: (k, links, 4, 4) `world_from_link` [m] there.
+        clearances: (k,) [m] less padding; where the bodies overlap less their depth as well.
+        points: (k, 2, 3) nearest points on a and b [m], world; of an overlap one in both.
+        directions: (k, 3) unit vectors from a to b.
+        depths_at_least: (k,) [m] no shorter way parts the bodies where they overlap; 0 where they are apart, or
+            where that was not asked for.
+    """
+
+    rule: MeasuredRule
+    section: Section
+    pair: Pair
+    steps: np.ndarray
+    poses: np.ndarray
+    clearances: np.ndarray
+    points: np.ndarray
+    directions: np.ndarray
+    depths_at_least: np.ndarray
+
+    @property
+    def case(self) -> Case:
+        """The plain case of its part of the run."""
+        return self.section.phase.case
+
+    def of_bodies(self, moved_a: np.ndarray, moved_b: np.ndarray) -> np.ndarray:
+        """(k, ...) what the clearance grows by where the points move by these (k, ..., 3) [m]."""
+        return np.einsum("k...i,ki->k...", moved_b - moved_a, self.directions)
+
+    def by_columns(self) -> np.ndarray:
+        """(k, columns) what it grows by for each rad or m of the columns of the forest."""
+        moved = [
+            motion_by_columns(self.case, self.poses, body, self.points[:, side])
+            for side, body in enumerate(self.pair)
+        ]
+        return self.of_bodies(*moved)
+
+
+OfPair = Callable[[Case, Pair], bool]
+"""Whether a pair of the plain case of a part of the run is asked about."""
+
+
+def approaches(
+    rules: Sequence[MeasuredRule],
+    beyond: float,
+    chosen: OfPair | None = None,
+    *,
+    bounded: bool = True,
+) -> Iterator[Approach]:
+    """All pairs that are less than `beyond` [m] above the fail limit of what judges them, with the steps.
+
+    Args:
+        chosen: which pairs; None for all. bounded: whether depths are bounded from below as well.
+    """
+    for rule in rules:
+        if rule.pairs is None:
+            continue
+        for section, near in rule.pairs.near_by_section(rule.limits.fail + beyond):
+            for place in np.unique(near.pairs).tolist():
+                rows = near.pairs == place
+                pair = section.pairs[int(np.flatnonzero(section.places == place)[0])]
+                if chosen is not None and not chosen(section.phase.case, pair):
+                    continue
+                yield from _approach(rule, section, pair, near.steps[rows], bounded=bounded)
+
+
+def approach_at(rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray) -> Approach:
+    """A pair at some steps (k,) of the run, whether it is near or not; of overlaps only those spread evenly."""
+    return next(_approach(rule, section, pair, steps))
+
+
+def _approach(
+    rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray, *, bounded: bool = True
+) -> Iterator[Approach]:
+    phase = section.phase
+    case, own = phase.case, steps - phase.first
+    poses = link_poses_at(case, phase.motions, own)
+    a, b = (body.poses_in(case, poses) for body in pair)
+    found = Query(*(body.shape_in(case) for body in pair)).distances(a, b)
+    apart = found.distances > APART
+    gaps = found.points[:, 1] - found.points[:, 0]
+    lengths = np.linalg.norm(gaps, axis=1)
+    directions = np.divide(gaps, lengths[:, None], out=np.zeros_like(gaps), where=apart[:, None])
+    told = Approach(
+        rule, section, pair, steps, poses, found.distances - section.padding, found.points,
+        directions, np.zeros(len(steps)),
+    )  # fmt: skip
+    touching = np.flatnonzero(~apart)
+    if len(touching):
+        told = _with_depths(told, touching, bounded=bounded)
+    yield told
+
+
+def _with_depths(told: Approach, touching: np.ndarray, *, bounded: bool) -> Approach:
+    """The approach with depth and way out at some of the steps in contact; the others are left out."""
+    chosen = touching[np.unique(np.linspace(0, len(touching) - 1, MOST_DEPTHS).astype(int))]
+    case, pair = told.case, told.pair
+    overlaps = Overlaps(*(body.shape_in(case) for body in pair), bounded=bounded)
+    kept = set(np.flatnonzero(told.directions.any(axis=1)).tolist())
+    columns = [told.clearances.copy(), told.points.copy(), told.directions.copy()]
+    columns.append(told.depths_at_least.copy())
+    for row in chosen.tolist():
+        poses = [body.poses_in(case, told.poses[row : row + 1])[0] for body in pair]
+        found = overlaps.at(*poses)
+        if found is None:
+            continue
+        kept.add(row)
+        columns[0][row] -= found.depth
+        columns[1][row] = found.point
+        columns[2][row] = found.direction
+        columns[3][row] = found.at_least
+    rows = np.array(sorted(kept), dtype=np.int64)
+    clearances, points, directions, depths = (column[rows] for column in columns)
+    return replace(
+        told, steps=told.steps[rows], poses=told.poses[rows], clearances=clearances,
+        points=points, directions=directions, depths_at_least=depths,
+    )  # fmt: skip

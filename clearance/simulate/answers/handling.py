@@ -1,0 +1,179 @@
+"""Parts that touch something as they are picked up or let go: hints, with the row that would excuse it.
+
+A part stands on something before it is picked up, and fingers hold it before they carry it. That contact is real,
+and it is meant. Not for: pairs that touch all the time (`standing`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.distance import distance
+from clearance.record.record import Record
+from clearance.simulate.measure.sections import Section, SectionPlan, section_plan
+from clearance.world.carry import Carry
+from clearance.world.forest import link_poses_at
+from clearance.world.pairs import Pair
+
+TOUCHING = 1e-6
+"""[m] What stands on something touches it, whichever way rounding goes."""
+
+FAR = 1.0
+"""[m] Balls farther apart need no search: no limit is so wide that it would matter here."""
+
+MOST_STEPS = 2000
+"""Most steps before and after that are looked at for the end of a contact."""
+
+
+@dataclass(frozen=True)
+class HandlingHint:
+    """A part that touches a body as it changes hands.
+
+    Attributes:
+        when: in words. start, end: [s] from when until when the pair is to be excused, so that no step is left at
+            which it touches or is below its fail limit; None for the run's own ends.
+    """
+
+    part: str
+    mate: str
+    when: str
+    start: float | None
+    end: float | None
+
+    @property
+    def pair(self) -> frozenset[str]:
+        """The names of the two."""
+        return frozenset((self.part, self.mate))
+
+    @property
+    def row(self) -> str:
+        """The row of `allow` that excuses it."""
+        told = [f"between: {json.dumps([self.part, self.mate], ensure_ascii=False)}"]
+        told += [] if self.start is None else [f"from: {self.start!r}"]
+        told += [] if self.end is None else [f"until: {self.end!r}"]
+        return f"{{{', '.join(told)}}}"
+
+    def __str__(self) -> str:
+        return f"{self.part} touches {self.mate} when it is {self.when}"
+
+
+def handling_hints(record: Record) -> list[HandlingHint]:
+    """One hint for each stretch of contact of a part that it is picked up in or let go in, in order of time."""
+    found: dict[tuple[frozenset[str], float | None], HandlingHint] = {}
+    if not record.case.carries:
+        return []
+    plan = section_plan(record.timeline)
+    for time, carry, what in _changes(record):
+        step = int(np.searchsorted(record.timeline.times, time))
+        for hint in _at_change(record, plan, carry, step, f"{what} at {time:g} s"):
+            found.setdefault((hint.pair, hint.start), hint)
+    return list(found.values())
+
+
+def _changes(record: Record) -> list[tuple[float, Carry, str]]:
+    """When [s] a part is picked up or let go within the run."""
+    times = record.timeline.times
+    found = [(c.window.start, c, f"picked up by {c.by}") for c in record.case.carries]
+    found += [(c.window.end, c, f"let go by {c.by}") for c in record.case.carries]
+    inside = [one for one in found if times[0] <= one[0] <= times[-1]]
+    return sorted(inside, key=lambda one: one[0])
+
+
+def _at_change(
+    record: Record, plan: SectionPlan, carry: Carry, step: int, when: str
+) -> Iterator[HandlingHint]:
+    """What the part of a carry touches at a step."""
+    case = record.case
+    for pair in plan.pairs:
+        names = pair.a.name_in(case), pair.b.name_in(case)
+        if carry.part not in names:
+            continue
+        gaps = _PairGaps(record, plan, pair)
+        if not gaps.touches_at(step):
+            continue
+        mate = names[0] if names[1] == carry.part else names[1]
+        yield HandlingHint(carry.part, mate, when, *gaps.stretch(step))
+
+
+@dataclass(frozen=True, eq=False)
+class _PairGaps:
+    """How far two bodies are apart at the steps at which they are measured."""
+
+    record: Record
+    plan: SectionPlan
+    pair: Pair
+
+    @cached_property
+    def sections(self) -> list[Section]:
+        """Those that measure the pair, in order of time."""
+        own = [section for section in self.plan.sections if self.pair in section.pairs]
+        return sorted(own, key=lambda section: section.phase.first)
+
+    def touches_at(self, step: int) -> bool:
+        """True if they touch at a step at which they are measured."""
+        around = [s for s in self.sections if s.phase.first <= step <= s.phase.last]
+        return any(self._gap(section, step) <= TOUCHING for section in around)
+
+    def stretch(self, step: int) -> tuple[float | None, float | None]:
+        """[s] The nearest times around a step at which they are clear of each other, or are not measured."""
+        return self._walk(step, -1), self._walk(step, 1)
+
+    def _walk(self, step: int, way: int) -> float | None:
+        times = self.record.timeline.times
+        end = 0 if way < 0 else len(times) - 1
+        for _ in range(MOST_STEPS):
+            section = self._towards(step, way)
+            if step == end:
+                return None
+            if section is None:
+                return float(times[step])
+            step += way
+            if self._is_clear(section, step):
+                return float(times[step])
+        return float(times[step])
+
+    def _towards(self, step: int, way: int) -> Section | None:
+        """The section that measures the pair from a step to the next one that way."""
+        low, high = sorted((step, step + way))
+        own = (s for s in self.sections if s.phase.first <= low and high <= s.phase.last)
+        return next(own, None)
+
+    def _is_clear(self, section: Section, step: int) -> bool:
+        """True if they are apart, and not below the fail limit of the rule that judges them there."""
+        gap = self._gap(section, step)
+        return gap > TOUCHING and not section.limits.below(gap, section.limits.fail)
+
+    def _gap(self, section: Section, step: int) -> float:
+        """[m] at one of a section's steps, paddings left out."""
+        case, own = section.phase.case, step - section.phase.first
+        poses = link_poses_at(case, section.phase.motions, slice(own, own + 1))
+        a, b = self.pair.a, self.pair.b
+        return gap_between(
+            a.shape_in(case),
+            a.poses_in(case, poses)[0],
+            b.shape_in(case),
+            b.poses_in(case, poses)[0],
+        )
+
+
+def gap_between(
+    a: Polyhedron,
+    world_from_a: np.ndarray,
+    b: Polyhedron,
+    world_from_b: np.ndarray,
+    far: float = FAR,
+) -> float:
+    """[m] The distance of two bodies, or less of it where balls about their boxes are more than `far` apart."""
+    centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
+               for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip
+    radii = [np.linalg.norm(np.ptp(shape.bounds, axis=0)) / 2.0 for shape in (a, b)]
+    apart = float(np.linalg.norm(centres[0] - centres[1]) - 1.001 * sum(radii))
+    if apart > far:
+        return apart
+    return distance(a, b, pose_a=world_from_a, pose_b=world_from_b).distance

@@ -1,0 +1,204 @@
+"""What the clearance of the worst moment changes by, with each joint, base and obstacle: one-sided, exact.
+
+The distance of two bodies has a slope each way in whatever moves them, and the two differ where several nearest
+points, or several pairs, are as near: parallel faces, a body midway between two. So every pair within `BAND` of
+the nearest is measured again a step of `STEP` either way, and each way the least of their slopes counts. Not for:
+rows for a search, one pair at many steps (`approaches`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.query.pair_query import Query
+from clearance.record.moment import Moment
+from clearance.record.sensitivity import NO_SLOPE, Rate, Sensitivity
+from clearance.simulate.answers.measured_run import MeasuredRun
+from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
+from clearance.simulate.answers.transfers import Transfers
+from clearance.simulate.measure.sections import Section
+from clearance.world.case import Case
+from clearance.world.forest import forest_of, joined_positions, positions_between
+from clearance.world.pairs import BodyIndex, Pair
+
+STEP = 1e-7
+"""[rad] or [m] Slopes are off by at most STEP x lever² / (2 x distance), where they change; rounding adds 1e-8."""
+
+BAND = 1e-5
+"""[m] A pair that is no farther above the nearest counts with it: as little takes it there."""
+
+LEAST = 1e-5
+"""[m] Bodies that are nearer have no slope that would hold on: they are taken for touching."""
+
+
+def sensitivity_of(run: MeasuredRun) -> Sensitivity:
+    """That of the moment which stands worst."""
+    moment = run.record.worst
+    if moment.touches:
+        return Sensitivity(why_not="the bodies are in contact")
+    if moment.time_b is not None:
+        return Sensitivity(why_not="the clocks of the bodies are not tied")
+    pairs = run.measured(run.record.rule(moment.rule)).pairs
+    if pairs is None:
+        return Sensitivity(why_not="only the nearest pair of each step is known")
+    sections = [one.section for one in pairs.answers if _holds(one.section, moment)]
+    near = [found for section in sections for found in _near(section, moment)]
+    if not any({*one.names} == {moment.link, moment.obstacle} for one in near):
+        return Sensitivity(why_not="its pair is not measured at one time")
+    if min(one.distance for one in near) < LEAST:
+        return Sensitivity(why_not="the bodies are all but in contact")
+    return Sensitivity(tuple(one.names for one in near), tuple(_rates(near)))
+
+
+def _holds(section: Section, moment: Moment) -> bool:
+    last = moment.step + int(moment.between)
+    return section.tied and section.steps.start <= moment.step and last < section.steps.stop
+
+
+@dataclass(frozen=True, eq=False)
+class _NearPair:
+    """A pair at the moment.
+
+    Attributes:
+        columns: (m,) of the forest there. distance: [m] without padding.
+    """
+
+    section: Section
+    pair: Pair
+    columns: np.ndarray
+    distance: float
+
+    @property
+    def case(self) -> Case:
+        return self.section.phase.case
+
+    @property
+    def names(self) -> tuple[str, str]:
+        return self.pair.a.name_in(self.case), self.pair.b.name_in(self.case)
+
+    @property
+    def clearance(self) -> float:
+        """[m] Less padding."""
+        return self.distance - self.section.padding
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """(joints + 3, 2) [m per unit] more and less: of each joint, and of b moved along x, y and z."""
+        n = n_joint_columns(self.case)
+        steps = np.zeros((2 * n, len(self.columns)))
+        steps[np.arange(n), np.arange(n)] = STEP
+        steps[n + np.arange(n), np.arange(n)] = -STEP
+        still = np.zeros((6, len(self.columns)))
+        poses = forest_of(self.case).poses(self.columns + np.concatenate([steps, still]))
+        a, b = (np.array(body.poses_in(self.case, poses)) for body in self.pair)
+        b[2 * n :, :3, 3] += STEP * np.concatenate([np.eye(3), -np.eye(3)])
+        found = Query(*(body.shape_in(self.case) for body in self.pair)).distances(a, b)
+        slopes = (found.distances - self.distance) / STEP
+        more = np.concatenate([slopes[:n], slopes[2 * n : 2 * n + 3]])
+        return np.column_stack([more, np.concatenate([slopes[n : 2 * n], slopes[2 * n + 3 :]])])
+
+    def along(self, *, moves_a: bool, moves_b: bool) -> np.ndarray:
+        """(3, 2) more and less where a, b, both or neither move along x, y and z."""
+        own = self.slopes[-3:]
+        if moves_a == moves_b:
+            return np.zeros((3, 2))
+        return own if moves_b else own[:, ::-1]
+
+
+def n_joint_columns(case: Case) -> int:
+    """How many of a forest's columns are joints of robots: they come first."""
+    return sum(len(placed.robot.moving_joints) for placed in case.robots)
+
+
+def _near(section: Section, moment: Moment) -> list[_NearPair]:
+    """The pairs of a section that are at most `BAND` farther than the moment's."""
+    case, own = section.phase.case, moment.step - section.phase.first
+    motions = section.phase.motions
+    if moment.between:
+        columns = positions_between(case, motions, own, moment.share)
+    else:
+        columns = joined_positions(case, motions, np.array([own]))[0]
+    poses = forest_of(case).poses(columns[None])
+    reach = moment.clearance + section.padding + BAND
+    bodies = dict.fromkeys(body for pair in section.pairs for body in pair)
+    places = {body: body.poses_in(case, poses) for body in bodies}
+    box_of = {body: _box(body.shape_in(case).bounds, places[body][0]) for body in bodies}
+    found = []
+    for pair in section.pairs:
+        if _gap(box_of[pair.a], box_of[pair.b]) > reach:
+            continue
+        query = Query(*(body.shape_in(case) for body in pair))
+        distance = float(query.distances(places[pair.a], places[pair.b]).distances[0])
+        if distance <= reach:
+            found.append(_NearPair(section, pair, columns, distance))
+    return found
+
+
+def _box(bounds: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(3,) middle and (3,) half size of a box in the world that holds what is in the bounds."""
+    middle, half = bounds.mean(axis=0), (bounds[1] - bounds[0]) / 2.0
+    return pose[:3, :3] @ middle + pose[:3, 3], np.abs(pose[:3, :3]) @ half
+
+
+def _gap(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> float:
+    """[m] Two boxes along the axes are at least so far apart."""
+    apart = np.abs(one[0] - other[0]) - one[1] - other[1]
+    return float(np.linalg.norm(np.maximum(apart, 0.0))) * (1.0 - 1e-9) - 1e-12
+
+
+def _rates(near: list[_NearPair]) -> Iterator[Rate]:
+    """All that move at least one of the pairs, the least of the slopes of all pairs each way."""
+    case = near[0].case
+    n, column = n_joint_columns(case), 0
+    joints = np.min([one.slopes[:n] for one in near], axis=0)
+    moved = np.any([np.abs(one.slopes[:n]) > NO_SLOPE for one in near], axis=(0, 2))
+    for placed in case.robots:
+        for joint in placed.robot.moving_joints:
+            if moved[column]:
+                unit = "m" if joint.kind == "prismatic" else "rad"
+                yield _rate("joint", placed.robot.name, joint.name, unit, joints[column])
+            column += 1
+    yield from _of_places(near, case)
+
+
+def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
+    """Of bases and obstacles that stand or move by themselves.
+
+    Of parts that are picked up or let go elsewhere where they are moved nothing is told: their way depends on how
+    they are turned since.
+    """
+    things: list[tuple[str, str, Callable[[Case, BodyIndex, int], bool], int]] = [
+        ("base", placed.robot.name, moves_with_robot, i)
+        for i, placed in enumerate(case.robots)
+        if placed.mount is None
+    ]
+    things += [
+        ("obstacle", one.name, moves_with_obstacle, i)
+        for i, one in enumerate(case.obstacles)
+        if one.mount is None
+    ]
+    for kind, name, moves, i in things:
+        transfers = Transfers(case, (kind == "obstacle", i))
+        if any(transfers.has_of(one.case, one.pair) for one in near):
+            continue
+        sides = [tuple(moves(one.case, body, i) for body in one.pair) for one in near]
+        if not any(a != b for a, b in sides):
+            continue
+        rows = [one.along(moves_a=a, moves_b=b) for one, (a, b) in zip(near, sides, strict=True)]
+        least = np.min(rows, axis=0)
+        for axis, slopes in zip("xyz", least, strict=True):
+            yield _rate(kind, name, axis, "m", slopes)
+
+
+def _rate(kind: str, of: str, name: str, unit: str, slopes: np.ndarray) -> Rate:
+    """The rate of both slopes; one that holds both ways is their mean, which is off by less."""
+    more, less = (0.0 if abs(slope) < NO_SLOPE else float(slope) for slope in slopes)
+    made = Rate(kind, of, name, unit, more, less)
+    if made.both_ways:
+        mean = (more - less) / 2.0
+        return made._replace(more=mean, less=-mean)
+    return made

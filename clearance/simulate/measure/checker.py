@@ -1,0 +1,240 @@
+"""How close a robot comes at one configuration: for planners, controllers and tests that ask many times.
+
+What one question finds is kept for the next, so configurations near the last one are answered in 10 to 51 us on
+four real robots (AMD EPYC). Not for: motions (`run.check`, which also says what happens between the samples).
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.errors import BadInput, BadShape, NotFinite, at
+from clearance.kernels.motion.held_scene import Scene
+from clearance.kernels.motion.sweep_rows import PairRows, StepRows
+from clearance.record.measurement import SWEEP_COUNTERS
+from clearance.record.names import pair_names
+from clearance.simulate.measure.asked_positions import AskedPositions
+from clearance.simulate.measure.inside import DoubtfulPairs
+from clearance.simulate.measure.layout import lay_out
+from clearance.tolerance import REACH
+from clearance.world.body import require_no_shortfall
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.kinematics import moving_positions
+from clearance.world.motion import Motion
+from clearance.world.notice import worst_first
+from clearance.world.pairs import measured_pairs
+from clearance.world.plausibility import notices_of
+from clearance.world.reach import require_within_reach
+
+Configuration = np.ndarray | Sequence[float] | Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """How close a robot comes to its scene at one configuration, and where.
+
+    Attributes:
+        distance: [m] the least over all measured pairs; 0 where a pair touches or overlaps, or one is inside the
+            other.
+        link, obstacle: names of the pair that attains it; links carry their robot's name where there are several.
+        point_link, point_obstacle: (3,) witness points [m] in the world frame.
+        undecided: names of the pairs of which it is open whether one body is inside the other, since a surface has
+            holes; the distance is that of their surfaces alone.
+    """
+
+    distance: float
+    link: str
+    obstacle: str
+    point_link: np.ndarray
+    point_obstacle: np.ndarray
+    undecided: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def contact(self) -> bool:
+        """True where a pair touches, overlaps, or one is inside the other."""
+        return self.distance == 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class ClearanceOfMany:
+    """The same at each of n configurations, row by row.
+
+    Attributes:
+        distances: (n,) [m]. pairs: (n,) indices into `Checker.pairs`. points: (n, 2, 3) [m] on link and obstacle.
+        undecided: (n,) True where it is open of a pair whether one body is inside the other.
+    """
+
+    distances: np.ndarray
+    pairs: np.ndarray
+    points: np.ndarray
+    undecided: np.ndarray
+
+
+class Checker:
+    """The least clearance of a case's robots at any configuration.
+
+    Answers are those of `check` at a step with the same positions, to the last bit, whatever was asked before.
+    Threads may share a checker, but its questions are answered one at a time; give each thread its own.
+
+    Args:
+        case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
+            are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
+        accept: kinds of suspect input to accept ("units", "limits", …), beside those that the case accepts.
+
+    Attributes:
+        joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
+            without one, all moving joints that the case does not fix. The others are where the case has them,
+            or at 0.
+        pairs: (link, obstacle) names of what is measured.
+        notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
+
+    Raises:
+        SuspectInput: suspect input, as in `check`, in the case or in joints that no configuration gives.
+        NothingToMeasure: no pair is left. BadInput: a body from a CAD file. BadDimension: a body far beyond any
+            place that a robot works at.
+    """
+
+    def __init__(self, case: Case, *, accept: Sequence[str] = ()) -> None:
+        if not isinstance(case, Case):
+            raise BadInput(
+                f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it"
+            )
+        self._names = [placed.joints_given for placed in case.robots]
+        self.joint_names = tuple(name for names in self._names for name in names)
+        self._asked = AskedPositions(case, self._names, accept)
+        self.case = case
+        self.notices = worst_first((*notices_of(case), *self._asked.at_rest()))
+        self._asked.require_not_suspect(self.notices)
+        pairs, _ = measured_pairs(case)
+        bodies = [body.body_in(case) for pair in pairs for body in pair]
+        require_no_shortfall(bodies, "a Checker")
+        require_within_reach(case, [_at_rest(placed) for placed in case.robots])
+        self.pairs = list(zip(*pair_names(case, pairs), strict=True))
+        self._fixed, self._columns = _placing(case, self._names)
+        self._layout = lay_out(case, pairs)
+        self._doubtful = DoubtfulPairs(case, pairs)
+        self._is_in_world = self._layout.is_in_world
+        no_rows = PairRows(
+            np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
+        )
+        self._held = Scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
+        self._lock = threading.Lock()
+        self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
+        self._row, self._position = _rows(1), self._fixed[None].copy()
+        self._nearest = self._held.always_at(self._position, self._row, self._counts)
+
+    def distance(self, configuration: Configuration) -> Clearance:
+        """The least clearance at one configuration and where it is attained.
+
+        Args:
+            configuration: (k,) [rad] or [m] as `joint_names`, or a value for each of these names.
+
+        Raises:
+            BadShape, NotFinite, BadInput: not one number within `tolerance.REACH` for each joint.
+            SuspectInput: a joint far beyond its limits, or in another unit as it seems, unless that is accepted.
+
+        Warns:
+            UserWarning: a joint is slightly beyond its limits; once for each checker.
+
+        Exactness, Ties: as `check`, method exact.
+        """
+        given = self._given(configuration)
+        with self._lock:
+            positions, row = self._position, self._row
+            positions[0][self._columns] = given
+            self._nearest()
+            if not self._is_in_world:
+                self._layout.to_world(positions, row.pair, row.points)
+            link, obstacle = self.pairs[row.pair[0]]
+            distance, points = row.clearance.item(), row.points[0].copy()
+            undecided = tuple([self.pairs[i] for i, _ in self._doubtful.at(positions)])
+        return Clearance(distance, link, obstacle, points[0], points[1], undecided)
+
+    def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
+        """The least clearance at each of n configurations (n, k), in one compiled call.
+
+        Raises:
+            BadShape, NotFinite, BadInput, SuspectInput: as `distance`.
+        """
+        given = self._given(configurations, n_dimensions=2)
+        positions, rows = np.tile(self._fixed, (len(given), 1)), _rows(len(given))
+        positions[:, self._columns] = given
+        with self._lock:
+            self._held.nearest_at(positions, rows, self._counts)
+            in_doubt = self._doubtful.at(positions)
+        self._layout.to_world(positions, rows.pair, rows.points)
+        undecided = np.zeros(len(positions), dtype=bool)
+        undecided[[row for _, row in in_doubt]] = True
+        return ClearanceOfMany(rows.clearance, rows.pair, rows.points, undecided)
+
+    def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
+        """The configuration, (k,) or (n, k), as the joints are named."""
+        if not isinstance(configuration, np.ndarray) and isinstance(configuration, Mapping):
+            configuration = self._by_name(configuration)
+        try:
+            given = np.asarray(configuration, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise BadShape(
+                f"{configuration!r:.60} is given", valid=self._wanted(n_dimensions)
+            ) from None
+        if given.ndim != n_dimensions or given.shape[-1] != len(self.joint_names):
+            raise BadShape(
+                f"the shape is {given.shape}",
+                where="configuration",
+                valid=self._wanted(n_dimensions),
+            )
+        if not self._asked.are_usual(given):
+            if not (np.abs(given) <= REACH).all():
+                raise NotFinite(
+                    "a joint position is NaN or beyond any reach",
+                    where="configuration",
+                    valid=f"{REACH:g} or less",
+                )
+            with at("configuration"):
+                self._asked.judge(np.atleast_2d(given))
+        return given
+
+    def _by_name(self, given: Mapping[str, float]) -> list[float]:
+        if set(given) != set(self.joint_names):
+            missing = sorted(set(self.joint_names) ^ set(given))
+            raise BadInput(
+                f"missing or unknown joints: {', '.join(missing)}",
+                where="configuration",
+                valid=self._wanted(1),
+            )
+        return [given[name] for name in self.joint_names]
+
+    def _wanted(self, n_dimensions: int) -> str:
+        rows = "n rows of " if n_dimensions == 2 else ""
+        return f"{rows}one number for each of {', '.join(self.joint_names)}"
+
+
+def _placing(case: Case, names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, np.ndarray]:
+    """(columns,) where all is that no configuration gives, and the columns that one does."""
+    fixed, columns, n_before = [], [], 0
+    for placed, given in zip(case.robots, names, strict=True):
+        row = moving_positions(placed, given, np.zeros((1, len(given))))[0]
+        place = {joint.name: i for i, joint in enumerate(placed.robot.moving_joints)}
+        columns += [n_before + place[name] for name in given]
+        fixed.append(row)
+        n_before += len(row)
+    fixed += [o.moves.columns[0] for o in case.obstacles if o.moves is not None]
+    return np.concatenate(fixed), np.array(columns, dtype=np.int64)
+
+
+def _at_rest(placed: PlacedRobot) -> Motion:
+    n_joints = len(placed.robot.moving_joints)
+    return Motion(
+        replace(placed, trajectory=None), np.zeros(1), np.zeros((1, n_joints)), np.zeros(1)
+    )
+
+
+def _rows(n: int) -> StepRows:
+    numbers, pair = np.empty((2, n)), np.empty(n, dtype=np.int64)
+    return StepRows(
+        numbers[0], numbers[1], pair, np.empty((n, 2), dtype=np.int64), np.empty((n, 2, 3))
+    )

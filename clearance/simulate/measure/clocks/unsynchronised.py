@@ -1,0 +1,351 @@
+"""How close two motions come whose clocks nothing ties, or only to within a slack: at steps, and proven between.
+
+Robots of two controllers start at unknown times, or drift: then every time of the one can occur with every time of
+the other that is at most the slack away. For each step, and each interval, of the first clock this asks for the
+least distance over all such times of the second. Not for: robots on one clock (`measure`, `certify`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from clearance.errors import BadInput, BadTime
+from clearance.kernels.clocks.clock_rectangles import Band
+from clearance.kernels.clocks.clock_tree import (
+    ClockTree,
+    fill_intervals_tree,
+    fill_steps_tree,
+    new_clock_tree,
+)
+from clearance.kernels.clocks.two_clocks import TwoClocks
+from clearance.kernels.clocks.unsynchronised import (
+    StepsOfClock,
+    TwoClockBounds,
+    certify_unsynchronised,
+)
+from clearance.kernels.clocks.unsynchronised_steps import (
+    StepMinima,
+    least_of_unsynchronised_steps,
+)
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.twist import CertificateGoal
+from clearance.kernels.motion.world import World
+from clearance.ordered import ascending
+from clearance.query.distance import distance
+from clearance.record.moment import Moment
+from clearance.record.names import pair_names
+from clearance.simulate.measure.certify import (
+    joint_path,
+    no_finer_than_rounding,
+    with_turning_balls,
+)
+from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks, actor_of
+from clearance.simulate.measure.layout import lay_out, with_whole_faces
+from clearance.simulate.measure.parts import in_order, parts
+from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
+from clearance.world.forest import forest_of, positions_between
+from clearance.world.notice import Notice
+from clearance.world.pairs import BodyIndex
+
+COUNTERS = ("rectangles", "apart_by_boxes", "queries", "node_tests", "polygon_tests")
+
+MOST_RECTANGLES = 2**22
+"""Rectangles of one interval after which its gap is widened: about a minute. A step of an arm takes tens."""
+
+TIME_ROUNDING = 2.0**-48
+"""Rounding of a time in an interval, relative to the greatest time and the slack: a few operations, with room."""
+
+
+@dataclass(frozen=True, eq=False)
+class UnsynchronisedSteps:
+    """The least clearance of each step of the first clock over all steps of the second in the band.
+
+    Attributes:
+        clearance: (n,) [m]; ties go to the least pair, then to the least step of the second clock.
+        pair: (n,) which pair. step_b: (n,) the step of the second clock.
+        points: (n, 2, 3) witness points in the world [m], each of its body at its own time.
+    """
+
+    clearance: np.ndarray
+    pair: np.ndarray
+    step_b: np.ndarray
+    points: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class UnsynchronisedIntervals:
+    """What is proven of each interval of the first clock over all times of the second in the band.
+
+    Attributes:
+        lower_bound: (n - 1,) [m] proven. upper_bound: (n - 1,) [m] the least distance seen.
+        share_a: (n - 1,) where in the interval that was, 0 to 1.
+        step_b, share_b: (n - 1,) the step of the second clock before it, and where in the interval after it.
+        pair: (n - 1,) which pair.
+    """
+
+    lower_bound: np.ndarray
+    upper_bound: np.ndarray
+    share_a: np.ndarray
+    step_b: np.ndarray
+    share_b: np.ndarray
+    pair: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class UnsynchronisedAnswers:
+    """What is known of two clocks' motions.
+
+    Attributes:
+        slack: [s]. gap: [m] how far lower bounds may be below the upper bounds.
+        steps, intervals: of the first clock; no intervals where only the steps were looked at.
+        tally: counters by name, of the steps and of the intervals.
+        moment_of: the moment of an interval at which its upper bound was seen.
+    """
+
+    slack: float
+    gap: float
+    steps: UnsynchronisedSteps
+    intervals: UnsynchronisedIntervals | None
+    steps_tally: dict[str, int]
+    intervals_tally: dict[str, int]
+    moment_of: Callable[[int], Moment] = field(repr=False)
+    notices: tuple[Notice, ...] = ()
+
+    @property
+    def worst(self) -> int:
+        """The first interval of least upper bound."""
+        assert self.intervals is not None
+        return int(np.argmin(self.intervals.upper_bound))
+
+
+def least_unsynchronised(
+    what: PairsOfTwoClocks, gap: float | None, resources: Resources = DEFAULT_RESOURCES
+) -> UnsynchronisedAnswers:
+    """The least distances of pairs of two clocks.
+
+    Args:
+        gap: [m] the lower bounds are within it of a distance that occurs; None to look at the steps only.
+
+    Raises:
+        BadTime: a slack that is no time. BadInput: pairs that are not of two clocks.
+    """
+    if not what.slack >= 0.0:
+        raise BadTime(f"a slack of {what.slack} s", valid="0 or more, or infinite")
+    _require_two_clocks(what)
+    work = _Work.of(what, resources)
+    steps, steps_tally = work.steps()
+    if gap is None:
+        return UnsynchronisedAnswers(what.slack, np.inf, steps, None, steps_tally, {}, _no_moment)
+    finest = [no_finer_than_rounding(side.case, side.motions, gap) for side in (what.a, what.b)]
+    gap = max(gap for gap, _ in finest)
+    goal = CertificateGoal(gap, what.limits.fail, MOST_RECTANGLES)
+    intervals, intervals_tally = work.intervals(steps, goal)
+    return UnsynchronisedAnswers(
+        what.slack,
+        gap,
+        steps,
+        intervals,
+        steps_tally,
+        intervals_tally,
+        _TwoClockQuery(what, intervals).of_interval,
+        tuple(dict.fromkeys(notice for _, notices in finest for notice in notices)),
+    )
+
+
+def least_of_all_steps(what: PairsOfTwoClocks, resources: Resources) -> UnsynchronisedSteps:
+    """The least of all steps of the first clock, in the first row of least clearance; others may be too much."""
+    _require_two_clocks(what)
+    return _Work.of(what, resources).steps(least_only=True)[0]
+
+
+def _no_moment(interval: int) -> Moment:
+    raise AssertionError("nothing is proven of intervals")
+
+
+def _require_two_clocks(what: PairsOfTwoClocks) -> None:
+    if not what.pairs:
+        raise BadInput("no pairs of two clocks", valid="one pair or more")
+    first, second = ({actor_of(body) for body in side} for side in zip(*what.pairs, strict=True))
+    if first & what.actors_of_b or not second <= what.actors_of_b:
+        raise BadInput(
+            "pairs that are not of two clocks",
+            valid="bodies of some actors against bodies of other actors, one pair or more",
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Work:
+    """What all parts share. Rows of the path are the steps of clock b, then those of clock a."""
+
+    what: PairsOfTwoClocks
+    surface: Surface
+    world: World
+    path: JointPath
+    band: Band
+    bodies: tuple[np.ndarray, np.ndarray]
+    columns: np.ndarray
+    resources: Resources
+
+    @staticmethod
+    def of(what: PairsOfTwoClocks, resources: Resources) -> _Work:
+        layout = lay_out(what.case, what.pairs)
+        world = layout.world
+        bodies = np.unique(world.pairs[:, 0]), np.unique(world.pairs[:, 1])
+        columns = np.zeros(len(world.frames), dtype=np.int64)
+        for side in bodies:
+            columns[side] = np.arange(len(side))
+        of_a, of_b = ascending(what.a.times), ascending(what.b.times)
+        times = np.concatenate([of_b, of_a, of_a[-1:]])
+        path = joint_path(world.links, times, *what.columns())
+        rounding = TIME_ROUNDING * float(np.abs(times).max() + what.slack)
+        band = Band(float(what.slack), rounding if math.isfinite(rounding) else 0.0)
+        return _Work(what, layout.surface, world, path, band, bodies, columns, resources)
+
+    @property
+    def n_a(self) -> int:
+        return len(self.what.a.times)
+
+    @property
+    def n_b(self) -> int:
+        return len(self.what.b.times)
+
+    def steps(self, *, least_only: bool = False) -> tuple[UnsynchronisedSteps, dict[str, int]]:
+        """The least of each step, or what is right of the least of all only."""
+        n = self.n_a
+        found = StepMinima(
+            np.empty(n),
+            np.empty(n, np.int64),
+            np.empty(n, np.int64),
+            np.empty((n, 2, 3)),
+            np.empty(n),
+        )
+        tree_b = self._tree(fill_steps_tree, slice(0, self.n_b), 1)
+
+        def run_part(span: slice) -> tuple[int, np.ndarray]:
+            counts = np.zeros(len(COUNTERS), dtype=np.int64)
+            clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
+            own = StepMinima(*(column[span] for column in found))
+            least_of_unsynchronised_steps(self.surface, clocks, least_only, own, counts)
+            return span.stop, counts
+
+        tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), 0)
+        none = found.step_b < 0  # no step of the other clock is in the band, or none is nearer
+        found.pair[none], found.points[none] = -1, np.nan
+        return UnsynchronisedSteps(found.clearance, found.pair, found.step_b, found.points), tally
+
+    def intervals(
+        self, steps: UnsynchronisedSteps, goal: CertificateGoal
+    ) -> tuple[UnsynchronisedIntervals, dict[str, int]]:
+        """What is proven of each interval."""
+        n = self.n_a - 1
+        numbers, places = np.empty((4, n)), np.empty((2, n), dtype=np.int64)
+        bounds = TwoClockBounds(
+            numbers[0], numbers[1], numbers[2], places[0], numbers[3], places[1]
+        )
+        tally = dict.fromkeys(COUNTERS, 0)
+        if n > 0 and self.n_b > 1:
+            surface = with_whole_faces(self.surface)
+            tree_b = self._tree(fill_intervals_tree, slice(0, self.n_b - 1), 1)
+
+            def run_part(span: slice) -> tuple[int, np.ndarray]:
+                counts = np.zeros(len(COUNTERS), dtype=np.int64)
+                tree_a = self._tree(fill_intervals_tree, self._of_a(span), 0)
+                own = TwoClockBounds(*(column[span] for column in bounds))
+                ends = slice(span.start, span.stop + 1)
+                known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
+                clocks = self._clocks(tree_a, tree_b)
+                certify_unsynchronised(surface, clocks, known, goal, own, counts)
+                return span.stop, counts
+
+            tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), self.n_a)
+        found = UnsynchronisedIntervals(
+            bounds.lower, bounds.upper, bounds.share_a, bounds.step_b, bounds.share_b, bounds.pair
+        )
+        return found, tally
+
+    def _of_a(self, span: slice) -> slice:
+        """The rows of the path at some steps or intervals of clock a."""
+        return slice(self.n_b + span.start, self.n_b + span.stop)
+
+    def _tree(self, fill: Callable[..., None], span: slice, i_clock: int) -> ClockTree:
+        bodies = self.bodies[i_clock]
+        tree = new_clock_tree(span.start, span.stop - span.start, len(bodies))
+        fill(self.surface, with_turning_balls(self.world), self.path, bodies, tree)
+        return tree
+
+    def _clocks(self, tree_a: ClockTree, tree_b: ClockTree) -> TwoClocks:
+        return TwoClocks(
+            with_turning_balls(self.world), self.path, tree_a, tree_b, self.columns, self.band
+        )
+
+    def _tally(self, results: Iterator[tuple[int, np.ndarray]], n_before: int) -> dict[str, int]:
+        """The counters of all parts, while progress is reported."""
+        tally = np.zeros(len(COUNTERS), dtype=np.int64)
+        for done, counts in results:
+            tally += counts
+            if self.resources.progress:
+                self.resources.progress(n_before + done, 2 * self.n_a - 1)
+        return dict(zip(COUNTERS, tally.tolist(), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class _TwoClockQuery:
+    """Measures the pair of an interval at the two times at which it was seen nearest."""
+
+    what: PairsOfTwoClocks
+    intervals: UnsynchronisedIntervals
+
+    def of_interval(self, interval: int) -> Moment:
+        """The moment at which the upper bound of an interval was seen."""
+        found, what, case = self.intervals, self.what, self.what.case
+        pair = what.pairs[int(found.pair[interval])]
+        share = float(found.share_a[interval])
+        at_a, at_b = (
+            (interval, share),
+            (int(found.step_b[interval]), float(found.share_b[interval])),
+        )
+        poses = self._poses(what.a, at_a), self._poses(what.b, at_b)
+        near = distance(
+            pair.a.shape_in(case),
+            pair.b.shape_in(case),
+            pose_a=pair.a.poses_in(what.a.case, poses[0])[0],
+            pose_b=pair.b.poses_in(what.b.case, poses[1])[0],
+        )
+        touches = bool(found.upper_bound[interval] <= 0.0)
+        names = pair_names(case, [pair])
+        positions = tuple(
+            what.b.motions[i].positions_after(*at_b)
+            if BodyIndex(i, 0) in what.actors_of_b
+            else motion.positions_after(*at_a)
+            for i, motion in enumerate(what.a.motions)
+        )
+        point_b = tuple(near.point_b.tolist())
+        return Moment(
+            step=interval + int(share == 1.0),
+            time=_time(what.a, *at_a),
+            between=0.0 < share < 1.0,
+            clearance=0.0 if touches else near.distance,
+            link=names[0][0],
+            obstacle=names[1][0],
+            point_link=point_b if touches else tuple(near.point_a.tolist()),
+            point_obstacle=point_b,
+            positions=positions,
+            share=share % 1.0,
+            touches=touches or near.distance <= 0.0,
+            time_b=_time(what.b, *at_b),
+        )
+
+    @staticmethod
+    def _poses(side: ClockMotion, at: tuple[int, float]) -> np.ndarray:
+        columns = positions_between(side.case, side.motions, *at)
+        return forest_of(side.case).poses(columns[None])
+
+
+def _time(side: ClockMotion, step: int, share: float) -> float:
+    before, after = side.times[step : step + 2]
+    return float(before + share * (after - before))
