@@ -7,11 +7,6 @@ from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
 
-from clearance.simulate.answers.contact.rows import FoundContacts
-from clearance.simulate.answers.rule_pairs import MeasuredRule
-from clearance.simulate.answers.sample_moments import SampleMoments
-from clearance.simulate.measure.measured import MeasuredSteps
-
 from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.names import pair_names
 from clearance.record.record import PairMinimum, Record
@@ -19,6 +14,9 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.report import junit
 from clearance.report.report_data import ReportData
 from clearance.run import Run
+from clearance.simulate.answers.contact.rows import FoundContacts
+from clearance.simulate.answers.rule_pairs import MeasuredRule, SampleMoments
+from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.simulate.replay import replay
 from clearance.simulate.session import MeasuringSession
 from tests.report.budgets import SOURCES

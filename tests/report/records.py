@@ -9,15 +9,14 @@ from functools import partial
 
 import numpy as np
 import pyarrow as pa
-from clearance.simulate.answers.rule_pairs import measured_rule
-from clearance.simulate.answers.sample_moments import SampleMoments
-from clearance.simulate.measure.measured import MeasuredSteps
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.record.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES
+from clearance.simulate.answers.rule_pairs import SampleMoments, measured_rule
+from clearance.simulate.measure.measured import MeasuredSteps
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion

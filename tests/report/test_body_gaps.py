@@ -10,9 +10,9 @@ from clearance.cli import run
 from clearance.record.record import Record
 from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from clearance.report.page import page_of
+from tests.findings.test_verdict import made
 from tests.load.making import CASE, write_case
 from tests.report.made import replay_of, run_of, summary_of, verdict_of
-from tests.report.test_verdict import made
 
 
 @functools.cache

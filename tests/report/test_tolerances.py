@@ -20,6 +20,7 @@ from clearance.report.markdown import markdown
 from clearance.report.tolerances import largest_text
 from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.case import Limits
+from tests.findings.test_verdict import UNITS, made, printed
 from tests.report.budgets import with_budget
 from tests.report.made import (
     finding_list_of,
@@ -31,7 +32,6 @@ from tests.report.made import (
     write_junit,
 )
 from tests.report.records import record
-from tests.report.test_verdict import UNITS, made, printed
 
 LIMITS = Limits(warn=0.02)
 NEAR = made(LIMITS)

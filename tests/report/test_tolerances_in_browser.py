@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from clearance.world.case import Limits
+from tests.findings.test_verdict import made
 from tests.report.browser import chromium, executable
 from tests.report.budgets import with_budget
 from tests.report.made import write
-from tests.report.test_verdict import made
 
 pytestmark = [
     pytest.mark.skipif(executable() is None, reason="no Chromium is installed"),

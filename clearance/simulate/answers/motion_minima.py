@@ -1,4 +1,4 @@
-"""The least clearance of each pair over the certified motion. Not for: at the steps (`pair_minima`)."""
+"""The least clearance of each pair over the certified motion. Not for: at the steps (`measured_run`)."""
 
 from __future__ import annotations
 

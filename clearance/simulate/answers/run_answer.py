@@ -18,8 +18,12 @@ from clearance.record.names import pair_names
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import sample_codes
 from clearance.record.steps import RunAnswer
-from clearance.simulate.answers.rule_pairs import MeasuredRule, RulePairs, measured_rule
-from clearance.simulate.answers.sample_moments import SampleMoments
+from clearance.simulate.answers.rule_pairs import (
+    MeasuredRule,
+    RulePairs,
+    SampleMoments,
+    measured_rule,
+)
 from clearance.simulate.measure.measured import MeasuredSteps, ProvenMotion
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.measure.sections import Section, SectionPlan, rule_limits

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pyarrow as pa
 import pytest
-from clearance.simulate.answers.intervals import events, extent, intervals, not_listed
 
 from clearance.record.row_status import status_counts
 from clearance.simulate.answers import intervals as room
+from clearance.simulate.answers.intervals import events, extent, intervals, not_listed
 from tests.report.made import run_of as made_run
 from tests.report.made import verdict_of
 from tests.report.records import record, with_steps
