@@ -1,6 +1,6 @@
-"""What the tolerances of a case leave of its clearances, for each rule: its record's `budget`.
+"""The clearances that the tolerances of a case leave, for each rule: the `budget` of its record.
 
-Not for: the proof (`proven`), the estimate (`expected`), and who takes how much (`worst`).
+Not for: the proof (`proven`), the estimate (`expected`), and the loss by each error (`worst`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_s
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
 from clearance.errors import BadInput
-from clearance.kernels.budget.sweep_state import SearchRoom
+from clearance.kernels.budget.sweep_state import SearchMemory
 from clearance.record.budget import RuleBudget
 from clearance.simulate.measure.resources import Resources
 from clearance.simulate.measure.section_answer import SectionAnswer
@@ -34,20 +34,20 @@ class MeasuredBudget(NamedTuple):
 def budget_answers(
     case: Case, plan: SectionPlan, answers: Sequence[SectionAnswer], resources: Resources
 ) -> tuple[MeasuredBudget, ...]:
-    """What a case's tolerances leave, one for each rule that judges something, in their order.
+    """The clearances that a case's tolerances leave, for each rule with pairs, in their order.
 
     Args:
-        answers: of the plan's sections. Where they are certified, the motion between the steps is as well.
+        answers: of the plan's sections. With certificates, the motion between the steps is proven as well.
 
     Raises:
-        BadInput: tolerances that cannot be honoured in this case, as those of clocks where parts change hands.
+        BadInput: tolerances that this case does not allow, as those of clocks where parts change hands.
     """
     budget = case.tolerance
     if budget is None:
         raise ValueError("a case without tolerances")
     require_budget(case, budget, plan)
-    rooms: list[SearchRoom] = []
-    sections = [_of_section(budget, answer, resources, rooms) for answer in answers]
+    memories: list[SearchMemory] = []
+    sections = [_of_section(budget, answer, resources, memories) for answer in answers]
     n_steps = max(section.section.steps.stop for section in sections)
     names = case.limits.rule_names
     return tuple(
@@ -57,10 +57,10 @@ def budget_answers(
 
 
 def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
-    """Nothing, if the budget can be honoured.
+    """Checks that the case allows the budget.
 
     Raises:
-        BadInput: clocks that are not tied, or clocks that may be off in a run in which something changes hands.
+        BadInput: clocks that are not tied, or errors of clocks in a run in which something changes hands.
     """
     if case.clock.slack > 0.0:
         raise BadInput(
@@ -73,7 +73,7 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
     _require_no_loops(case, late)
     phases = {section.phase.first: section.phase for section in plan.sections}
     parts = [part for phase in phases.values() for part in phase.case.obstacles]
-    if len(phases) == 1:  # what is gripped as the run begins
+    if len(phases) == 1:  # parts gripped as the run begins
         gripping = {one.owner for part in parts for one in part.past}
         late = [name for name in late if name in gripping]
     if late:
@@ -85,7 +85,7 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
 
 
 def _require_no_loops(case: Case, late: Sequence[str]) -> None:
-    """Nothing, if none whose clock may be off goes on beyond both ends of the run."""
+    """Checks that no motion with an error of its clock continues beyond both ends of the run."""
     timings = {one.robot.name: one.timing for one in case.robots}
     timings |= {one.name: one.moves.timing for one in case.obstacles if one.moves is not None}
     for name in late:
@@ -98,10 +98,10 @@ def _require_no_loops(case: Case, late: Sequence[str]) -> None:
 
 
 def _of_section(
-    budget: Budget, answer: SectionAnswer, resources: Resources, rooms: list[SearchRoom]
+    budget: Budget, answer: SectionAnswer, resources: Resources, memories: list[SearchMemory]
 ) -> SectionBudget:
     what, found = answer.section.in_motion, answer.found
-    pairs = PairsWithErrors(what, budget, resources.n_threads, rooms)
+    pairs = PairsWithErrors(what, budget, resources.n_threads, memories)
     steps = proven_of_steps(pairs, found)
     between = expected_there = None
     expected = expected_of_steps(what.case, budget, what.motions, what.pairs, found)
@@ -127,9 +127,9 @@ def _of_rule(
         if between is not None and one.between is not None and one.expected_between is not None:
             own = one.between.proven - padding
             last = one.section.phase.last == n_steps - 1
-            held = slice(rows.start, rows.stop if last else rows.stop - 1)
-            np.minimum(between[held], own if last else own[:-1], out=between[held])
+            covered = slice(rows.start, rows.stop if last else rows.stop - 1)
+            np.minimum(between[covered], own if last else own[:-1], out=between[covered])
             np.fmin(there[rows], one.expected_between - padding, out=there[rows])
     limits = rule_limits(case, rule, [one.section for one in sections])
-    told = RuleBudget(name, limits, proven, expected, between, there)
-    return MeasuredBudget(told, WorstMoments(name, limits, sections))
+    budget = RuleBudget(name, limits, proven, expected, between, there)
+    return MeasuredBudget(budget, WorstMoments(name, limits, sections))

@@ -1,4 +1,4 @@
-"""What tolerances leave of all rules, step by step, as columns. Not for: working it out (`answer`)."""
+"""The clearances that tolerances leave of all rules, step by step, as columns. Not for: the proof (`answer`)."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from clearance.record.budget import RuleBudget
 
 
 def least_proven(budget: Sequence[RuleBudget]) -> np.ndarray:
-    """(n,) [m] what is proven of each step, of all rules."""
+    """(n,) [m] the clearance proven at each step, the least of all rules."""
     return np.min([one.proven for one in budget], axis=0)
 
 
 def least_between(budget: Sequence[RuleBudget]) -> np.ndarray | None:
-    """(n,) [m] what is proven of the motion from each step to the next, of all rules; None where nothing is."""
+    """(n,) [m] the clearance proven from each step to the next, the least of all rules; None if not proven."""
     known = [one.between for one in budget if one.between is not None]
     return np.min(known, axis=0) if len(known) == len(budget) else None
 
 
 def least_expected(budget: Sequence[RuleBudget]) -> np.ndarray:
-    """(n,) [m] what is expected from each step to the next, of all rules; NaN where it is not worked out."""
+    """(n,) [m] the clearance expected from each step to the next, the least of all rules; NaN where unknown."""
     between = [one.expected_between for one in budget if one.expected_between is not None]
     return np.fmin.reduce([*(one.expected for one in budget), *between])
 
 
 def columns_of(budgets: Sequence[RuleBudget]) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) [m] proven and expected of each step, of the rule whose limit what is proven comes nearest to."""
+    """(n,) [m] proven and expected at each step, of the rule with the least margin to its limit."""
     margins = np.array([one.proven - one.limits.fail for one in budgets])
     which, steps = np.argmin(margins, axis=0), np.arange(margins.shape[1])
     proven = np.array([one.proven for one in budgets])[which, steps]

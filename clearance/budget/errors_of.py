@@ -39,30 +39,30 @@ EXACT_ROBOT = RobotTolerance()
 EXACT_OBSTACLE = ObstacleTolerance()
 
 NOW = ""
-"""The moment that is looked at, as `CarrierError` calls it."""
+"""The present moment, as `CarrierError` calls it."""
 
 
-Held = tuple[CarrierError, PlacementTolerance]
-"""An error of what something hangs on, and how large it is: a joint turns by the angle, or slides by xyz."""
+SizedError = tuple[CarrierError, PlacementTolerance]
+"""An error of a carrier, and its size: a joint turns by the angle, or slides by xyz."""
 
 BudgetAt = Callable[[str], Budget]
 """The budget of a moment, as `CarrierError` calls it."""
 
 
 def robot_tolerance(budget: Budget, robot: Robot) -> RobotTolerance:
-    """What a budget gives of a robot."""
+    """The tolerances of a robot in a budget."""
     return budget.robots.get(robot.name, EXACT_ROBOT)
 
 
 def obstacle_tolerance(budget: Budget, obstacle: Obstacle) -> ObstacleTolerance:
-    """What a budget gives of an obstacle."""
+    """The tolerances of an obstacle in a budget."""
     return budget.obstacles.get(obstacle.name, EXACT_OBSTACLE)
 
 
 def errors_below(case: Case, mount: Mount | None) -> Iterator[CarrierError]:
-    """The errors of the obstacles that something rides on, nearest first, up to one with a motion of its own.
+    """The errors of the obstacles below a mount, nearest first, up to one with a motion of its own.
 
-    These are of their places now, and of the hands that they have gone through.
+    These are errors of their places now, and of their earlier carriers.
     """
     obstacles = {obstacle.name: obstacle for obstacle in case.obstacles}
     below = np.eye(4)
@@ -77,7 +77,7 @@ def errors_below(case: Case, mount: Mount | None) -> Iterator[CarrierError]:
 
 
 def size_of(case: Case, budget: Budget, one: CarrierError) -> PlacementTolerance:
-    """How large a budget says that an error is."""
+    """The size of an error in a budget."""
     robot = next((each.robot for each in case.robots if each.robot.name == one.owner), None)
     if robot is None:
         return budget.obstacles.get(one.owner, EXACT_OBSTACLE).place
@@ -120,7 +120,7 @@ class _ForestErrors:
 
     case: Case
     budget_at: BudgetAt
-    extras: dict[int, list[Held]] = field(default_factory=dict)
+    extras: dict[int, list[SizedError]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.forest, self.budget = forest_of(self.case), self.budget_at(NOW)
@@ -143,7 +143,7 @@ class _ForestErrors:
                 self.joint[links[joint.child]] = sum(abs(f) * _size(own, name) for name, f in leads)
                 self._delay(links[joint.child], own.timing, i_robot)
         self._place(start, own.base)
-        self._hold(start, errors_below(self.case, placed.mount))
+        self._add_errors(start, errors_below(self.case, placed.mount))
 
     def _add_obstacle(self, i_obstacle: int) -> None:
         link = self.forest.obstacle_links[i_obstacle]
@@ -153,19 +153,19 @@ class _ForestErrors:
         own = obstacle_tolerance(self.budget, obstacle)
         self._place(link, own.place)
         if obstacle.moves is None:
-            self._hold(link, [*obstacle.past, *errors_below(self.case, obstacle.mount)])
+            self._add_errors(link, [*obstacle.past, *errors_below(self.case, obstacle.mount)])
             return
         for part in range(link - 3, link + 1):
             self._delay(part, own.timing, len(self.case.robots) + i_obstacle)
-        self._hold_moving(link - 3, obstacle)
+        self._add_errors_below_moving(link - 3, obstacle)
 
-    def _hold_moving(self, first: int, obstacle: Obstacle) -> None:
-        """What a body with a motion of its own rides on holds the link that its motion starts from."""
+    def _add_errors_below_moving(self, first: int, obstacle: Obstacle) -> None:
+        """Adds the errors of carriers of a body with a motion of its own to the link where that starts."""
         base = int(self.forest.links.parents[first])
         if self.forest.links.parents[base] == NO_PARENT:
-            self._hold(base, errors_below(self.case, obstacle.mount))
+            self._add_errors(base, errors_below(self.case, obstacle.mount))
             return
-        for one, _ in self._held(errors_below(self.case, obstacle.mount)):
+        for one, _ in self._sized(errors_below(self.case, obstacle.mount)):
             on = obstacle.mount.on if obstacle.mount is not None else one.owner
             raise BadInput(
                 f"obstacle {obstacle.name!r} moves by its own table on {on!r}, which moves too",
@@ -180,43 +180,43 @@ class _ForestErrors:
         if delay > 0.0:
             self.delay[link], self.owner[link] = delay, owner
 
-    def _hold(self, link: int, errors: Iterable[CarrierError]) -> None:
-        if held := self._held(errors):
-            self.extras[link] = held
+    def _add_errors(self, link: int, errors: Iterable[CarrierError]) -> None:
+        if sized := self._sized(errors):
+            self.extras[link] = sized
 
-    def _held(self, errors: Iterable[CarrierError]) -> list[Held]:
-        """Those of errors that are not 0, and how large they are."""
+    def _sized(self, errors: Iterable[CarrierError]) -> list[SizedError]:
+        """The errors that are not 0, with their sizes."""
         sizes = ((one, size_of(self.case, self.budget_at(one.moment), one)) for one in errors)
         return [(one, size) for one, size in sizes if size != EXACT]
 
-    def of_standing(self, frame: int, seen: SeenBody) -> list[Held]:
-        """The errors of a body that no link carries, if it stands in the world."""
+    def of_standing(self, frame: int, seen: SeenBody) -> list[SizedError]:
+        """The errors of a body that stands in the world; none for others."""
         if frame >= 0 or seen.reference != IN_WORLD or not seen.body.is_obstacle:
             return []
         obstacle = self.case.obstacles[seen.body.i_body]
-        return self._held([CarrierError(obstacle.name, "", np.zeros(3)), *obstacle.past])
+        return self._sized([CarrierError(obstacle.name, "", np.zeros(3)), *obstacle.past])
 
 
 def _size(own: RobotTolerance, joint: str) -> float:
-    """[rad or m] What a joint may be off in all, by itself."""
+    """[rad or m] The total error of a joint by itself."""
     tolerance = own.joints.get(joint, EXACT_JOINT)
     return tolerance.position + tolerance.tracking
 
 
 def surface_of(case: Case, budget: Budget, body: BodyIndex) -> float:
-    """[m] How far the surface of a body may stand out."""
+    """[m] The greatest excess of the surface of a body."""
     if body.is_obstacle:
         return obstacle_tolerance(budget, case.obstacles[body.i_body]).surface
     robot = case.robots[body.i_robot].robot
     return robot_tolerance(budget, robot).surfaces.get(body.own_name_in(case), 0.0)
 
 
-def _extras(held: Sequence[Sequence[Held]]) -> Extras:
-    flat = [one for errors in held for one in errors]
+def _extras(sized: Sequence[Sequence[SizedError]]) -> Extras:
+    flat = [one for errors in sized for one in errors]
     origins = np.array([one.origin for one, _ in flat], dtype=np.float64).reshape(-1, 3)
     axes = [np.zeros(3) if one.axis is None else one.axis for one, _ in flat]
     return Extras(
-        np.concatenate([[0], np.cumsum([len(errors) for errors in held])]).astype(np.int64),
+        np.concatenate([[0], np.cumsum([len(errors) for errors in sized])]).astype(np.int64),
         origins,
         np.array([size.xyz for _, size in flat], dtype=np.float64),
         np.array([size.angle for _, size in flat], dtype=np.float64),
@@ -225,9 +225,11 @@ def _extras(held: Sequence[Sequence[Held]]) -> Extras:
 
 
 def _most_rows(
-    layout: Layout, of_links: Sequence[Sequence[Held]], of_bodies: Sequence[Sequence[Held]]
+    layout: Layout,
+    of_links: Sequence[Sequence[SizedError]],
+    of_bodies: Sequence[Sequence[SizedError]],
 ) -> int:
-    """Rows that any body can have: three a link, one for what moves together, and what is held."""
+    """The most rows of any body: three a link, one for motion together, and further errors."""
     parents = layout.world.links.parents
     rows = np.zeros(len(parents), dtype=np.int64)
     for link, parent in enumerate(parents.tolist()):  # parents come first

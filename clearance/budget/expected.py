@@ -1,9 +1,9 @@
-"""What is expected to be left of the nearest pair of each step: an estimate, no proof.
+"""The clearance expected of the nearest pair of each step: an estimate, no proof.
 
 Errors are independent. A number is uniform up to its size, or normal with its size at three standard deviations; a
 vector is uniform in the ball of its size, or normal in each of three axes alike. To the first order the variance
 of the distance is the sum of theirs, times the squares of their slopes: m^2 / 3, of a ball m^2 / 5 for each axis.
-Not for: what is proven (`proven`).
+Not for: proofs (`proven`).
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ OF_NUMBER, OF_VECTOR, OF_NORMAL = 1.0 / 3.0, 1.0 / 5.0, 1.0 / 9.0
 """The variance of an error of size 1, of each axis of a vector."""
 
 A_MOMENT = 1e-4
-"""[s] To either side of a time, within which the speed of what moves is looked at."""
+"""[s] To either side of a time: speeds are differences over this span."""
 
 
 def variance_of(slope: Slope, budget: Budget) -> np.ndarray:
-    """(n,) [m^2] what one error adds to the variance of a distance."""
+    """(n,) [m^2] the variance of a distance by one error."""
     uniform = OF_VECTOR if slope.along.shape[1] == 3 else OF_NUMBER
     share = OF_NORMAL if budget.is_normal else uniform
     return share * slope.size**2 * (slope.along**2).sum(axis=1)
@@ -55,29 +55,29 @@ def expected_of_steps(
     """(n,) [m] the clearance of each step less `coverage` standard deviations; NaN in contact or where unknown."""
     expected = np.full(len(found.clearance), np.nan)
     for block in blocks(len(expected)):
-        apart = np.flatnonzero((found.pair[block] >= 0) & ~found.touches(block)) + block.start
-        nearest = found.pair[apart]
+        separate = np.flatnonzero((found.pair[block] >= 0) & ~found.touches(block)) + block.start
+        nearest = found.pair[separate]
         for i_pair in np.unique(nearest).tolist():
-            steps = apart[nearest == i_pair]
+            steps = separate[nearest == i_pair]
             witness = witness_of(case, budget, motions, pairs[i_pair], steps, found.points[steps])
-            taken = budget.coverage * deviations(case, budget, witness)
-            expected[steps] = found.clearance[steps] - taken
+            loss = budget.coverage * deviations(case, budget, witness)
+            expected[steps] = found.clearance[steps] - loss
     return expected
 
 
 def expected_between(
     found: Measurement, certificate: Certificate, expected: np.ndarray
 ) -> np.ndarray:
-    """(n,) [m] the same of the least moment after each step, NaN where none is nearer than the steps.
+    """(n,) [m] the same for the least moment after each step, NaN where none is nearer than the steps.
 
-    Errors take as much there as at the nearer end, as far as that is known. It is never more than what occurs.
+    The loss by errors is that of the nearer end, if known. The result never exceeds the distance that occurs.
     """
     clearance = np.where(np.isnan(found.clearance), np.inf, found.clearance)
-    taken = np.nan_to_num(clearance - expected, nan=0.0, posinf=0.0)
+    loss = np.nan_to_num(clearance - expected, nan=0.0, posinf=0.0)
     after = np.append(np.arange(1, len(clearance)), len(clearance) - 1)
-    nearer = np.where(clearance[after] < clearance, taken[after], taken)
-    left = certificate.upper_bound - np.where(certificate.touches(slice(None)), 0.0, nearer)
-    return np.where(certificate.pair >= 0, left, np.nan)
+    nearer = np.where(clearance[after] < clearance, loss[after], loss)
+    remaining = certificate.upper_bound - np.where(certificate.touches(slice(None)), 0.0, nearer)
+    return np.where(certificate.pair >= 0, remaining, np.nan)
 
 
 def witness_of(
@@ -88,7 +88,7 @@ def witness_of(
     steps: np.ndarray,
     points: np.ndarray,
 ) -> Witness:
-    """The nearest points of a pair at some steps, and where all is then."""
+    """The nearest points of a pair at some steps, and the poses then."""
     columns = joined_positions(case, motions, steps)
     rates = clock_rates(case, budget, motions, motions[0].times[steps])
     return Witness(pair, points, forest_of(case).poses(columns), rates)
@@ -97,7 +97,7 @@ def witness_of(
 def clock_rates(
     case: Case, budget: Budget, motions: Sequence[Motion], times: np.ndarray
 ) -> Mapping[str, np.ndarray]:
-    """Of each whose clock may be off: (n, links, 4, 4) [1/s] how poses change with it."""
+    """For each owner of a clock with an error: (n, links, 4, 4) [1/s] the rates of the poses by it."""
     owners = [
         (name, slice(first, last))
         for name, first, last in _columns(case)
@@ -107,7 +107,9 @@ def clock_rates(
         return {}
     forest, whole = forest_of(case), slice(0, motions[0].n_steps)
     samples = joined_positions(case, motions, whole)
-    here, before, after = (_at(motions, samples, times + way) for way in (0.0, -A_MOMENT, A_MOMENT))
+    here, before, after = (
+        _at(motions, samples, times + shift) for shift in (0.0, -A_MOMENT, A_MOMENT)
+    )
     return {name: _rate(forest, here, before, after, own) for name, own in owners}
 
 
@@ -139,7 +141,7 @@ def _at(motions: Sequence[Motion], samples: np.ndarray, times: np.ndarray) -> np
 
 
 def _columns(case: Case) -> list[tuple[str, int, int]]:
-    """Who moves which columns of the positions, from the first to before the last."""
+    """The columns of the positions of each actor, from the first to before the last."""
     found, at = [], 0
     for placed in case.robots:
         n = len(placed.robot.moving_joints)

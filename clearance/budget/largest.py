@@ -1,7 +1,7 @@
 """The greatest single tolerance, all others as given, at which a limit is still proven to be kept.
 
-What is asked of one tolerance is tried out at the steps and intervals where it can matter; the number that is told
-was proven at all of them. Not for: what is left (`proven`).
+A tolerance is tried at the steps and intervals where it can matter; the number reported is proven at all of them.
+Not for: the proof (`proven`).
 """
 
 from __future__ import annotations
@@ -25,25 +25,25 @@ from clearance.world.mimics import leads_of
 from clearance.world.reach import farthest_reach
 
 SHARPNESS = 2e-3
-"""The share of a tolerance within which the greatest is found."""
+"""Relative accuracy of the greatest tolerance."""
 
 FIRST = {"rad": 0.002, "m": 0.002, "s": 0.02}
-"""What is tried first of an error that is 0."""
+"""First size to try for an error that is 0."""
 
 FARTHER = 4.0
-"""How many times as much is tried next while a row keeps the limit."""
+"""Factor to the next size while a row keeps the limit."""
 
 COARSE = 0.02
-"""The share of what is taken more than as given by which a proof of an interval may be too low."""
+"""The gap allowed in a proof of an interval, as a share of the increase of the loss."""
 
 MORE_ROWS = 8
-"""Each time that rows keep a limit this many times as many are asked at once."""
+"""While rows keep the limit, the number asked at once grows by this factor."""
 
 SPARE = 1e-11
-"""[m] By which a proof of all steps may be lower than one of a few; with a certificate, its gap at a limit."""
+"""[m] A proof of all steps may be lower by this than one of a few; with a certificate, by its gap at a limit."""
 
 MOST_ROUNDS = 6
-"""Times that rows are added at which a number turned out too large; then it is halved until it is proven."""
+"""Rounds that add rows where a number was too large; after them it is halved until it is proven."""
 
 
 class _Row(NamedTuple):
@@ -68,7 +68,7 @@ class ToleranceSearch:
     _known: dict[SourceKey, tuple[float | None, ...]] = field(default_factory=dict)
 
     def of(self, case: Case, key: SourceKey) -> tuple[float | None, ...]:
-        """The greatest of each number of an error; None where even 0 does not keep the limit."""
+        """The greatest size of each number of an error; None where even 0 does not keep the limit."""
         if key not in self._known:
             units = enumerate(units_of(case, key))
             self._known[key] = tuple(self._of_number(key, place, unit) for place, unit in units)
@@ -90,7 +90,7 @@ class ToleranceSearch:
 
     @cached_property
     def _least(self) -> list[_Row]:
-        """The step and the interval of each section of which least is proven as the errors are."""
+        """The step and the interval with the least bound of each section, with the errors as given."""
         least = []
         for i, section in enumerate(self.sections):
             least.append(_Row(i, False, int(np.argmin(section.steps.proven))))
@@ -117,7 +117,7 @@ class _Trial:
         return self.asked.sections[0].pairs.budget
 
     def keeps(self, number: float) -> bool:
-        """True if the limit is proven to be kept everywhere."""
+        """True if the limit is proven everywhere."""
         for i, section in enumerate(self.asked.sections):
             pairs = self._pairs(section, number)
             for between in (False, True):
@@ -130,7 +130,7 @@ class _Trial:
         return True
 
     def greatest_at(self, row: _Row, most: float) -> float:
-        """A number up to `most` with which one row is proven to keep the limit, and little more is not; or 0."""
+        """About the greatest number up to `most` with which one row is proven to keep the limit, or 0."""
         from scipy.optimize import brentq
 
         seen: dict[float, float] = {}
@@ -141,7 +141,9 @@ class _Trial:
             return seen[number]
 
         def greatest_kept() -> float:
-            return max((number for number, left in seen.items() if left >= 0.0), default=0.0)
+            return max(
+                (number for number, remaining in seen.items() if remaining >= 0.0), default=0.0
+            )
 
         high = min(most, 2.0 * self.given if self.given > 0.0 else FIRST[self.unit])
         while beyond(high) >= 0.0:
@@ -156,11 +158,11 @@ class _Trial:
         return greatest_kept()
 
     def _beyond(self, row: _Row, number: float) -> float:
-        """[m] how far what is proven of a row lies above the limit."""
+        """[m] the margin of the bound of a row to the limit."""
         section = self.asked.sections[row.section]
         pairs = self._pairs(section, number)
-        left = _proven(section, pairs, np.array([row.row]), math.inf, between=row.between)
-        return float(left[0]) - self._limit(section)
+        remaining = _proven(section, pairs, np.array([row.row]), math.inf, between=row.between)
+        return float(remaining[0]) - self._limit(section)
 
     def _pairs(self, section: SectionBudget, number: float) -> PairsWithErrors:
         sizes = list(sizes_of(self._budget, self.key))
@@ -173,20 +175,20 @@ class _Trial:
         return self.asked.fail + section.section.padding + spare
 
     def _open(self, i: int, number: float, *, between: bool) -> np.ndarray:
-        """Rows not known to keep the limit from what is proven with the number as given, hardest first."""
+        """Rows whose bounds with the number as given do not prove the limit, hardest first."""
         section = self.asked.sections[i]
         rows = section.between if between else section.steps
         if rows is None:
             return np.empty(0, dtype=np.int64)
         proven = rows.proven[:-1] if between else rows.proven
         more = max(0.0, number - self.given)
-        taken = 2.0 * math.sin(0.5 * more) if self.unit == "rad" else more
-        left = proven - (taken * self.levers[i] if more > 0.0 else 0.0)
-        open_rows = np.flatnonzero(left < self._limit(section))
-        return open_rows[np.argsort(left[open_rows], kind="stable")]
+        loss = 2.0 * math.sin(0.5 * more) if self.unit == "rad" else more
+        remaining = proven - (loss * self.levers[i] if more > 0.0 else 0.0)
+        open_rows = np.flatnonzero(remaining < self._limit(section))
+        return open_rows[np.argsort(remaining[open_rows], kind="stable")]
 
     def _lever(self, section: SectionBudget) -> float:
-        """[m/rad], [m/m] or [m/s] more than any point can move by one more of the number."""
+        """[m/rad], [m/m] or [m/s] an upper bound on the motion of any point by one more unit of the number."""
         if self.unit == "s":
             return math.inf
         case = section.section.phase.case
@@ -208,7 +210,7 @@ class _Trial:
 def _failing(
     section: SectionBudget, pairs: PairsWithErrors, rows: np.ndarray, limit: float, *, between: bool
 ) -> int | None:
-    """A row of which less than the limit is proven; None if all keep it. Rows come hardest first."""
+    """A row whose bound is below the limit; None if all keep it. Rows come hardest first."""
     first, many = 0, 1
     while first < len(rows):
         block = rows[first : first + many]
@@ -229,7 +231,7 @@ def _proven(
     *,
     between: bool,
 ) -> np.ndarray:
-    """[m] what is proven of some rows; near a finite `enough` it is some per cent of the errors lower."""
+    """[m] the bounds of some rows; near a finite `enough` they are lower by some per cent of the errors."""
     if not between:
         return _proven_of_steps(section, pairs, rows, enough)
     assert section.between is not None
@@ -241,10 +243,11 @@ def _proven(
     ends = [_proven_of_steps(section, pairs, end, enough) for end in (rows, rows + 1)]
     known = np.minimum(*ends)
     order = section.between.pair[rows]
-    taken_more = float(np.max(section.between.proven[rows] - known))  # than by the errors as given
-    if COARSE * taken_more <= gap:
+    # than with the errors as given
+    greater_loss = float(np.max(section.between.proven[rows] - known))
+    if COARSE * greater_loss <= gap:
         return pairs.between(rows, order, known, gap, enough).proven
-    return pairs.between(rows, order, known, COARSE * taken_more, enough, fail=math.inf).proven
+    return pairs.between(rows, order, known, COARSE * greater_loss, enough, fail=math.inf).proven
 
 
 def _proven_of_steps(

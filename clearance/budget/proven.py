@@ -1,6 +1,6 @@
-"""What the errors of a budget leave of a section's pairs, proven at its steps and in the motion between them.
+"""The distances that the errors of a budget leave of a section's pairs, proven at its steps and between them.
 
-Not for: what the sections come to together (`answer`), and what is only expected (`expected`).
+Not for: all sections together (`answer`), and the estimate (`expected`).
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import numpy as np
 from clearance.budget.errors_of import NOW, errors_of
 from clearance.kernels.budget.errors import Errors
 from clearance.kernels.budget.sweep import (
-    EXACT_LOOKS,
+    EXACT_VISITS,
     FEW,
-    ROUGH_LOOKS,
+    ROUGH_VISITS,
     BudgetIntervals,
     BudgetMoments,
     BudgetRows,
@@ -27,10 +27,10 @@ from clearance.kernels.budget.sweep import (
 )
 from clearance.kernels.budget.sweep_state import (
     BudgetScene,
-    SearchRoom,
-    in_room,
-    new_room,
+    SearchMemory,
+    new_memory,
     new_state,
+    with_memory,
 )
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.record.measurement import Measurement
@@ -47,15 +47,15 @@ ROUNDED_DOWN = 2.0**-48
 
 
 ONCE_MORE = (1, 15, 112)
-"""So many steps of which least is left are proven once more, each time if less may be left than is proven."""
+"""Numbers of steps with the least bounds that are proven once more, round after round while that can help."""
 
 AS_LOW = 4e-12
-"""[m] By which a bound that is carried may be lower: a step no farther below the least is not looked into."""
+"""[m] A carried bound may be low by this: a step no farther below the least is not proven once more."""
 
 
 @dataclass(frozen=True, eq=False)
 class PathMoments:
-    """Moments of a path: (n,) the step before each, and how much of the interval from there has passed, 0 to 1."""
+    """Moments of a path: (n,) the step before each, and the share of the interval from there, 0 to 1."""
 
     intervals: np.ndarray
     shares: np.ndarray
@@ -69,15 +69,15 @@ class PairsWithErrors:
     """Pairs in motion, and the errors of all that moves them.
 
     Attributes:
-        n_threads: how many may work at it.
-        rooms: for searches, in which no thread is at work; pairs that are asked in turn may share them.
-        but_for: a moment, as `CarrierError` calls it, and the budget that holds of errors made then.
+        n_threads: the most threads.
+        memories: for searches, not in use by a thread; pairs that are proven in turn may share them.
+        but_for: a moment, as `CarrierError` calls it, and the budget for errors made then.
     """
 
     what: PairsInMotion
     budget: Budget
     n_threads: int = 1
-    rooms: list[SearchRoom] = field(default_factory=list)
+    memories: list[SearchMemory] = field(default_factory=list)
     but_for: tuple[str, Budget] | None = None
 
     @cached_property
@@ -92,7 +92,7 @@ class PairsWithErrors:
 
     @cached_property
     def path(self) -> JointPath:
-        """How all joints move; of one step it stands for an interval."""
+        """The motion of all joints; a single step counts as an interval."""
         links, case, motions = self.what.layout.world.links, self.what.case, self.what.motions
         if self.n_steps > 1:
             return path_of(links, case, motions, slice(0, self.n_steps))
@@ -102,28 +102,28 @@ class PairsWithErrors:
 
     def of(self, budget: Budget, but_for: tuple[str, Budget] | None = None) -> PairsWithErrors:
         """The same with another budget."""
-        other = PairsWithErrors(self.what, budget, self.n_threads, self.rooms, but_for)
+        other = PairsWithErrors(self.what, budget, self.n_threads, self.memories, but_for)
         other.__dict__["path"] = self.path  # errors are no part of it
         return other
 
     @cached_property
     def _idle(self) -> list[BudgetScene]:
-        """Scenes that no thread is at work with."""
+        """Scenes not in use by a thread."""
         return []
 
     @contextmanager
     def _scene(self) -> Iterator[BudgetScene]:
         """A scene for one thread."""
-        room = _last_of(self.rooms) or new_room()
-        scene = _last_of(self._idle) or self._new_scene(room)
-        yield scene._replace(state=in_room(scene.state, room))
+        memory = _last_of(self.memories) or new_memory()
+        scene = _last_of(self._idle) or self._new_scene(memory)
+        yield scene._replace(state=with_memory(scene.state, memory))
         self._idle.append(scene)
-        self.rooms.append(room)
+        self.memories.append(memory)
 
-    def _new_scene(self, room: SearchRoom) -> BudgetScene:
+    def _new_scene(self, memory: SearchMemory) -> BudgetScene:
         layout = self.what.layout
         world = with_turning_balls(layout.world)  # no two threads share it
-        state = new_state(world, self.errors, room)
+        state = new_state(world, self.errors, memory)
         return BudgetScene(layout.whole_faces, world, self.path, self.errors, state)
 
     @property
@@ -147,15 +147,15 @@ class PairsWithErrors:
         points: np.ndarray | None = None,
         is_exact: bool = False,
     ) -> BudgetRows:
-        """What is proven at some moments.
+        """Bounds at some moments.
 
         Args:
-            order: (n,) the pair to look at first, or -1. known: (n,) [m] nominal, or NaN.
-            enough: [m] what is proven beyond it is not looked into.
+            order: (n,) the pair to ask first, or -1. known: (n,) [m] nominal, or NaN.
+            enough: [m] no bound needs to be greater.
             points: (n, 2, 3) [m] the nearest points of that pair, as it is measured, if they are known.
-            is_exact: True to look as exactly as at few moments.
+            is_exact: True to prove as exactly as for few moments.
         """
-        n_looks = EXACT_LOOKS if is_exact or len(moments) <= FEW else ROUGH_LOOKS
+        n_visits = EXACT_VISITS if is_exact or len(moments) <= FEW else ROUGH_VISITS
         near = np.full((len(moments), 2, 3), np.nan) if points is None else points
 
         def ask(span: slice) -> BudgetMoments:
@@ -166,7 +166,7 @@ class PairsWithErrors:
                 _writable(known[span]),
                 _writable(near[span]),
                 enough,
-                n_looks,
+                n_visits,
             )
 
         return self._rows(len(moments), budget_moments, ask)
@@ -180,11 +180,11 @@ class PairsWithErrors:
         enough: float = np.inf,
         fail: float | None = None,
     ) -> BudgetRows:
-        """What is proven of the motion from some steps to the next.
+        """Bounds on the motion from some steps to the next.
 
         Args:
-            known: (n,) [m] the least that is proven at both ends. gap: [m] how far below what occurs it may be.
-            fail: [m] less than the gap where that would leave this limit undecided; None: that of the rule.
+            known: (n,) [m] the least bound at the two ends. gap: [m] allowed below the distance that occurs.
+            fail: [m] the limit to decide, if need be with a smaller gap; None: the limit of the rule.
         """
         undecided = self.what.limits.fail if fail is None else fail
 
@@ -222,7 +222,7 @@ class PairsWithErrors:
 
 
 def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
-    """What is proven at each step, from what was measured."""
+    """Bounds at each step, from its measurement."""
     what, points = pairs.what, found.points
     if not what.layout.is_in_world:
         positions = positions_at(what.case, what.motions, range(pairs.n_steps))
@@ -234,7 +234,7 @@ def proven_of_steps(pairs: PairsWithErrors, found: Measurement) -> BudgetRows:
 
 
 def _sharpen_least(pairs: PairsWithErrors, found: Measurement, rows: BudgetRows) -> None:
-    """Proves the steps of which least is left once more, until one of these is the least."""
+    """Proves the steps with the least bounds once more, until one of these is the least."""
     enough, is_sharp = np.inf, np.zeros(pairs.n_steps, dtype=bool)
     for most in ONCE_MORE:
         lower = np.flatnonzero(~is_sharp & (rows.proven < enough))
@@ -254,7 +254,7 @@ def _sharpen(
     steps: np.ndarray,
     enough: float,
 ) -> None:
-    """Proves some steps once more, as far as what is left of them is below `enough` [m]."""
+    """Proves some steps once more, up to `enough` [m]."""
     at = pairs.steps
     moments = PathMoments(at.intervals[steps], at.shares[steps])
     sharp = pairs.at(moments, rows.pair[steps], found.clearance[steps], enough, is_exact=True)
@@ -264,7 +264,7 @@ def _sharpen(
 
 
 def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> BudgetRows:
-    """What is proven from each step to the next, of what is proven at the steps; the last row is of its step."""
+    """Bounds from each step to the next, given the bounds at the steps; the last row is of its step."""
     known = np.minimum(steps.proven[:-1], steps.proven[1:])
     found = pairs.between(np.arange(len(known)), steps.pair[:-1], known, gap)
     last = BudgetRows(steps.proven[-1:], steps.pair[-1:], np.full(1, -1.0))
@@ -272,7 +272,7 @@ def proven_between(pairs: PairsWithErrors, steps: BudgetRows, gap: float) -> Bud
 
 
 def _last_of(idle: list[Idle]) -> Idle | None:
-    """Takes what was put there last, if there is something; another thread may be at it as well."""
+    """Takes the last item, if there is one; other threads may do the same."""
     try:
         return idle.pop()
     except IndexError:

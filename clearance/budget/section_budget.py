@@ -1,4 +1,4 @@
-"""What is left of the pairs of one section. Not for: what sections come to together (`answer`)."""
+"""The distances that a budget leaves in one section. Not for: all sections together (`answer`)."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from clearance.simulate.measure.sections import Section
 
 @dataclass(frozen=True, eq=False)
 class SectionBudget:
-    """What a budget leaves of a section; pairs and steps are the section's own, distances without padding.
+    """The distances that a budget leaves in a section, without padding; pairs and steps are the section's own.
 
     Attributes:
-        answer: what was measured. pairs: with their errors.
-        steps: proven at each step. between: of the motion from each to the next; None where nothing is certified.
+        answer: as measured. pairs: with their errors.
+        steps: proven at each step. between: proven from each step to the next; None without a certificate.
         expected: (n,) [m]. expected_between: of the least moment after each, NaN where the steps are nearer; None
-            as `between`.
+            like `between`.
     """
 
     answer: SectionAnswer

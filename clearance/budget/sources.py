@@ -1,7 +1,7 @@
-"""How each error of a budget moves the nearest points of a pair, to the first order: what is expected of it.
+"""How each error of a budget moves the nearest points of a pair, to first order, for the estimate.
 
 Every joint, frame, place, surface and clock is a source of its own. Joints that follow another have their leader's
-error, times their factor, so that what it does to both bodies is added up with its sign. Not for: what is proven.
+error, times their factor, so its effects on both bodies add up with their signs. Not for: proofs.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Slope(NamedTuple):
     """How a distance changes with one error.
 
     Attributes:
-        key: of the error. place: which of its numbers, as in `sizes_of`. size: what the budget gives of it.
+        key: of the error. place: which of its numbers, as in `sizes_of`. size: that number in the budget.
         along: (n, 3), the gradient by a vector, or (n, 1) by a number.
     """
 
@@ -74,7 +74,7 @@ class Witness:
 
     Attributes:
         points: (n, 2, 3) [m] in the world. poses: (n, links, 4, 4) `world_from_link` of the case's forest [m].
-        rates: of each whose clock may be off, (n, links, 4, 4) [1/s] how the poses change with that clock.
+        rates: for each owner of a clock with an error, (n, links, 4, 4) [1/s] the rates of the poses by it.
     """
 
     pair: Pair
@@ -84,7 +84,7 @@ class Witness:
 
 
 def sizes_of(budget: Budget, key: SourceKey) -> tuple[float, ...]:
-    """What a budget gives of one error: of frames an offset [m] and an angle [rad], else one number."""
+    """The numbers of one error in a budget: an offset [m] and an angle [rad] for frames, else one number."""
     if key.owner in budget.obstacles:
         obstacle = budget.obstacles[key.owner]
         if key.kind == PLACE:
@@ -204,22 +204,22 @@ def _of_body(case: Case, budget: Budget, side: _Side, common: set[int]) -> Effec
         owner, part = case.robots[body.i_robot].robot.name, body.own_name_in(case)
     if surface_of(case, budget, body) > 0.0:
         yield SourceKey(owner, SURFACE, part), 0, np.full((len(side.x), 1), -1.0)
-    frame, told = body.frame_in(case), _LinkNames(case)
+    frame, names = body.frame_in(case), _LinkNames(case)
     if frame == WORLD:
         obstacle = case.obstacles[body.i_body]
         pose = np.broadcast_to(obstacle.world_from_body, (len(side.x), 4, 4))
         yield from _of_frame(SourceKey(owner, PLACE, ""), side, pose[:, :3, 3])
-        yield from told.of_errors(obstacle.past, pose, side)
+        yield from names.of_errors(obstacle.past, pose, side)
         return
     yield from _of_clocks(frame, side)
     for link in carried_by(forest_of(case), frame):
         if link in common:
             return
-        yield from told.of_link(link, side)
+        yield from names.of_link(link, side)
 
 
 def _of_clocks(frame: int, side: _Side) -> Effects:
-    """What a body does while clocks are off, both bodies of a pair together where they hang on the same."""
+    """The motion of a body by errors of clocks; both bodies of a pair add up where they share a clock."""
     pose = side.witness.poses[:, frame]
     x = np.einsum("nji,nj->ni", pose[:, :3, :3], side.x - pose[:, :3, 3])
     for owner, rates in side.witness.rates.items():
@@ -235,7 +235,7 @@ def _of_frame(key: SourceKey, side: _Side, origin: np.ndarray) -> Effects:
 
 
 class _LinkNames:
-    """What each link of a case's forest is called by."""
+    """The joint, root or obstacle of each link of a case's forest."""
 
     def __init__(self, case: Case) -> None:
         self.case, self.forest = case, forest_of(case)
@@ -251,7 +251,7 @@ class _LinkNames:
         self.obstacles = {link: case.obstacles[i] for i, link in links_of if link != WORLD}
 
     def of_link(self, link: int, side: _Side) -> Effects:
-        """The slopes of the joint above a link and of all else that it hangs on."""
+        """The slopes of the joint above a link and of all its carriers."""
         origin, at = self._joined(link, side), side.witness.poses[:, link]
         below: list[CarrierError] = []
         if link in self.joints:
@@ -275,7 +275,7 @@ class _LinkNames:
         yield from self.of_errors(below, at, side)
 
     def _joined(self, link: int, side: _Side) -> np.ndarray:
-        """(n, 3) where the frame that a link hangs on has its origin [m]."""
+        """(n, 3) the origin of the frame of a link's joint [m]."""
         links = self.forest.links
         origin, parent = links.parent_from_joint[link][:3, 3], int(links.parents[link])
         if parent == NO_PARENT:
@@ -292,7 +292,7 @@ class _LinkNames:
                     yield obstacle
 
     def of_errors(self, errors: Iterable[CarrierError], at: np.ndarray, side: _Side) -> Effects:
-        """The slopes of errors that are seen from a link or body at poses (n, 4, 4) [m]."""
+        """The slopes of errors in the frame of a link or body at poses (n, 4, 4) [m]."""
         for one in errors:
             if one.axis is not None:
                 yield from self._of_joint(one, at, side)
@@ -304,10 +304,10 @@ class _LinkNames:
                 yield key, place, one.sign * along
 
     def _of_joint(self, one: CarrierError, at: np.ndarray, side: _Side) -> Effects:
-        way = at[:, :3, :3] @ one.axis
+        direction = at[:, :3, :3] @ one.axis
         if not one.slides:
-            way = np.cross(way, side.x - at[:, :3, 3] - at[:, :3, :3] @ one.origin)
-        slope = one.sign * np.einsum("ni,ni->n", side.u, way)[:, None]
+            direction = np.cross(direction, side.x - at[:, :3, 3] - at[:, :3, :3] @ one.origin)
+        slope = one.sign * np.einsum("ni,ni->n", side.u, direction)[:, None]
         for name, factor in self.leads[one.owner][one.joint]:
             for kind in (POSITION, TRACKING):
                 yield SourceKey(one.owner, kind, name, one.moment), 0, factor * slope

@@ -1,6 +1,6 @@
-"""The moments at which a budget leaves least, and what each error takes of them.
+"""The moments at which a budget leaves least, and the loss by each error there.
 
-Not for: finding what is left at each step (`proven`).
+Not for: the bounds at each step (`proven`).
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import Pair
 
 MOST_WORST = 3
-"""Moments of a rule that are told of, each of another pair."""
+"""Moments of a rule to report, each of another pair."""
 
 MOST_BETWEEN = 8
-"""Intervals whose least moments are looked at for that."""
+"""Intervals whose least moments are candidates for that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,11 +64,11 @@ class WorstMoments:
 
     @cached_property
     def moments(self) -> tuple[BudgetMoment, ...]:
-        """The moments, without what each error takes of them."""
+        """The moments, without the loss by each error."""
         return tuple(self._moment(low) for low in self._lows)
 
     def with_sources(self, i: int, most: int | None = None) -> BudgetMoment:
-        """One of them with what each error takes, and of the first `most`, or of all, its greatest size."""
+        """One of them with the loss by each error, and for the first `most`, or all, its greatest size."""
         low = self._lows[i]
         case = low.section.section.phase.case
         sources = tuple(
@@ -100,16 +100,16 @@ class WorstMoments:
         expected = np.nan
         if not moment.touches:
             what = low.section.pairs
-            taken = what.budget.coverage * deviations(
+            loss = what.budget.coverage * deviations(
                 section.phase.case, what.budget, _witness(low, moment)
             )
-            expected = max(moment.clearance - float(taken[0]) - section.padding, low.proven)
-        told = moment.of_run(section.phase.first, section.padding, self._rule)
-        return BudgetMoment(told, low.proven, expected)
+            expected = max(moment.clearance - float(loss[0]) - section.padding, low.proven)
+        reported = moment.of_run(section.phase.first, section.padding, self._rule)
+        return BudgetMoment(reported, low.proven, expected)
 
 
 def _sources(low: _LowMoment) -> list[tuple[SourceKey, ErrorSource]]:
-    """What each error takes of a moment, what takes most first."""
+    """The loss by each error at a moment, the greatest first."""
     section, pairs, moment = low.section, low.section.pairs, _measured(low)
     case, budget = section.section.phase.case, pairs.budget
     by_key: dict[SourceKey, list[Slope]] = {}
@@ -119,29 +119,29 @@ def _sources(low: _LowMoment) -> list[tuple[SourceKey, ErrorSource]]:
     for key, own in by_key.items():
         sizes, units = sizes_of(budget, key), units_of(case, key)
         less = with_sizes(budget, key, (0.0,) * len(sizes))
-        taken = _at(pairs.of(budget, (key.moment, less)), low) - _at(pairs, low)
+        loss = _at(pairs.of(budget, (key.moment, less)), low) - _at(pairs, low)
         expected = None if moment.touches else _deviation(own, budget)
         source = ErrorSource(
             key.owner, key.kind, key.part, tuple(zip(sizes, units, strict=True)),
-            max(0.0, taken), expected, moment=key.moment,
+            max(0.0, loss), expected, moment=key.moment,
         )  # fmt: skip
         found.append((key, source))
     return sorted(found, key=lambda one: -one[1].proven)
 
 
 def _deviation(own: list[Slope], budget: Budget) -> float:
-    """[m] of the clearance, by errors of one source."""
+    """[m] standard deviation of the clearance by errors of one source."""
     return float(np.sqrt(sum(float(variance_of(slope, budget)[0]) for slope in own)))
 
 
 def _at(pairs: PairsWithErrors, low: _LowMoment) -> float:
-    """[m] what is proven of all pairs at a moment."""
+    """[m] the bound on all pairs at a moment."""
     found = pairs.at(low.moments, np.array([low.pair]), np.array([np.nan]))
     return float(found.proven[0])
 
 
 def _lows(section: SectionBudget) -> Iterator[_LowMoment]:
-    """The least of each pair over the steps, and over the intervals of which less was seen within."""
+    """The least moment of each pair over the steps, and of the intervals with less between their steps."""
     steps, padding = section.steps, section.section.padding
     at = section.pairs.steps
     for pair in np.unique(steps.pair[steps.pair >= 0]).tolist():
@@ -163,7 +163,7 @@ def _lows(section: SectionBudget) -> Iterator[_LowMoment]:
 
 
 def _measured(low: _LowMoment) -> Moment:
-    """The pair, measured as it is without errors, in its phase."""
+    """The pair, measured without errors, in its phase."""
     phase = low.section.section.phase
     moments = MomentQuery(phase.case, phase.motions, low.section.section.pairs)
     if low.share == 0.0 or phase.n_steps == 1:
@@ -174,7 +174,7 @@ def _measured(low: _LowMoment) -> Moment:
 
 
 def _witness(low: _LowMoment, moment: Moment) -> Witness:
-    """The nearest points of the pair at the moment, and where all is then."""
+    """The nearest points of the pair at the moment, and the poses then."""
     phase, budget = low.section.section.phase, low.section.pairs.budget
     step = min(low.interval, max(0, phase.n_steps - 2))
     columns = positions_between(

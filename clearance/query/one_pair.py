@@ -13,10 +13,10 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.search.body_pair import NO_FACE
 from clearance.kernels.search.pair_query import (
     AFRESH,
+    FRONT_CAPACITY,
     POSES_ARE_RIGID,
-    ROOM,
-    hold_pair,
     nearest_at_poses,
+    track_pair,
 )
 from clearance.kernels.search.scratch import Scratch, new_scratch
 from clearance.query.inside import doubt_of
@@ -36,13 +36,15 @@ class OnePair:
         goes_on: False if every search begins anew.
 
     Attributes:
-        held: of `hold_pair`. It refers to none of the polyhedra, so that it does not keep them alive.
+        arrays: of `track_pair`. It refers to none of the polyhedra, so that it does not keep them alive.
         doubt: what of one may be inside the other, if anything.
     """
 
     def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch, *, goes_on: bool) -> None:
         require_polyhedron(a, "a"), require_polyhedron(b, "b")
-        self.arrays = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
+        self.arrays = track_pair(
+            surface_of(a), surface_of(b), FRONT_CAPACITY if goes_on else 0, scratch
+        )
         self.doubt = doubt_of(a, b)
         self._how = 0 if goes_on else AFRESH
         self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)

@@ -290,11 +290,11 @@ class Apart:
         a, b = (frames[body_name(case, body)] for body in pair)
         n = a.at.shape[1]
         rows = answer_rows(n)
-        held = self._held(case, pair).held
-        nearest_at_poses(held, _rows_of(a), _rows_of(b), POSES_ARE_RIGID, *rows)
+        arrays = self._pair(case, pair).arrays
+        nearest_at_poses(arrays, _rows_of(a), _rows_of(b), POSES_ARE_RIGID, *rows)
         return rows[0][:, 0], rows[1]
 
-    def _held(self, case: Case, pair: Pair) -> OnePair:
+    def _pair(self, case: Case, pair: Pair) -> OnePair:
         shapes = [body.shape_in(case) for body in pair]
         key = id(shapes[0]), id(shapes[1])
         if key not in self._pairs:

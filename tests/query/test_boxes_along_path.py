@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from clearance.kernels.search.boxes_along_path import ROOM, CarriedBoxes, steps_together
+from clearance.kernels.search.boxes_along_path import ROUNDING, CarriedBoxes, steps_together
 
 N_STEPS = 40
 
@@ -60,7 +60,7 @@ def test_where_boxes_are_omitted_they_are_beside_each_other_and_else_never(
     assert (apart[omitted] > 0.0).all()
     largest = np.abs(poses[:, :, :3, 3]).sum() + np.abs(bounds).sum()
     if first < end:
-        assert apart[[first, end - 1]].max() <= 2.0 * ROOM * largest
+        assert apart[[first, end - 1]].max() <= 2.0 * ROUNDING * largest
 
 
 @pytest.mark.parametrize("far", [1.0, -1.0])

@@ -21,7 +21,7 @@ from clearance.kernels.arithmetic.vec3 import (
     turn,
     turn_back,
 )
-from clearance.kernels.features.bounds import direction_beside, direction_between
+from clearance.kernels.features.bounds import direction_between, direction_outward
 from clearance.kernels.mesh.corners import corners_at, greatest_in, least_in
 from clearance.kernels.mesh.surface import Surface
 from tests.made_cases import at
@@ -92,11 +92,11 @@ def beside_edge_by_edge(surface, face, other, face_other, m):
 
 @kernel
 def directions_beside(a: Surface, b: Surface, pose: Floats2, found: Floats4) -> None:
-    """Fills `direction_beside` of all face pairs, and beside it that of edges one after another."""
+    """Fills `direction_outward` of all face pairs, and beside it that of edges one after another."""
     m = rigid(pose)
     for i in range(len(a.face_starts) - 1):
         for j in range(len(b.face_starts) - 1):
-            u = direction_beside(a, i, b, j, m, inverse(m)).u
+            u = direction_outward(a, i, b, j, m, inverse(m)).u
             of_a, d = beside_edge_by_edge(a, i, b, j, m)
             of_b, e = beside_edge_by_edge(b, j, a, i, inverse(m))
             if of_b > of_a:

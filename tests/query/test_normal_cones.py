@@ -31,7 +31,12 @@ from clearance.kernels.search.node_pairs import (
     turned_away,
     views_along,
 )
-from clearance.kernels.search.pair_query import POSES_ARE_RIGID, ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.pair_query import (
+    FRONT_CAPACITY,
+    POSES_ARE_RIGID,
+    nearest_at_poses,
+    track_pair,
+)
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import answer_rows
 from tests import oracle
@@ -265,8 +270,8 @@ def test_much_is_turned_away_while_moving_a_little():
 def asked(a, b, poses):
     """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
     numbers, points, counts = answer_rows(len(poses))
-    held = hold_pair(a, b, ROOM, new_scratch())
-    nearest_at_poses(held, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
+    tracked = track_pair(a, b, FRONT_CAPACITY, new_scratch())
+    nearest_at_poses(tracked, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
     apart = numbers[:, 0] > 0.0
     reported = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
     return reported, counts[:, 2:4].sum(axis=0)

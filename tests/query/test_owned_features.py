@@ -9,7 +9,7 @@ from clearance import Polyhedron
 from clearance.geometry.shapes import box, cylinder, pipe, sphere
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
-from clearance.kernels.search.pair_query import AFRESH, ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.pair_query import AFRESH, FRONT_CAPACITY, nearest_at_poses, track_pair
 from clearance.kernels.search.scratch import new_scratch
 from tests.examples import examples, first_fast
 from tests.made_cases import torus, without_cones
@@ -53,7 +53,7 @@ def of_face(items, starts, face):
 
 def answers(a, b, poses, *, afresh):
     """(distance, bound, points, faces) at all poses, as one array of bits; how many face pairs were measured."""
-    held = hold_pair(a, b, ROOM, new_scratch())
+    tracked = track_pair(a, b, FRONT_CAPACITY, new_scratch())
     n = len(poses)
     numbers, points, counts = (
         np.empty((n, 2)),
@@ -62,7 +62,7 @@ def answers(a, b, poses, *, afresh):
     )
     assert (
         nearest_at_poses(
-            held,
+            tracked,
             np.eye(4)[None],
             poses,
             AFRESH if afresh else 0,

@@ -15,7 +15,7 @@ from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.search.front import (
-    forget,
+    forget_front,
     is_worth_separating,
     no_fronts,
     note_separating_planes,
@@ -37,7 +37,7 @@ def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
         top, n_found, _ = top_of(surface, root, u, -1, rooms[i], 24, 0, scratch)
         heights[i], n_leaves[i] = top.height, n_found
         for k in range(n_found):
-            leaves[i, k] = surface.children[scratch.left[k, 0], 0]
+            leaves[i, k] = surface.children[scratch.entries[k, 0], 0]
         high[i] = high_corner(surface, root, u, -1)[0].height
 
 
@@ -179,7 +179,7 @@ def sought(founds, asked):
         asked[i] = is_worth_separating(fronts, 0)
         if asked[i]:
             note_separating_planes(fronts, 0, founds[i], 1)
-    forget(fronts, 0)
+    forget_front(fronts, 0)
     asked[-1] = is_worth_separating(fronts, 0)
 
 

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from clearance.simulate.measure.certify import joint_path, with_turning_balls
 from scipy.spatial.transform import Rotation
 
 from clearance.geometry.polyhedron import Polyhedron
@@ -23,10 +22,11 @@ from clearance.kernels.motion.certify import (
 )
 from clearance.kernels.motion.kinematics import BALL, NO_COLUMN, NO_PARENT, SLIDING, TURNING, Links
 from clearance.kernels.motion.sweep import sweep
-from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
+from clearance.kernels.motion.sweep_goal import FirstPass, SweepGoal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.world import World
 from clearance.query.pair_query import Query
+from clearance.simulate.measure.certify import joint_path, with_turning_balls
 from clearance.simulate.measure.layout import with_whole_faces
 from clearance.world.kinematics import all_links, floating_links, standing_link
 from tests.made_cases import at, dented, torus
@@ -112,7 +112,7 @@ def swept(scene: Scene, within: float = np.inf) -> tuple[StepRows, np.ndarray]:
     counts = np.empty(5, dtype=np.int64)
     sweep(
         join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n), np.empty(0, np.int64)),
-        Goal(np.full(n_pairs, within), False, False), FirstLook(np.empty(0, np.int64), 0),
+        SweepGoal(np.full(n_pairs, within), False, False), FirstPass(np.empty(0, np.int64), 0),
         SweepRows(rows, no_pairs), counts,
     )  # fmt: skip
     return rows, counts

@@ -1,1 +1,1 @@
-"""What errors of a machine leave of distances, proven: compiled. Not for: the errors (`clearance.budget`)."""
+"""Distances that errors of a machine leave, proven: compiled. Not for: the errors (`clearance.budget`)."""

@@ -1,14 +1,14 @@
 """The errors of a machine as a displacement of both bodies of a pair, with the motion of an interval.
 
-Along the direction of a search boxes are bounded by a tilted direction, and by the rows that are kept beside it
-(`tilted`). Not for: the rows (`rows`), and which pairs and moments are asked (`sweep`).
+Along the direction of a search boxes are bounded by a tilted direction, and by the rows that the tilt does not
+cover, the separate rows (`tilted`). Not for: the rows (`rows`), and choosing pairs and moments (`sweep`).
 """
 
 import math
 from typing import NamedTuple
 
 from clearance.compile.decorators import inline
-from clearance.kernels.budget.errors import BESIDE, REACH, TURNED, BodyRows
+from clearance.kernels.budget.errors import REACH, RESIDUAL, TURNED, BodyRows
 from clearance.kernels.budget.reach import (
     BodyReach,
     along_at_rest,
@@ -16,8 +16,8 @@ from clearance.kernels.budget.reach import (
     reach_of_box,
     reach_of_point,
 )
-from clearance.kernels.budget.tilted import kept_of_box, kept_of_point, tilted
-from clearance.kernels.budget.view import AlongRows, look_along, moved_of_point
+from clearance.kernels.budget.tilted import separate_of_box, separate_of_point, tilted
+from clearance.kernels.budget.view import AlongRows, moved_of_point, project_errors
 from clearance.kernels.features.bounds import rounding_slack
 from clearance.kernels.mesh.surface import Box, box_of
 from clearance.kernels.search.displacement import (
@@ -38,14 +38,15 @@ from clearance.kernels.search.proof import CHAIN_SLACK
 
 
 class SeenErrors(NamedTuple):
-    """The rows of all bodies, and how those of two are seen.
+    """The rows of all bodies, and those of two bodies along a direction.
 
     Attributes:
-        kept: the rows beside the tilted direction of the search. own: all rows, along the prepared direction.
+        found: of all bodies. separate: rows that the tilted direction of the search does not cover.
+        own: all rows, along the prepared direction.
     """
 
     found: BodyRows
-    kept: AlongRows
+    separate: AlongRows
     own: AlongRows
 
 
@@ -53,10 +54,10 @@ class ErrorRows(NamedTuple):
     """The errors of both bodies of a pair.
 
     Attributes:
-        slack: [m] what rounding can raise a bound by. seen: `SeenErrors`, lent.
-        body_a, body_b: their rows. box_a, box_b: of both whole.
-        moves: True where joints move: then boxes have a reach of their own, by that of each body.
-        reach_a, reach_b: of both. whole_a, whole_b: [m] how far any point of either can move.
+        slack: [m] the most that rounding can raise a bound. seen: `SeenErrors`, lent.
+        body_a, body_b: numbers of the bodies. box_a, box_b: of the whole bodies.
+        moves: True where joints move: then the reach is computed for each box.
+        reach_a, reach_b: of both. whole_a, whole_b: [m] the greatest motion of any point of either.
         turn: of both together.
     """
 
@@ -83,7 +84,7 @@ def _(rows: ErrorRows, box, side):
 
 @movement_of_box_along.register
 def _(rows: ErrorRows, box, side, u):
-    return kept_of_box(box, side, rows.seen.kept)
+    return separate_of_box(box, side, rows.seen.separate)
 
 
 @still_turned_away.register
@@ -94,8 +95,8 @@ def _(rows: ErrorRows, cones, d, marks, bounds):
 @prepare_along.register
 def _(rows: ErrorRows, direction):
     seen = rows.seen
-    look_along(seen.found, rows.body_a, 0, direction.u, seen.own)
-    look_along(seen.found, rows.body_b, 1, direction.v, seen.own)
+    project_errors(seen.found, rows.body_a, 0, direction.u, seen.own)
+    project_errors(seen.found, rows.body_b, 1, direction.v, seen.own)
 
 
 @movement_of_point_along.register
@@ -105,7 +106,7 @@ def _(rows: ErrorRows, x, side, u):
 
 @movement_of_point_in_search.register
 def _(rows: ErrorRows, x, side, u):
-    return kept_of_point(x, side, rows.seen.kept)
+    return separate_of_point(x, side, rows.seen.separate)
 
 
 @errors_of_point_along.register
@@ -121,7 +122,7 @@ def _(rows: ErrorRows, x, side):
 @direction_of_search.register
 def _(rows: ErrorRows, direction):
     seen = rows.seen
-    return tilted(direction, rows.box_a, rows.box_b, seen.own, seen.kept)
+    return tilted(direction, rows.box_a, rows.box_b, seen.own, seen.separate)
 
 
 @is_nearly_still.register
@@ -143,6 +144,6 @@ def error_rows_of(seen, roots, body_a, body_b):
     turn = Turn(angle, math.cos(angle), math.sin(angle), one[REACH] + other[REACH])
     return ErrorRows(
         slack, seen, body_a, body_b, box_of(a, roots.a), box_of(b, roots.b),
-        one[BESIDE] >= 0.0 or other[BESIDE] >= 0.0,
+        one[RESIDUAL] >= 0.0 or other[RESIDUAL] >= 0.0,
         reach_of_body(found, body_a), reach_of_body(found, body_b), one[REACH], other[REACH], turn,
     )  # fmt: skip

@@ -1,7 +1,8 @@
-"""How far bodies can move at most, wherever their joints are: what needs no look at a state.
+"""The greatest motion of bodies at any positions of their joints: bounds that need no state.
 
-A point of a body is never farther from the frame of a link below its own than the lengths between, the ways of the
-slides and the offsets that errors make; that is its lever about any axis there. Not for: a state (`rows`).
+The distance of a body's point from the frame of a link below its own is bounded. The bound is the sum of the
+lengths between, the travel of the slides and the offsets by errors. It is the lever about any axis there. Not for:
+a state (`rows`).
 """
 
 import math
@@ -20,32 +21,32 @@ from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 
 
 class Levers(NamedTuple):
-    """What bodies can do at most.
+    """Bounds on the motion of bodies.
 
     Attributes:
-        reach: (bodies,) [m] how far errors can move any point of each.
-        of_links: (bodies, links) [m/rad] or [m/m] how far any point moves at most by the joint above a link.
-        beside: (bodies, links) [m/rad] or [m/m] how much farther than without errors any point moves by it.
-        ways: (links,) [m] how far slides get from their frames. sizes: (bodies,) [m] how far any point of each is
-            from its origin, or -1 where none of these is known.
-        steps: (links, 2) [rad or m] how far the joint above each gets between two steps; 1 where no joint above
-            moves between them.
+        reach: (bodies,) [m] the greatest motion of any point of each by errors.
+        of_links: (bodies, links) [m/rad] or [m/m] the greatest motion of any point by the joint above a link.
+        excess: (bodies, links) [m/rad] or [m/m] how much greater errors make the motion of any point by it.
+        slides: (links,) [m] the greatest travel of slides from their frames. sizes: (bodies,) [m] the greatest
+            distance of any point of each from its origin, or -1 before the levers are filled.
+        steps: (links, 2) by `TRAVEL` [rad or m] of the joint above each between two steps, by `UNMOVED` 1 where no
+            joint above moves between them.
     """
 
     reach: Floats
     of_links: Floats2
-    beside: Floats2
-    ways: Floats
+    excess: Floats2
+    slides: Floats
     sizes: Floats
     steps: Floats2
 
 
-WAY_OF, STANDS = 0, 1
+TRAVEL, UNMOVED = 0, 1
 
 
 @inline
 def new_levers(n_bodies, n_links):
-    """Levers of nothing."""
+    """Levers, not filled yet."""
     return Levers(
         np.zeros(n_bodies), np.zeros((n_bodies, n_links)), np.zeros((n_bodies, n_links)),
         np.zeros(n_links), np.full(n_bodies, -1.0), np.zeros((n_links, 2)),
@@ -54,12 +55,12 @@ def new_levers(n_bodies, n_links):
 
 @inline
 def fill_levers(surface, world, path, errors, levers):
-    """Writes the levers of all bodies, of joints that move along a path, if they are not known."""
+    """Fills the levers of all bodies for joints that move along a path, once."""
     if len(levers.sizes) == 0 or levers.sizes[0] >= 0.0:
         return
-    for link in range(len(levers.ways)):
+    for link in range(len(levers.slides)):
         if world.links.kinds[link] == SLIDING:
-            levers.ways[link] = _way(path, link) + errors.joint[link]
+            levers.slides[link] = _farthest_travel(path, link) + errors.joint[link]
     for body in range(len(world.frames)):
         levers.sizes[body] = _size(surface, world, body)
         if world.frames[body] < 0:
@@ -69,25 +70,25 @@ def fill_levers(surface, world, path, errors, levers):
 
 
 @inline
-def _way(path, link):
-    """[m] how far from 0 a joint gets, between steps as well."""
-    way = bow = 0.0
+def _farthest_travel(path, link):
+    """[m] the greatest distance of a joint from 0, between steps as well."""
+    travel = bow = 0.0
     for step in range(len(path.times)):
-        way = max(way, abs(path.positions[step, link]))
+        travel = max(travel, abs(path.positions[step, link]))
     for step in range(len(path.times) - 1):
         bow = max(bow, bow_of(path, step, link))
-    return (way + bow) * OUTWARD
+    return (travel + bow) * OUTWARD
 
 
 @inline
 def bow_of(path, step, link):
-    """[rad or m] how far a joint gets from the straight way to the next step at most."""
+    """[rad or m] the greatest deviation of a joint from linear motion to the next step."""
     if len(path.velocities) == 0 or not path.is_cubic[link]:
         return 0.0
     length = path.times[step + 1] - path.times[step]
-    way = path.positions[step + 1, link] - path.positions[step, link]
-    e0 = length * path.velocities[step, link] - way
-    e1 = length * path.velocities[step + 1, link] - way
+    travel = path.positions[step + 1, link] - path.positions[step, link]
+    e0 = length * path.velocities[step, link] - travel
+    e1 = length * path.velocities[step + 1, link] - travel
     return 0.25 * max(abs(e0), abs(e1))
 
 
@@ -98,7 +99,7 @@ def _length(v):
 
 @inline
 def _size(surface, world, body):
-    """[m] how far any point of a body is from its origin at most."""
+    """[m] the greatest distance of any point of a body from its origin."""
     box = box_of(surface, surface.roots[world.solids[body]])
     return _length(box.centre) + _length(box.half) * (1.0 + LEAN)
 
@@ -117,7 +118,7 @@ def _reach_of_standing(surface, world, body, errors):
 
 @inline
 def _turns(links, i, errors):
-    """[rad] what all errors from a link to the base can turn at most."""
+    """[rad] the greatest turn by all errors from a link to the base."""
     turns = 0.0
     while i != NO_PARENT:
         turns += errors.angle[i]
@@ -131,7 +132,7 @@ def _turns(links, i, errors):
 
 @inline
 def _fill(surface, world, body, errors, levers):
-    """Writes the levers of a body that a link carries; [m] how far errors can move any point of it."""
+    """Writes the levers of a body that a link carries; [m] the greatest motion of any point of it by errors."""
     links, i = world.links, world.frames[body]
     far = levers.sizes[body]
     reach, turned = 0.0, chord(_turns(links, i, errors))
@@ -139,19 +140,19 @@ def _fill(surface, world, body, errors, levers):
         if links.parents[i] != NO_PARENT:
             if links.kinds[i] == TURNING:
                 levers.of_links[body, i] = far + reach
-                levers.beside[body, i] = turned * (far + reach) + reach
+                levers.excess[body, i] = turned * (far + reach) + reach
                 reach += chord(errors.joint[i]) * (far + reach)
             elif links.kinds[i] == SLIDING:
-                levers.of_links[body, i], levers.beside[body, i] = 1.0, turned
+                levers.of_links[body, i], levers.excess[body, i] = 1.0, turned
                 reach += errors.joint[i]
-                far += levers.ways[i]
+                far += levers.slides[i]
         reach += chord(errors.angle[i]) * (far + reach) + errors.xyz[i]
         far += errors.xyz[i]
         extras = errors.of_links
         for k in range(extras.starts[i], extras.starts[i + 1]):
             o = extras.origins[k]
-            beside = far + _length(Vec3(o[0], o[1], o[2]))
-            reach += chord(extras.angle[k]) * (beside + reach) + extras.xyz[k]
+            arm = far + _length(Vec3(o[0], o[1], o[2]))
+            reach += chord(extras.angle[k]) * (arm + reach) + extras.xyz[k]
             far += extras.xyz[k]
         far += _length(rigid(links.parent_from_joint[i]).t)
         i = links.parents[i]
@@ -160,12 +161,12 @@ def _fill(surface, world, body, errors, levers):
 
 @inline(force=True)
 def moved_from_step(world, path, step, body, levers):
-    """[m] how far any point of a body gets on the way from one step to the next, whatever the errors are."""
+    """[m] the greatest motion of any point of a body from one step to the next, with any errors."""
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        way = abs(path.positions[step + 1, i] - path.positions[step, i]) + bow_of(path, step, i)
-        moved += way * levers.of_links[body, i]
+        travel = abs(path.positions[step + 1, i] - path.positions[step, i]) + bow_of(path, step, i)
+        moved += travel * levers.of_links[body, i]
         i = links.parents[i]
     for ball in range(len(path.balls.links)):
         lever = levers.of_links[body, path.balls.links[ball]]
@@ -189,40 +190,40 @@ def _turns_not(balls, ball, before, step):
 
 @inline
 def fill_steps(world, path, before, step, levers):
-    """Writes how far joints get from one step to a later one, and which links no joint moves meanwhile."""
+    """Writes the travel of joints from one step to a later one, and the links that do not move meanwhile."""
     links, steps = world.links, levers.steps
     for link in range(len(links.parents)):
-        way = abs(path.positions[step, link] - path.positions[before, link])
-        steps[link, WAY_OF], steps[link, STANDS] = way, 1.0 if way == 0.0 else 0.0
+        travel = abs(path.positions[step, link] - path.positions[before, link])
+        steps[link, TRAVEL], steps[link, UNMOVED] = travel, 1.0 if travel == 0.0 else 0.0
     for ball in range(len(path.balls.links)):
         if not _turns_not(path.balls, ball, before, step):
-            steps[path.balls.links[ball], STANDS] = 0.0
+            steps[path.balls.links[ball], UNMOVED] = 0.0
     for link in range(len(links.parents)):
-        if links.parents[link] != NO_PARENT and steps[links.parents[link], STANDS] == 0.0:
-            steps[link, STANDS] = 0.0
+        if links.parents[link] != NO_PARENT and steps[links.parents[link], UNMOVED] == 0.0:
+            steps[link, UNMOVED] = 0.0
 
 
 @inline(force=True)
-def moved_beside(world, path, before, step, body, levers):
-    """[m] how much farther than without errors any point of a body gets from one step to a later one.
+def excess_of_motion(world, path, before, step, body, levers):
+    """[m] how much errors increase the motion of any point of a body from one step to a later one.
 
-    What joints do between these is in `levers.steps`.
+    `levers.steps` has the motion of joints between these steps.
     """
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:
-        moved += levers.steps[i, WAY_OF] * levers.beside[body, i]
+        moved += levers.steps[i, TRAVEL] * levers.excess[body, i]
         i = links.parents[i]
     for ball in range(len(path.balls.links)):
-        beside = levers.beside[body, path.balls.links[ball]]
+        excess = levers.excess[body, path.balls.links[ball]]
         for between in range(before, step):
-            moved += path.balls.arcs[between, ball, ANGLE] * beside
+            moved += path.balls.arcs[between, ball, ANGLE] * excess
     return moved * (1.0 + 1e-9)
 
 
 @inline(force=True)
 def moved_in_part(world, motion, body, levers):
-    """[m] how far any point of a body gets from the middle of a part of an interval at most."""
+    """[m] the greatest motion of any point of a body from the middle of a part of an interval."""
     links, i = world.links, world.frames[body]
     moved = 0.0
     while i >= 0 and links.parents[i] != NO_PARENT:

@@ -1,7 +1,8 @@
-"""Where all is in the middle of a part of an interval, and what joints do about it while clocks may be off.
+"""The poses in the middle of a part of an interval, and the motion of joints about it with wrong clocks.
 
-A joint whose clock may be off by d is, at a time of the part from t0 to t1, where the path is at some time from
-t0 - d to t1 + d. Before its path begins and after it ends it stands. Not for: the errors (`rows`).
+Let the clock of a joint be wrong by up to d. At any time of the part from t0 to t1 the joint is where its path is
+at some time from t0 - d to t1 + d. Before its path begins and after it ends it stands. Not for: the errors
+(`rows`).
 """
 
 import math
@@ -18,13 +19,13 @@ from clearance.kernels.motion.kinematics import NO_PARENT, place_by_joint
 
 
 class Middle(NamedTuple):
-    """A state and what is about it.
+    """A state of the links, and their motion about it.
 
     Attributes:
         state: positions, swings, bends and poses of all links.
-        turned: (links,) [rad] what ball joints turn since their clocks may be off.
-        marks: (links, 2) True for those that carry a body, of no other is anything known; and for those that are
-            not where they were in the last state.
+        turned: (links,) [rad] the turn of ball joints by wrong clocks.
+        marks: (links, 2) by `WANTED` True for links that carry a body, all others are ignored; by `MOVES` True for
+            links whose pose differs from the last state.
     """
 
     state: IntervalMiddle
@@ -37,7 +38,7 @@ WANTED, MOVES = 0, 1
 
 @inline
 def new_middle_of(n_links):
-    """A state that is nowhere yet."""
+    """A state without poses yet."""
     return Middle(
         IntervalMiddle(
             np.zeros(n_links), np.zeros(n_links), np.zeros(n_links), np.zeros((n_links, 4, 4))
@@ -48,7 +49,7 @@ def new_middle_of(n_links):
 
 @inline
 def begin_middle(world, middle):
-    """Notes which links carry the bodies of a world; none of them is anywhere yet."""
+    """Marks the links that carry the bodies of a world; none has a pose yet."""
     middle.marks[:, WANTED] = False
     middle.state.positions[:] = math.nan
     for body in range(len(world.frames)):
@@ -60,13 +61,13 @@ def begin_middle(world, middle):
 
 @inline
 def _position(path, step, link, share):
-    """Where a joint is, and how far its path may be from a straight line to either end of the interval."""
+    """The position of a joint, and the greatest deviation of its path from linear motion in the interval."""
     return part_of(path, step, link, share, share).middle, bow_of(path, step, link)
 
 
 @inline
 def _interval_at(path, step, time):
-    """The interval that a time is in, the path's first or last where it is in none, looked for from `step`."""
+    """The interval that a time is in, or the path's first or last one, sought from `step`."""
     last = len(path.times) - 2
     while step > 0 and path.times[step] > time:
         step -= 1
@@ -107,24 +108,24 @@ def _widen(path, step, low, high, link, delay, state):
 
 @inline
 def _turned_by_arcs(path, step, low, high, ball, delay):
-    """[rad] how far a ball joint turns in the times that its clock may be off, before or after the part."""
+    """[rad] the turn of a ball joint in the time of its clock's error, before or after the part."""
     start = path.times[step]
     length = path.times[step + 1] - start
     most = 0.0
     for side in range(2):
         end = start + low * length if side == 0 else start + high * length + delay
         begin = end - delay
-        way = 0.0
+        angle = 0.0
         for k in range(_interval_at(path, step, begin), _interval_at(path, step, end) + 1):
             share = _share_at(path, k, end) - _share_at(path, k, begin)
-            way += share * path.balls.arcs[k, ball, ANGLE]
-        most = max(most, way)
+            angle += share * path.balls.arcs[k, ball, ANGLE]
+        most = max(most, angle)
     return most * OUTWARD + 2.0**-45
 
 
 @inline
 def _place(links, path, step, low, high, middle):
-    """Writes what the joints of the wanted links do, and the poses of those that are elsewhere now."""
+    """Writes the motion of the joints of wanted links, and the poses of links that have moved."""
     state, marks = middle.state, middle.marks
     for link in range(len(links.parents)):
         if marks[link, WANTED]:

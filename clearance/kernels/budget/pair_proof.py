@@ -1,6 +1,6 @@
-"""The proof of one pair of a sweep: a kernel by itself, which both sweeps call.
+"""The proof of one pair of a sweep: a kernel by itself, for both sweeps.
 
-So the search of a pair is compiled once. Not for: the search (`proof`), and which pairs are asked (`sweep`).
+So the search of a pair is compiled once. Not for: the search (`proof`), and choosing pairs (`sweep`).
 """
 
 from typing import NamedTuple
@@ -17,16 +17,16 @@ from clearance.kernels.budget.sweep_state import (
 )
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.search.carried import front_of, no_front
-from clearance.kernels.search.proof import Goal, Proof, Start, prove
+from clearance.kernels.search.proof import Proof, ProofGoal, ProofStart, prove
 
 
-class Look(NamedTuple):
-    """A pair and the part of the motion over which it is looked into.
+class PairPart(NamedTuple):
+    """A pair, and a part of the motion.
 
     Attributes:
-        pair: its number. half: half of the part's share of its interval, 0 at a step.
-        number: of the part; what is made for one part is not made again for it.
-        goes_on: True where the front of the pair is gone on from, and left: at steps and over whole intervals.
+        pair: its number. half: [s] half of the part, 0 at a step.
+        number: of the part; rows and boxes are made once for each number.
+        goes_on: True to use and update the front of the pair: at steps and over whole intervals.
     """
 
     pair: int
@@ -36,19 +36,21 @@ class Look(NamedTuple):
 
 
 @kernel
-def prove_pair(lent: BudgetScene, look: Look, start: Start, goal: Goal, tally: Integers) -> Proof:
-    """A `Proof` of a pair under its errors, and what moves it in the part."""
-    asked, pair = lent, look.pair
+def prove_pair(
+    lent: BudgetScene, part: PairPart, start: ProofStart, goal: ProofGoal, tally: Integers
+) -> Proof:
+    """A `Proof` of a pair under its errors and its motion in the part."""
+    asked, pair = lent, part.pair
     surface, world, state = asked.surface, asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    fill_body(lent, body_a, look.half, look.number)
-    fill_body(lent, body_b, look.half, look.number)
+    fill_body(lent, body_a, part.half, part.number)
+    fill_body(lent, body_b, part.half, part.number)
     pose = pose_of(world, body_a, state)
     frames = frames_of(pose, pose_of(world, body_b, state))
     root_a, root_b = surface.roots[world.solids[body_a]], surface.roots[world.solids[body_b]]
     roots = PosedPair(surface, root_a, surface, root_b, frames)
     carried = state.carried
-    front = front_of(world.pairs, pair, carried) if look.goes_on else no_front(carried)
+    front = front_of(world.pairs, pair, carried) if part.goes_on else no_front(carried)
     rows = error_rows_of(state.seen, roots, body_a, body_b)
     proof = prove(roots, rows, start, goal, front, state.scratch)
     tally[1] += 1

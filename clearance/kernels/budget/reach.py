@@ -1,4 +1,4 @@
-"""How far the errors of a body can move points of it. Not for: which errors there are (`rows`)."""
+"""The greatest motion of a body's points by its errors. Not for: the errors (`rows`)."""
 
 import math
 from typing import NamedTuple
@@ -7,7 +7,6 @@ from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, sub
 from clearance.kernels.budget.errors import (
-    BESIDE,
     CHORD,
     FIRST,
     FIRST_AT_REST,
@@ -16,11 +15,12 @@ from clearance.kernels.budget.errors import (
     OFFSET,
     OFFSETS,
     REACH,
+    RESIDUAL,
     REST_AT_REST,
     SLIDE,
+    SLIDE_LENGTH,
     TOGETHER,
     TURN,
-    WAY,
 )
 from clearance.kernels.features.bounds import LEAN
 
@@ -34,14 +34,14 @@ class Ball(NamedTuple):
 
 @inline
 def from_axis(ball, origin, axis):
-    """[m] how far any point of a ball is from a line at most."""
+    """[m] the greatest distance of any point of a ball from a line."""
     away = cross(sub(ball.t, origin), axis)
     return math.sqrt(dot(away, away)) + ball.radius
 
 
 @inline
 def reach_of_ball(rows, n, ball):
-    """[m] how far the errors can move any point of a ball: the recursion from tip to base."""
+    """[m] the greatest motion of any point of a ball by the errors: the recursion from tip to base."""
     moved = 0.0
     for k in range(n):
         r = rows[k]
@@ -51,7 +51,7 @@ def reach_of_ball(rows, n, ball):
             axis = Vec3(r[3], r[4], r[5])
             moved += r[CHORD] * (from_axis(ball, origin, axis) + moved)
         elif kind == SLIDE:
-            moved += r[WAY]
+            moved += r[SLIDE_LENGTH]
         elif kind == FRAME:
             d = sub(ball.t, origin)
             moved += r[CHORD] * (math.sqrt(dot(d, d)) + ball.radius + moved) + r[OFFSET]
@@ -60,15 +60,15 @@ def reach_of_ball(rows, n, ball):
 
 @inline
 def reach_of_point(found, body, x):
-    """[m] how far the errors can move a point of a body (body frame): the recursion from tip to base."""
+    """[m] the greatest motion of a point of a body (body frame) by the errors: the recursion from tip to base."""
     return reach_of_ball(found.rows[body], found.n_rows[body], Ball(x, 0.0))
 
 
 @inline
-def beside_velocity(rows, n, ball):
-    """[m] how far any point of a ball gets, to the first order, beside the one motion together of its rows.
+def residual_of_velocity(rows, n, ball):
+    """[m] the greatest first-order motion of any point of a ball, without the one motion together of its rows.
 
-    -1 where that is not the last row and the only one, or moves nothing.
+    -1 unless exactly the last row is a motion together, and not zero.
     """
     if n == 0 or rows[n - 1, KIND] != TOGETHER:
         return -1.0
@@ -93,35 +93,35 @@ def beside_velocity(rows, n, ball):
 
 
 class BodyReach(NamedTuple):
-    """How far a body gets: a point x by velocity + spin x x [m], and by `beside` [m] from there."""
+    """The motion of a body: of a point x by velocity + spin x x [m], and by up to `residual` [m] more."""
 
     velocity: Vec3
     spin: Vec3
-    beside: float
+    residual: float
 
 
 @inline
 def reach_of_body(found, body):
-    """The `BodyReach` of a body, whether one motion together moves it or not."""
-    beside, nothing = found.sums[body, BESIDE], Vec3(0.0, 0.0, 0.0)
-    if beside < 0.0:
+    """The `BodyReach` of a body, with or without one motion together."""
+    residual, nothing = found.sums[body, RESIDUAL], Vec3(0.0, 0.0, 0.0)
+    if residual < 0.0:
         return BodyReach(nothing, nothing, found.sums[body, REACH])
     r = found.rows[body, found.n_rows[body] - 1]
-    return BodyReach(Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5]), beside)
+    return BodyReach(Vec3(r[0], r[1], r[2]), Vec3(r[3], r[4], r[5]), residual)
 
 
 @inline(force=True)
 def reach_of_box(box, reach):
-    """[m] how far any point of a box gets at most, or of four in lanes."""
+    """[m] the greatest motion of any point of a box, or of four in lanes."""
     v = add(reach.velocity, cross(reach.spin, box.centre))
     radius = square_root(dot(box.half, box.half))
     turned = math.sqrt(dot(reach.spin, reach.spin)) * radius
-    return (square_root(dot(v, v)) + turned) * (1.0 + LEAN) + reach.beside
+    return (square_root(dot(v, v)) + turned) * (1.0 + LEAN) + reach.residual
 
 
 @inline
 def along_at_rest(found, body, u, x):
-    """[m] how far errors alone move a point of a body along a unit direction; clocks are among them."""
+    """[m] the greatest motion of a point of a body along a unit direction by errors alone, clocks included."""
     moved = found.sums[body, OFFSETS] + found.sums[body, REST_AT_REST]
     rows = found.rows[body]
     for k in range(found.n_rows[body]):

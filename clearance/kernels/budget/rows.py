@@ -1,8 +1,8 @@
-"""The errors that move a body, one row each from its tip to its base, seen from the body in its pose.
+"""The errors that move a body, one row each from its tip to its base, in the body's frame.
 
-A row is a turn about an axis, a slide, a turn of a frame about any axis with an offset of its origin, or a motion
-that all joints of one clock make together. `NOTES.md` in `clearance/budget` has the proofs. Not for: what rows
-leave of a distance (`left`), and which errors there are.
+A row is a turn about an axis, a slide, a turn of a frame about any axis with an offset of its origin, or the
+motion that all joints of one clock make together. `NOTES.md` in `clearance/budget` has the proofs. Not for: the
+distance under the rows (`error_rows`), and the sizes of errors (`errors`).
 """
 
 import math
@@ -22,7 +22,6 @@ from clearance.kernels.arithmetic.vec3 import (
     turn_back,
 )
 from clearance.kernels.budget.errors import (
-    BESIDE,
     CHORD,
     FIRST,
     FIRST_AT_REST,
@@ -31,16 +30,17 @@ from clearance.kernels.budget.errors import (
     OFFSET,
     OFFSETS,
     REACH,
+    RESIDUAL,
     REST,
     REST_AT_REST,
     SLIDE,
+    SLIDE_LENGTH,
     SURFACE,
     TOGETHER,
     TURN,
     TURNED,
-    WAY,
 )
-from clearance.kernels.budget.reach import Ball, beside_velocity, from_axis, reach_of_ball
+from clearance.kernels.budget.reach import Ball, from_axis, reach_of_ball, residual_of_velocity
 from clearance.kernels.features.bounds import LEAN
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_path import OUTWARD
@@ -48,10 +48,10 @@ from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 
 
 class _Chain(NamedTuple):
-    """Sums on the way from the tip of a chain to its base: with what moves, and of the errors alone.
+    """Sums from the tip of a chain to its base: with motion, and of the errors alone.
 
     Attributes:
-        above: [rad] turns of all that is above. moved: [m] how far what is below moves any point. rest: [m].
+        above: [rad] all turns above. moved: [m] the greatest motion of any point by all below. rest: [m].
     """
 
     above: float
@@ -69,13 +69,13 @@ def _write(rows, n, origin, axis, kind, first, offset):
     r[0], r[1], r[2] = origin.x, origin.y, origin.z
     r[3], r[4], r[5] = axis.x, axis.y, axis.z
     r[KIND], r[FIRST], r[OFFSET], r[FIRST_AT_REST] = kind, first, offset, first
-    r[CHORD], r[WAY] = 0.0, 0.0
+    r[CHORD], r[SLIDE_LENGTH] = 0.0, 0.0
     return n + 1
 
 
 @inline
 def chord(angle):
-    """2 sin(angle / 2), no less than it; of half a turn or more 2."""
+    """2 sin(angle / 2), rounded up; 2 for half a turn or more."""
     return 2.0 * math.sin(0.5 * min(angle, math.pi)) * OUTWARD
 
 
@@ -127,7 +127,7 @@ def _joint_of_the_past(rows, n, origin, axis, angle, xyz, ball, chain):
         chain = _turned(chain, angle, angle, from_axis(ball, origin, axis))
     elif xyz > 0.0:
         n = _write(rows, n, origin, axis, SLIDE, xyz, 0.0)
-        rows[n - 1, WAY] = xyz * OUTWARD
+        rows[n - 1, SLIDE_LENGTH] = xyz * OUTWARD
         chain = _slid(chain, xyz, xyz)
     return n, chain
 
@@ -149,14 +149,14 @@ def _extras(extras, i, pose, tip_pose, rows, n, ball, chain):
 
 @inline
 def _share_of_clock(errors, motion, link):
-    """How much of what a joint does is there since its clock may be off: 0 to 1."""
+    """The share of a joint's motion that an error of its clock causes: 0 to 1."""
     delay = errors.delay[link]
     return delay / (delay + motion.half) if delay > 0.0 else 0.0
 
 
 @inline
 def _turns_above(links, errors, motion, link):
-    """[rad] all turns of a chain, with what moves and of the errors alone."""
+    """[rad] all turns of a chain, with motion and of the errors alone."""
     moving = still = 0.0
     i = link
     while i != NO_PARENT:
@@ -175,7 +175,7 @@ def _turns_above(links, errors, motion, link):
 
 @inline
 def _joint_origin(links, poses, i):
-    """Where the frame that a link hangs on has its origin, in the world [m]."""
+    """The origin of the frame of a link's joint, in the world [m]."""
     parent = links.parents[i]
     t = rigid(links.parent_from_joint[i]).t
     return t if parent == NO_PARENT else move(rigid(poses[parent]), t)
@@ -231,7 +231,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
                 )
             else:
                 n = _write(rows, n, origin, axis, SLIDE, joint + bend, 0.0)
-                rows[n - 1, WAY] = size * OUTWARD
+                rows[n - 1, SLIDE_LENGTH] = size * OUTWARD
                 chain = _slid(chain, size, still)
                 velocity = Vec3(
                     velocity.x + swing * axis.x,
@@ -252,7 +252,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
 
 @inline
 def fill_rows_of_standing(surface, world, body, errors, found):
-    """The same of a body that stands."""
+    """The same for a standing body."""
     ball = _ball_of(surface, surface.roots[world.solids[body]])
     rows = found.rows[body]
     turned = 0.0
@@ -277,7 +277,7 @@ def _sum_up(rows, n, ball, chain, turned, surface, body, found):
         chain.rest_still * OUTWARD,
     )
     sums[REACH] = reach_of_ball(rows, n, ball) * OUTWARD
-    beside = beside_velocity(rows, n, ball)
-    sums[BESIDE] = (beside + chain.rest) * OUTWARD if beside >= 0.0 else -1.0
+    residual = residual_of_velocity(rows, n, ball)
+    sums[RESIDUAL] = (residual + chain.rest) * OUTWARD if residual >= 0.0 else -1.0
     sums[TURNED], sums[SURFACE] = turned, surface
     found.n_rows[body] = n

@@ -1,4 +1,4 @@
-"""The least that errors leave of all pairs, at steps and in the motion between them.
+"""The least distance of all pairs under errors, at steps and in the motion between them.
 
 Not for: one pair in one state (`pair_proof`).
 """
@@ -14,7 +14,7 @@ from clearance.compile.lending import lend
 from clearance.kernels.budget.errors import REACH
 from clearance.kernels.budget.levers import fill_levers
 from clearance.kernels.budget.middle import go_to_part, half_of
-from clearance.kernels.budget.pair_proof import Look, prove_pair
+from clearance.kernels.budget.pair_proof import PairPart, prove_pair
 from clearance.kernels.budget.sweep_state import (
     MOVES,
     BudgetScene,
@@ -26,39 +26,40 @@ from clearance.kernels.budget.sweep_state import (
     go_on_to_step,
     is_answered,
     note_answer,
+    skin_of,
     start_at,
     start_before,
-    thin_of,
 )
 from clearance.kernels.motion.halving import prove_interval, prove_part
 from clearance.kernels.motion.interval_middle import begin_arcs
 from clearance.kernels.search.carried import carried_bound, carry
-from clearance.kernels.search.proof import Goal, allowed_gap
+from clearance.kernels.search.front import LENGTH
+from clearance.kernels.search.proof import ProofGoal, allowed_gap
 
 FEW = 16
-"""Moments that are looked at as exactly as can be."""
+"""Up to this many moments are proven as exactly as possible."""
 
-EXACT_LOOKS = 400
-"""Visits before what is nearly the least is enough, where moments are few."""
+EXACT_VISITS = 400
+"""Visits before a nearly exact bound is enough, where moments are few."""
 
 REFINED = 0.05
-"""The share of what errors take at the nearest points that a bound at a step may stay below what occurs there."""
+"""The gap allowed at a step, as a share of the loss by errors at the nearest points."""
 
 REFINED_OF_MANY = 0.1
-"""The same where moments are many: those that decide are looked at once more."""
+"""The same where moments are many: the deciding ones are proven once more."""
 
-ROUGH_LOOKS = -1
-"""The same where they are many."""
+ROUGH_VISITS = -1
+"""The visits where moments are many: a nearly exact bound is enough at once."""
 
 
 class BudgetMoments(NamedTuple):
-    """Which moments of a path are asked, and what is known of them.
+    """Moments of a path to prove, and their nominal answers.
 
     Attributes:
-        intervals: (n,) the step before each. shares: (n,) how much of the interval from there has passed, 0 to 1.
-        order: (n,) the pair to look at first, or -1. known: (n,) [m] the nominal clearance, or NaN.
-        points: (n, 2, 3) [m] its nearest points where the links are at, or NaN.
-        enough: [m] what is proven beyond it is not looked into. exact_looks: visits, as in `Goal`.
+        intervals: (n,) the step before each. shares: (n,) the time in the interval from there, 0 to 1.
+        order: (n,) the pair to ask first, or -1. known: (n,) [m] the nominal clearance, or NaN.
+        points: (n, 2, 3) [m] its nearest points at the poses of the links, or NaN.
+        enough: [m] no bound needs to be greater. exact_visits: as in `ProofGoal`.
     """
 
     intervals: Integers
@@ -67,15 +68,15 @@ class BudgetMoments(NamedTuple):
     known: Floats
     points: Floats3
     enough: float
-    exact_looks: int
+    exact_visits: int
 
 
 class BudgetIntervals(NamedTuple):
-    """Which intervals of a path are asked, and what is known of them.
+    """Intervals of a path to prove, and the bounds at their ends.
 
     Attributes:
-        intervals: (n,) the step before each. order: (n,) the pair to look at first, or -1.
-        known: (n,) [m] the least that is proven at both of its ends. enough: as in `BudgetMoments`.
+        intervals: (n,) the step before each. order: (n,) the pair to ask first, or -1.
+        known: (n,) [m] the least bound proven at its two ends. enough: as in `BudgetMoments`.
         gap, fail: [m] as in `CertificateGoal`. most_parts: of one pair and interval.
     """
 
@@ -89,11 +90,11 @@ class BudgetIntervals(NamedTuple):
 
 
 class BudgetRows(NamedTuple):
-    """What is found of each step or interval.
+    """The results for each step or interval.
 
     Attributes:
-        proven: (n,) [m]. pair: (n,) of which the least occurs.
-        share: (n,) where in the interval that was seen, 0 to 1, or -1.
+        proven: (n,) [m]. pair: (n,) the pair with the least bound.
+        share: (n,) where in the interval the least distance was seen, 0 to 1, or -1.
     """
 
     proven: Floats
@@ -102,22 +103,22 @@ class BudgetRows(NamedTuple):
 
 
 @inline
-def _most_taken(lent, pair, look):
-    """[m] what errors can take of a pair at most, whose bodies touch."""
+def _greatest_loss(lent, pair, number):
+    """[m] the greatest loss by errors of a pair whose bodies touch."""
     scene = lent
-    taken = thin_of(lent, pair)
+    loss = skin_of(lent, pair)
     for side in range(2):
         body = scene.world.pairs[pair, side]
-        fill_body(lent, body, 0.0, look)
-        taken += scene.state.seen.found.sums[body, REACH]
-    return taken
+        fill_body(lent, body, 0.0, number)
+        loss += scene.state.seen.found.sums[body, REACH]
+    return loss
 
 
 @inline
-def _with_boxes(lent, pair, half, look, target, carried):
-    """[m] the bound that is carried of a pair, or that of its boxes where it is better; then it is kept."""
+def _with_boxes(lent, pair, half, number, target, carried):
+    """[m] the greater of the carried bound of a pair and the bound by its boxes, which is then stored."""
     scene = lent
-    by_boxes = bound_by_boxes(lent, pair, half, look, target)
+    by_boxes = bound_by_boxes(lent, pair, half, number, target)
     if by_boxes > carried:
         carry(scene.world.pairs, pair, by_boxes, scene.state.carried)
         return by_boxes
@@ -125,39 +126,38 @@ def _with_boxes(lent, pair, half, look, target, carried):
 
 
 @inline
-def _at_moment(lent, look, start, target, exact_looks, tally):
-    """What errors leave of a pair at a moment, looked into as far as a target [m], if that is not known."""
+def _at_moment(lent, part, start, target, exact_visits, tally):
+    """A `Proof` of a pair at a moment up to a target [m]: the last answer if it is valid, else a new one."""
     scene = lent
-    left = answer_of(lent, look.pair)
-    if is_answered(lent, look.pair, target):
+    proof = answer_of(lent, part.pair)
+    if is_answered(lent, part.pair, target):
         tally[0] += 1
     else:
-        refined = REFINED_OF_MANY if exact_looks < EXACT_LOOKS else REFINED
-        thin = thin_of(lent, look.pair)
-        goal = Goal(target, math.inf, 0.0, 0.0, thin, True, False, exact_looks, refined)
-        left = prove_pair(lent, look, start, goal, tally)
-        note_answer(lent, look.pair, target, left)
-        carry(scene.world.pairs, look.pair, left.lower_bound, scene.state.carried)
-    return left
+        refined = REFINED_OF_MANY if exact_visits < EXACT_VISITS else REFINED
+        skin = skin_of(lent, part.pair)
+        goal = ProofGoal(target, math.inf, 0.0, 0.0, skin, True, False, exact_visits, refined)
+        proof = prove_pair(lent, part, start, goal, tally)
+        note_answer(lent, part.pair, target, proof)
+        carry(scene.world.pairs, part.pair, proof.lower_bound, scene.state.carried)
+    return proof
 
 
 @kernel
 def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, tally: Integers):
-    """Fills `rows` with what errors leave of the nearest pair at each of some moments.
+    """Fills `rows` with the least distance of all pairs under errors at each of some moments.
 
-    A moment at which bodies touch is not looked into: what is left is what errors could take of that pair.
+    If bodies touch at a moment, its result is minus the greatest loss by errors of that pair, without a search.
 
     Args:
-        scene: `BudgetScene`, with a path of at least two steps; what its state holds is forgotten.
-        asked: `BudgetMoments`. tally: (5,) pairs passed over, searches, nodes and
-            faces looked at, and faces cut.
+        scene: `BudgetScene`, with a path of at least two steps; its state is reset.
+        asked: `BudgetMoments`. tally: (5,) pairs skipped, searches, nodes and faces visited, and faces cut.
     """
     lent = lend(scene)
     surface, world, path = scene.surface, scene.world, scene.path
     errors, state = scene.errors, scene.state
     begin_anew(world, state)
     fill_levers(surface, world, path, errors, state.levers)
-    n_pairs, is_rough = len(world.pairs), asked.exact_looks < EXACT_LOOKS
+    n_pairs, is_rough = len(world.pairs), asked.exact_visits < EXACT_VISITS
     tally[:] = 0
     last, before, was_step = np.int64(-1), np.int64(-1), True
     for place in range(len(asked.intervals)):
@@ -168,7 +168,7 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
         if not (is_step and was_step):
             state.carried.lower_bounds[:] = -math.inf
             state.answers[:, MOVES] = -1.0
-            state.carried.fronts.spans[:, 1] = 0
+            state.carried.fronts.spans[:, LENGTH] = 0
         was_step = is_step
         if is_step:
             go_on_to_step(lent, before, interval + np.int64(share))
@@ -177,7 +177,7 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
         best, enough, winner = math.inf, asked.enough, np.int64(-1)
         touches = asked.known[place] <= 0.0 and order >= 0
         if touches:
-            best, winner = -_most_taken(lent, order, place), order
+            best, winner = -_greatest_loss(lent, order, place), order
         lowest = best
         for turn in range(-2, n_pairs):
             pair = order if turn == -2 else last if turn == -1 else np.int64(turn)
@@ -196,14 +196,14 @@ def budget_moments(scene: BudgetScene, asked: BudgetMoments, rows: BudgetRows, t
             start = start_before(lent, pair)
             if turn == -2 and asked.points[place, 0, 0] == asked.points[place, 0, 0]:
                 start = start_at(lent, pair, asked.points[place])
-            look = Look(pair, 0.0, place, is_step and is_rough)
-            left = _at_moment(lent, look, start, target, asked.exact_looks, tally)
-            lowest = min(lowest, left.lower_bound)
-            if winner < 0 or (left.lower_bound < best and left.least < math.inf):
+            part = PairPart(pair, 0.0, place, is_step and is_rough)
+            proof = _at_moment(lent, part, start, target, asked.exact_visits, tally)
+            lowest = min(lowest, proof.lower_bound)
+            if winner < 0 or (proof.lower_bound < best and proof.least < math.inf):
                 winner = pair
-            best = min(best, left.lower_bound)
+            best = min(best, proof.lower_bound)
             if is_rough:
-                enough = min(enough, left.enough)
+                enough = min(enough, proof.enough)
         last = winner
         rows.proven[place] = lowest
         rows.pair[place] = winner
@@ -214,13 +214,13 @@ class PairWithErrors(NamedTuple):
     """A pair in the interval after a step.
 
     Attributes:
-        scene: lent. look: the number of the look at the whole interval. asked: of which it is one. tally: counts.
+        scene: lent. number: of the whole interval as a part. asked: the intervals. tally: counts.
     """
 
     scene: BudgetScene
     step: int
     pair: int
-    look: int
+    number: int
     asked: BudgetIntervals
     tally: Integers
 
@@ -234,19 +234,19 @@ def _(pair: PairWithErrors, low, high, n_parts, least, gap):
         links = scene.world.links
         go_to_part(links, path, scene.errors, pair.step, low, high, state.middle)
     target = min(asked.enough, least - allowed_gap(least, gap, asked.fail))
-    thin = thin_of(lent, pair.pair)
-    goal = Goal(target, least, gap, asked.fail, thin, False, False, 0, REFINED)
-    half, number = half_of(path, pair.step, low, high), pair.look + n_parts - 1
-    look = Look(pair.pair, half, number, n_parts == 1)
-    return prove_pair(lent, look, start_before(lent, pair.pair), goal, pair.tally)
+    skin = skin_of(lent, pair.pair)
+    goal = ProofGoal(target, least, gap, asked.fail, skin, False, False, 0, REFINED)
+    half, number = half_of(path, pair.step, low, high), pair.number + n_parts - 1
+    part = PairPart(pair.pair, half, number, n_parts == 1)
+    return prove_pair(lent, part, start_before(lent, pair.pair), goal, pair.tally)
 
 
 @kernel
 def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRows, tally: Integers):
-    """Fills `rows` with what errors leave of all pairs in the motion from each of some steps to the next.
+    """Fills `rows` with the least distance of all pairs under errors in the motion from some steps to the next.
 
-    Args: as of `budget_moments`; ball joints are among the links as joints that turn, whose fixed parts and
-        axes are written for each interval.
+    Args: as of `budget_moments`. Ball joints are joints that turn, with fixed parts and axes written anew for each
+        interval.
     """
     lent = lend(scene)
     surface, world, path = scene.surface, scene.world, scene.path
@@ -255,7 +255,7 @@ def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRow
     fill_levers(surface, world, path, errors, state.levers)
     n_pairs = len(world.pairs)
     tally[:] = 0
-    look, before = np.int64(0), asked.intervals[0]
+    number, before = np.int64(0), asked.intervals[0]
     for place in range(len(asked.intervals)):
         step, least = asked.intervals[place], asked.known[place]
         lower_bound, share, winner = least, -1.0, np.int64(-1)
@@ -272,17 +272,17 @@ def budget_intervals(scene: BudgetScene, asked: BudgetIntervals, rows: BudgetRow
             carried = carried_bound(world.pairs, pair, state.carried)
             if carried < target:
                 if moved:
-                    look += 1
+                    number += 1
                     go_to_part(world.links, path, errors, step, 0.0, 1.0, state.middle)
                     moved = False
-                carried = _with_boxes(lent, pair, half, look, target, carried)
+                carried = _with_boxes(lent, pair, half, number, target, carried)
             if carried >= target:
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
-            of_pair = PairWithErrors(lent, step, pair, look, asked, tally)
+            of_pair = PairWithErrors(lent, step, pair, number, asked, tally)
             over = prove_interval(of_pair, least, asked.gap, asked.most_parts, state.waiting)
-            moved, look = over.n_parts > 1, look + over.n_parts - 1
+            moved, number = over.n_parts > 1, number + over.n_parts - 1
             carry(world.pairs, pair, over.lower_bound, state.carried)
             if over.share >= 0.0 and over.least < least:
                 least, share = over.least, over.share

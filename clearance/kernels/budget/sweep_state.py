@@ -1,6 +1,6 @@
-"""What is carried from one moment of a sweep to the next, and where a search begins there.
+"""The state of a sweep from one moment to the next, and the starts of its searches.
 
-Not for: one pair (`pair_proof`), and which moments and intervals are asked (`sweep`).
+Not for: one pair (`pair_proof`), and choosing moments and intervals (`sweep`).
 """
 
 import math
@@ -20,12 +20,12 @@ from clearance.kernels.arithmetic.vec3 import (
     turn_back,
 )
 from clearance.kernels.budget.error_rows import SeenErrors
-from clearance.kernels.budget.errors import BESIDE, REACH, Errors, JointMotion, new_body_rows
+from clearance.kernels.budget.errors import REACH, RESIDUAL, Errors, JointMotion, new_body_rows
 from clearance.kernels.budget.levers import (
-    STANDS,
+    UNMOVED,
     Levers,
+    excess_of_motion,
     fill_steps,
-    moved_beside,
     moved_from_step,
     moved_in_part,
     new_levers,
@@ -48,23 +48,23 @@ from clearance.kernels.motion.world import World
 from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.carried import NO_FACE, Carried
 from clearance.kernels.search.front import POOL, Fronts, no_fronts
-from clearance.kernels.search.proof import CHAIN_SLACK, Proof, Start
+from clearance.kernels.search.proof import CHAIN_SLACK, Proof, ProofStart
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 
 class BudgetSweepState(NamedTuple):
-    """What is carried from moment to moment, and scratch.
+    """State that lasts from moment to moment, and scratch.
 
     Attributes:
-        middle: where all links are. boxes: of the bodies there.
-        directions: (p, 3) along which each pair was seen last, from its first body; 0 where it was not.
-        levers: what bodies can do at most. late: True if a clock may be off, so that levers say nothing.
-        filled, placed: (bodies,) the look at which the rows and the box of each were made.
+        middle: the poses of all links. boxes: of the bodies there.
+        directions: (p, 3) of the last nearest points of each pair, from its first body; 0 before the first search.
+        levers: bounds on the motion of bodies. late: True if a clock may be wrong; then levers do not apply.
+        filled, placed: (bodies,) the number of the part for which the rows and the box of each were made.
         poses: (links, 4, 4) at the last step. n_moves: (bodies,) how often each has moved.
         carried: of all pairs.
-        answers: (p, 6) what came of the last search of each pair where all stands, by `MOVES` how often its bodies
-            had moved by then, or -1; `TARGET` [m] how far it was looked into; `LOWER_BOUND`, `LEAST`, `ENOUGH` [m]
-            as in `Proof`; `TWICE` 1 if the search before was the same.
+        answers: (p, 6) the last answer of each pair at a moment. `MOVES`: the moves of its bodies by then, or -1.
+            `TARGET` [m] of its search. `LOWER_BOUND`, `LEAST`, `ENOUGH` [m] as in `Proof`. `TWICE`: 1 if the
+            search before was the same.
         waiting: (DEPTH, 2) parts of an interval.
         seen: the rows of all bodies. scratch: of a search.
     """
@@ -86,7 +86,7 @@ class BudgetSweepState(NamedTuple):
 
 
 class BudgetScene(NamedTuple):
-    """What is asked about, and what is known of it; lent to all that works at it.
+    """The bodies, motion and errors of a sweep, and its state; it is lent.
 
     Attributes:
         surface: every face owns all its features. world, path: as of a certificate. errors: `Errors`.
@@ -103,14 +103,14 @@ MOVES, TARGET, LOWER_BOUND, LEAST, ENOUGH, TWICE = range(6)
 """Columns of `BudgetSweepState.answers`."""
 
 ROUNDED = 2.0**-40
-"""Of how far bodies are from the origin: more than poses from a chain are rounded by."""
+"""Rounding of poses of a chain, relative to their distance from the origin, with a margin."""
 
 LITTLE = 0.02
-"""[m] So far beyond what is enough a bound by boxes is sought, so that it lasts."""
+"""[m] A bound by boxes is tightened up to this much more than is enough, so that it lasts."""
 
 
-class SearchRoom(NamedTuple):
-    """Room for the searches of a sweep, the same for all scenes.
+class SearchMemory(NamedTuple):
+    """Memory for the searches of a sweep, the same for all scenes.
 
     Attributes:
         entries, lower_bounds: the pool of `Fronts`. scratch: of a search.
@@ -122,24 +122,24 @@ class SearchRoom(NamedTuple):
 
 
 @inline
-def new_room():
-    """Room for one sweep at a time."""
+def new_memory():
+    """Memory for one sweep at a time."""
     pool = no_fronts(0, POOL)
-    return SearchRoom(pool.entries, pool.lower_bounds, new_scratch())
+    return SearchMemory(pool.entries, pool.lower_bounds, new_scratch())
 
 
-def in_room(state, room):
-    """A state that searches in some room, of which nothing is taken over."""
-    fronts = state.carried.fronts._replace(entries=room.entries, lower_bounds=room.lower_bounds)
+def with_memory(state, memory):
+    """A state with other memory for its searches, whose content is ignored."""
+    fronts = state.carried.fronts._replace(entries=memory.entries, lower_bounds=memory.lower_bounds)
     return state._replace(
         carried=state.carried._replace(fronts=fronts),
-        scratch=room.scratch,
+        scratch=memory.scratch,
     )
 
 
 @inline
-def new_state(world, errors, room):
-    """A state that has seen nothing."""
+def new_state(world, errors, memory):
+    """An empty state."""
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     seen = SeenErrors(
         new_body_rows(n_bodies, errors.most_rows), new_along_rows(errors.most_rows),
@@ -148,20 +148,20 @@ def new_state(world, errors, room):
     spans, used = np.zeros((n_pairs, 6), dtype=np.int64), np.zeros(1, dtype=np.int64)
     carried = Carried(
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), NO_FACE),
-        Fronts(room.entries, room.lower_bounds, spans, used),
+        Fronts(memory.entries, memory.lower_bounds, spans, used),
     )  # fmt: skip
     return BudgetSweepState(
         new_middle_of(n_links), new_body_boxes(n_bodies), np.zeros((n_pairs, 3)),
         new_levers(n_bodies, n_links), errors.delay.max() > 0.0 if n_links > 0 else False,
         np.full(n_bodies, -1), np.full(n_bodies, -1), np.zeros((n_links, 4, 4)),
         np.zeros(n_bodies, dtype=np.int64), carried, np.full((n_pairs, 6), -1.0),
-        np.empty((DEPTH, 2)), seen, room.scratch,
+        np.empty((DEPTH, 2)), seen, memory.scratch,
     )  # fmt: skip
 
 
 @inline
 def begin_anew(world, state):
-    """Forgets what a sweep has carried, so that the next one is as the first."""
+    """Resets the state, so that the next sweep is like the first."""
     begin_middle(world, state.middle)
     state.directions[:] = 0.0
     state.filled[:] = -1
@@ -176,14 +176,14 @@ def begin_anew(world, state):
 
 @inline(force=True)
 def pose_of(world, body, state):
-    """Where a body is."""
+    """The pose of a body."""
     frame = world.frames[body]
     return rigid(state.middle.state.poses[frame] if frame >= 0 else world.standing[body])
 
 
 @inline
-def fill_body(lent, body, half, look):
-    """Writes the rows of a body about the middle, if they are not of this look already."""
+def fill_body(lent, body, half, number):
+    """Writes the rows of a body about the middle, once for each number of a part."""
     asked = lent
     surface, world, errors, path, state = (
         asked.surface,
@@ -193,9 +193,9 @@ def fill_body(lent, body, half, look):
         asked.state,
     )
     frame = world.frames[body]
-    if state.filled[body] == look or (frame < 0 and state.filled[body] >= 0):
+    if state.filled[body] == number or (frame < 0 and state.filled[body] >= 0):
         return
-    state.filled[body] = look
+    state.filled[body] = number
     found, middle = state.seen.found, state.middle.state
     if frame < 0:
         fill_rows_of_standing(surface, world, body, errors, found)
@@ -207,23 +207,23 @@ def fill_body(lent, body, half, look):
         rounding = orientation_rounding(box, world.links, frame, path.balls, middle)
         for k in range(1, 4):  # both rests and the reach
             found.sums[body, k] += rounding
-        if found.sums[body, BESIDE] >= 0.0:
-            found.sums[body, BESIDE] += rounding
+        if found.sums[body, RESIDUAL] >= 0.0:
+            found.sums[body, RESIDUAL] += rounding
 
 
 @inline(force=True)
-def _place_body(surface, world, body, look, state):
-    """Places the box of a body where it is now."""
-    if state.placed[body] == look or (world.frames[body] < 0 and state.placed[body] >= 0):
+def _place_body(surface, world, body, number, state):
+    """Places the box of a body at its pose, once for each number of a part."""
+    if state.placed[body] == number or (world.frames[body] < 0 and state.placed[body] >= 0):
         return
-    state.placed[body] = look
+    state.placed[body] = number
     root = surface.roots[world.solids[body]]
     place_box(surface, root, body, pose_of(world, body, state), state.boxes)
 
 
 @inline(force=True)
-def thin_of(lent, pair):
-    """[m] the surfaces and balls of both bodies of a pair."""
+def skin_of(lent, pair):
+    """[m] the skin of a pair: radii of balls and errors of surfaces of both bodies."""
     asked = lent
     surface, world, errors = asked.surface, asked.world, asked.errors
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -232,12 +232,12 @@ def thin_of(lent, pair):
 
 
 @inline(force=True)
-def _reach(lent, body, half, look):
-    """[m] how far errors and motion can move any point of a body from the middle at most."""
+def _reach(lent, body, half, number):
+    """[m] the greatest motion of any point of a body from the middle, by errors and joints."""
     asked = lent
     state = asked.state
     if state.late:
-        fill_body(lent, body, half, look)
+        fill_body(lent, body, half, number)
         return state.seen.found.sums[body, REACH]
     moved = 0.0
     if half > 0.0:
@@ -248,32 +248,32 @@ def _reach(lent, body, half, look):
 
 
 @inline
-def bound_by_boxes(lent, pair, half, look, enough):
-    """[m] a bound on what is left of a pair by the boxes of both bodies; one above `enough` will do."""
+def bound_by_boxes(lent, pair, half, number, enough):
+    """[m] a bound on the distance of a pair under errors by both bodies' boxes; one above `enough` will do."""
     asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    taken = thin_of(lent, pair)
+    loss = skin_of(lent, pair)
     for body in (body_a, body_b):
-        _place_body(surface, world, body, look, state)
-        taken += _reach(lent, body, half, look)
-    apart = bound_of_bodies(state.boxes, body_a, body_b, enough + taken + LITTLE)
+        _place_body(surface, world, body, number, state)
+        loss += _reach(lent, body, half, number)
+    separation = bound_of_bodies(state.boxes, body_a, body_b, enough + loss + LITTLE)
     slacks = state.boxes.slacks[body_a] + state.boxes.slacks[body_b]
-    return apart - CHAIN_SLACK * slacks - taken
+    return separation - CHAIN_SLACK * slacks - loss
 
 
 @inline
 def start_at(lent, pair, points):
-    """A start at the nearest points of a pair, (2, 3) [m] where the links are at."""
+    """A start at the nearest points of a pair, (2, 3) [m] at the poses of the links."""
     asked = lent
     pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state)
     p, q = row(points, 0), row(points, 1)
-    return Start(move_back(pose, p), move_back(pose, q), math.sqrt(gap_sq(p, q)), -1, -1)
+    return ProofStart(move_back(pose, p), move_back(pose, q), math.sqrt(gap_sq(p, q)), -1, -1)
 
 
 @inline
 def start_before(lent, pair):
-    """A start along the direction in which a pair was seen last, from centre to centre if it was not."""
+    """A start along the last direction of a pair, from centre to centre without one."""
     asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
     seen = row(state.directions, pair)
@@ -281,15 +281,15 @@ def start_before(lent, pair):
     pose_a, pose_b = pose_of(world, body_a, state), pose_of(world, body_b, state)
     here = Vec3(0.0, 0.0, 0.0)
     if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
-        return Start(here, turn_back(pose_a, seen), math.inf, -1, -1)
+        return ProofStart(here, turn_back(pose_a, seen), math.inf, -1, -1)
     p = box_of(surface, surface.roots[world.solids[body_a]]).centre
     q = box_of(surface, surface.roots[world.solids[body_b]]).centre
-    return Start(p, move_back(pose_a, move(pose_b, q)), math.inf, -1, -1)
+    return ProofStart(p, move_back(pose_a, move(pose_b, q)), math.inf, -1, -1)
 
 
 @inline
 def go_on(lent, before, step):
-    """Adds what bodies move from one step to a later one; infinite where that is not known."""
+    """Adds the motion of bodies from one step to a later one; infinite where unknown."""
     asked = lent
     world, state = asked.world, asked.state
     for body in range(len(world.frames)):
@@ -311,10 +311,10 @@ def _far(pose):
 
 @inline
 def go_on_to_step(lent, before, step):
-    """Adds what bodies move from one step to a later one, where all is now; infinite where that is not known.
+    """Adds the motion of bodies from one step to a later one, the current one; infinite where unknown.
 
     Args:
-        before: the step that was gone on to last, or -1.
+        before: the step of the last call, or -1.
     """
     asked = lent
     surface, world, state = asked.surface, asked.world, asked.state
@@ -326,13 +326,13 @@ def go_on_to_step(lent, before, step):
         frame = world.frames[body]
         if frame < 0 or before < 0:
             continue
-        if goes_on and levers.steps[frame, STANDS] > 0.0:
+        if goes_on and levers.steps[frame, UNMOVED] > 0.0:
             continue
         moved = math.inf
         if goes_on:
             root = surface.roots[world.solids[body]]
             moved = displacement(surface, root, state.poses[frame], poses[frame])
-            moved += moved_beside(world, asked.path, before, step, body, levers)
+            moved += excess_of_motion(world, asked.path, before, step, body, levers)
             moved += ROUNDED * (levers.sizes[body] + _far(poses[frame]))
         state.carried.moved[body] += moved
         state.n_moves[body] += 1
@@ -345,14 +345,14 @@ def go_on_to_step(lent, before, step):
 
 @inline(force=True)
 def _moves_of_pair(asked, pair):
-    """How often either body of a pair has moved."""
+    """The number of moves of both bodies of a pair."""
     pairs, moves = asked.world.pairs, asked.state.n_moves
     return np.float64(moves[pairs[pair, 0]] + moves[pairs[pair, 1]])
 
 
 @inline(force=True)
 def note_answer(lent, pair, target, proof):
-    """Keeps what came of a search of a pair that looked as far as a target [m]."""
+    """Stores the answer of a pair for a target [m]."""
     asked = lent
     answer, moves = asked.state.answers[pair], _moves_of_pair(asked, pair)
     again = answer[MOVES] == moves and answer[TARGET] == target
@@ -363,9 +363,9 @@ def note_answer(lent, pair, target, proof):
 
 @inline(force=True)
 def is_answered(lent, pair, target):
-    """True if no body of a pair has moved since two searches of it that looked as far as a target [m].
+    """True if no body of a pair has moved since two searches with the same target [m].
 
-    The second goes on from the front of the first and may find more; a third would come to what it has found.
+    The second begins at the front of the first and may prove more; a third would repeat its result.
     """
     asked = lent
     answer = asked.state.answers[pair]
@@ -375,7 +375,7 @@ def is_answered(lent, pair, target):
 
 @inline(force=True)
 def answer_of(lent, pair):
-    """What came of the last search of a pair."""
+    """The last answer of a pair."""
     answer = lent.state.answers[pair]
     nowhere = Vec3(0.0, 0.0, 0.0)
     return Proof(

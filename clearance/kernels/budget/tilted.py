@@ -1,8 +1,8 @@
-"""Two bodies seen along a direction that their errors tilt, so that boxes cost what they do without errors.
+"""A direction tilted by the errors of two bodies, so that bounds of boxes cost no more than without errors.
 
-How far errors move a point along a direction is convex in the point. Over the box of a body it is at most an
-affine function, whose slope is added to the direction. What that would overrate is kept as rows of their own.
-`NOTES.md` in `clearance/budget` has the proof. Not for: the rows (`view`), and which direction (`left`).
+The motion of a point along a direction by errors is convex in the point. Over the box of a body an affine function
+bounds it, whose slope is added to the direction. Rows that this function would overrate stay separate. `NOTES.md`
+in `clearance/budget` has the proof. Not for: the rows along a direction (`view`), and the direction (`proof`).
 """
 
 import math
@@ -15,21 +15,21 @@ from clearance.kernels.features.bounds import LEAN, SeparatingDirection, box_rea
 from clearance.kernels.motion.joint_path import OUTWARD
 
 OVERRATED = 0.005
-"""The share of what errors take in the middle of a body that one row may be overrated by, or it is kept."""
+"""A row overrated by more than this share of the loss in the middle of a body stays separate."""
 
 
 @inline(force=True)
-def _keep(r, to):
+def _copy_row(r, to):
     to[0], to[1], to[2], to[3] = r[0], r[1], r[2], r[3]
 
 
 @inline
-def _tilt(box, side, u, seen, kept):
-    """(slope, [m] value in the middle of the box) above what errors do to a body, but for the rows it keeps."""
+def _tilt(box, side, u, seen, separate):
+    """(slope, [m] value in the middle of the box) of a bound on the motion by all rows that are not separate."""
     c = box.centre
     radius = math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN)
     little = OVERRATED * moved_of_point(c, side, u, seen)
-    slope, height = Vec3(0.0, 0.0, 0.0), seen.alike[side]
+    slope, height = Vec3(0.0, 0.0, 0.0), seen.common[side]
     n_linear = n_frames = 0
     for k in range(seen.n_linear[side]):
         r = seen.linear[side, k]
@@ -39,7 +39,7 @@ def _tilt(box, side, u, seen, kept):
         if abs(at) >= reach:  # of one sign
             slope, height = along(slope, 1.0 if at > 0.0 else -1.0, n), height + abs(at)
         elif reach - at * at / reach > little:
-            _keep(r, kept.linear[side, n_linear])
+            _copy_row(r, separate.linear[side, n_linear])
             n_linear += 1
         else:  # above |t| at both ends
             slope, height = along(slope, at / reach, n), height + reach
@@ -50,56 +50,56 @@ def _tilt(box, side, u, seen, kept):
         far_sq = dot(across, across)
         top = math.sqrt(far_sq + radius * radius)
         if r[3] * (top - math.sqrt(far_sq)) > little:
-            _keep(r, kept.frames[side, n_frames])
+            _copy_row(r, separate.frames[side, n_frames])
             n_frames += 1
         elif top > 0.0:  # 2 |z| <= z^2 / top + top
             slope, height = along(slope, r[3] / top, across), height + r[3] * top
-    kept.n_linear[side], kept.n_frames[side] = n_linear, n_frames
-    to = kept.directions[side]
+    separate.n_linear[side], separate.n_frames[side] = n_linear, n_frames
+    to = separate.directions[side]
     to[0], to[1], to[2] = u.x, u.y, u.z
     return slope, height * OUTWARD
 
 
 @inline
-def tilted(direction, box_a, box_b, seen, kept):
-    """A direction along which boxes are bounded with their errors, but for the rows that are kept.
+def tilted(direction, box_a, box_b, seen, separate):
+    """A direction along which bounds of boxes include their errors, except those of separate rows.
 
     Args:
-        box_a, box_b: of both bodies whole. seen: all rows along the direction. kept: is overwritten.
+        box_a, box_b: of the whole bodies. seen: all rows along the direction. separate: overwritten.
     """
     u, v = direction.u, direction.v
-    slope_a, height_a = _tilt(box_a, 0, u, seen, kept)
-    slope_b, height_b = _tilt(box_b, 1, v, seen, kept)
+    slope_a, height_a = _tilt(box_a, 0, u, seen, separate)
+    slope_b, height_b = _tilt(box_b, 1, v, seen, separate)
     offset = direction.offset - height_a - height_b
     offset += dot(slope_a, box_a.centre) + dot(slope_b, box_b.centre)
     return SeparatingDirection(along(u, 1.0, slope_a), along(v, -1.0, slope_b), offset)
 
 
 @inline(force=True)
-def kept_of_box(box, side, kept):
-    """[m] how far the rows that are kept move any point of a box, or of four in lanes, at most."""
+def separate_of_box(box, side, separate):
+    """[m] the greatest motion of any point of a box, or of four in lanes, by separate rows."""
     c, half = box.centre, box.half
     moved = 0.0 * half.x
-    for k in range(kept.n_linear[side]):
-        r = kept.linear[side, k]
+    for k in range(separate.n_linear[side]):
+        r = separate.linear[side, k]
         reach = box_reach(box, Vec3(r[0], r[1], r[2]))
         moved = moved + abs(r[0] * c.x + r[1] * c.y + r[2] * c.z + r[3]) + reach
-    for k in range(kept.n_frames[side]):
-        r, w = kept.frames[side, k], kept.directions[side]
+    for k in range(separate.n_frames[side]):
+        r, w = separate.frames[side, k], separate.directions[side]
         d = cross(Vec3(w[0], w[1], w[2]), sub(c, Vec3(r[0], r[1], r[2])))
         moved = moved + r[3] * (square_root(dot(d, d)) + square_root(dot(half, half)))
     return moved * (1.0 + LEAN)
 
 
 @inline(force=True)
-def kept_of_point(x, side, kept):
-    """[m] how far the rows that are kept move a point at most, or four in lanes."""
+def separate_of_point(x, side, separate):
+    """[m] the greatest motion of a point, or four in lanes, by separate rows."""
     moved = 0.0 * x.x
-    for k in range(kept.n_linear[side]):
-        r = kept.linear[side, k]
+    for k in range(separate.n_linear[side]):
+        r = separate.linear[side, k]
         moved = moved + abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])
-    for k in range(kept.n_frames[side]):
-        r, w = kept.frames[side, k], kept.directions[side]
+    for k in range(separate.n_frames[side]):
+        r, w = separate.frames[side, k], separate.directions[side]
         d = cross(Vec3(w[0], w[1], w[2]), sub(x, Vec3(r[0], r[1], r[2])))
         moved = moved + r[3] * square_root(dot(d, d))
     return moved * OUTWARD

@@ -1,4 +1,4 @@
-"""How far errors move the nodes of a body along one direction: what is the same for all nodes, worked out once.
+"""The rows of errors along one direction: the part that is the same for all nodes, computed once.
 
 Not for: the rows of errors (`rows`).
 """
@@ -24,12 +24,12 @@ from clearance.kernels.motion.joint_path import OUTWARD
 
 
 class AlongRows(NamedTuple):
-    """The rows of both bodies of a pair, seen along one direction.
+    """The rows of both bodies of a pair along one direction.
 
     Attributes:
-        linear: (2, rows, 4) a point x moves by |n . x + c| [m]: n and c. n_linear: (2,).
-        frames: (2, rows, 4) or by angle |u x (x - o)|: o and the angle. n_frames: (2,).
-        alike: (2,) [m] what any point moves by.
+        linear: (2, rows, 4) n and c: a point x moves by |n . x + c| [m]. n_linear: (2,).
+        frames: (2, rows, 4) o and an angle: a point x moves by angle |u x (x - o)| [m]. n_frames: (2,).
+        common: (2,) [m] motion of every point.
         directions: (2, 3) unit.
     """
 
@@ -37,13 +37,13 @@ class AlongRows(NamedTuple):
     n_linear: Integers
     frames: Floats3
     n_frames: Integers
-    alike: Floats
+    common: Floats
     directions: Floats2
 
 
 @inline
 def new_along_rows(most_rows):
-    """Rows that are not seen yet."""
+    """Empty rows."""
     return AlongRows(
         np.zeros((2, most_rows, 4)), np.zeros(2, dtype=np.int64),
         np.zeros((2, most_rows, 4)), np.zeros(2, dtype=np.int64), np.zeros(2),
@@ -52,8 +52,8 @@ def new_along_rows(most_rows):
 
 
 @inline
-def look_along(found, body, side, u, seen):
-    """Writes how a body's errors are seen along a unit direction of its frame."""
+def project_errors(found, body, side, u, seen):
+    """Writes a body's errors along a unit direction of its frame."""
     rows = found.rows[body]
     moved = found.sums[body, OFFSETS] + found.sums[body, REST]
     n_linear = n_frames = 0
@@ -77,14 +77,14 @@ def look_along(found, body, side, u, seen):
                 row[0], row[1], row[2], row[3] = n.x, n.y, n.z, dot(u, o)
             n_linear += 1
     seen.n_linear[side], seen.n_frames[side] = n_linear, n_frames
-    seen.alike[side] = moved * OUTWARD
+    seen.common[side] = moved * OUTWARD
     seen.directions[side, 0], seen.directions[side, 1], seen.directions[side, 2] = u.x, u.y, u.z
 
 
 @inline(force=True)
 def moved_of_point(x, side, u, seen):
-    """[m] how far errors and motion move a point, or four in lanes, along the direction seen at most."""
-    moved = seen.alike[side] + 0.0 * x.x  # as many lanes
+    """[m] the greatest motion of a point, or four in lanes, along the direction, by errors and joints."""
+    moved = seen.common[side] + 0.0 * x.x  # as many lanes
     for k in range(seen.n_linear[side]):
         r = seen.linear[side, k]
         moved = moved + abs(r[0] * x.x + r[1] * x.y + r[2] * x.z + r[3])

@@ -1,8 +1,8 @@
-"""Rectangles of two clocks' times, those that wait to be looked at, and the band of times that can occur together.
+"""Rectangles of two clocks' times, the queue of those to visit, and the band of times that can occur together.
 
 A rectangle is a span of one clock's time by one of the other's, each a node of a `ClockTree` or a part of an
 interval. Times t_a and t_b occur together where |t_a - t_b| is at most the slack of the clocks.
-Not for: what happens in a rectangle (`unsynchronised`, `unsynchronised_steps`).
+Not for: the visit of a rectangle (`unsynchronised`, `unsynchronised_steps`).
 """
 
 from typing import NamedTuple
@@ -13,15 +13,15 @@ from clearance.compile.decorators import inline
 from clearance.kernels.clocks.clock_tree import is_leaf_of_clock
 
 DEPTH = 256
-"""Rectangles that can wait, one a halving: two clocks of 2^50 leaves, each interval halved 52 times."""
+"""Most waiting rectangles, one a halving: two clocks of 2^50 leaves, each interval halved 52 times."""
 
 
 class Band(NamedTuple):
     """Which times occur together.
 
     Attributes:
-        slack: [s] by which two clocks differ at most; infinite where nothing ties them.
-        rounding: [s] of times that are computed, with room.
+        slack: [s] the greatest difference of two clocks; infinite where nothing ties them.
+        rounding: [s] of computed times, with a margin.
     """
 
     slack: float
@@ -29,7 +29,7 @@ class Band(NamedTuple):
 
 
 class Rectangle(NamedTuple):
-    """A span of each clock's time: a node, and of a leaf the part from `low` to `high`, 0 to 1."""
+    """A span of each clock's time: a node, or for a leaf the part from `low` to `high`, 0 to 1."""
 
     node_a: int
     node_b: int
@@ -44,11 +44,11 @@ ALL_TIMES = Rectangle(0, 0, 0.0, 1.0, 0.0, 1.0)
 
 
 class RectangleStack(NamedTuple):
-    """Rectangles that wait, each with the pairs that are to be looked at in it.
+    """Rectangles that wait, each with its pairs to visit.
 
     Attributes:
         nodes: (DEPTH, 2). shares: (DEPTH, 4) low and high of both. counts: (DEPTH,) pairs. pairs: (DEPTH, p).
-        listed: (p,) the pairs of the rectangle that is looked at.
+        listed: (p,) the pairs of the current rectangle.
     """
 
     nodes: np.ndarray
@@ -60,7 +60,7 @@ class RectangleStack(NamedTuple):
 
 @inline
 def new_rectangle_stack(n_pairs):
-    """Room for rectangles, of which none waits."""
+    """An empty queue of rectangles."""
     return RectangleStack(
         np.empty((DEPTH, 2), dtype=np.int64), np.empty((DEPTH, 4)), np.empty(DEPTH, dtype=np.int64),
         np.empty((DEPTH, n_pairs), dtype=np.int64), np.arange(n_pairs),
@@ -69,7 +69,7 @@ def new_rectangle_stack(n_pairs):
 
 @inline
 def put_rectangle(rectangle, count, waiting, place):
-    """Lets a rectangle wait at a place, with the first `count` of the listed pairs."""
+    """Queues a rectangle at a place, with the first `count` of the listed pairs."""
     r = rectangle
     waiting.nodes[place, 0], waiting.nodes[place, 1] = r.node_a, r.node_b
     shares = waiting.shares[place]
@@ -80,8 +80,8 @@ def put_rectangle(rectangle, count, waiting, place):
 
 
 @inline
-def take_rectangle(waiting, place):
-    """The rectangle that waits at a place, and how many pairs it has; they are listed."""
+def read_rectangle(waiting, place):
+    """The rectangle that waits at a place, and its number of pairs; lists the pairs."""
     count = waiting.counts[place]
     for k in range(count):
         waiting.listed[k] = waiting.pairs[place, k]
@@ -90,11 +90,11 @@ def take_rectangle(waiting, place):
 
 
 class OpenRectangle(NamedTuple):
-    """A rectangle that is to be halved.
+    """A rectangle to be halved.
 
     Attributes:
-        in_a: True for halves in the time of clock a. count: the first so many listed pairs are asked there.
-        seen: [s] the half nearer to that time, of the clock that is halved, is asked first.
+        in_a: True for halves in the time of clock a. count: number of listed pairs to ask there.
+        seen: [s] by the clock to be halved; the half nearer to this time is visited first.
     """
 
     rectangle: Rectangle
@@ -105,7 +105,7 @@ class OpenRectangle(NamedTuple):
 
 @inline
 def put_open(tree_a, tree_b, part, waiting, place):
-    """Lets both halves of an `OpenRectangle` wait at a place and the next."""
+    """Queues both halves of an `OpenRectangle` at a place and the next."""
     earlier, later = halves_of(tree_a, tree_b, part.rectangle, part.in_a)
     if part.seen > middle_of_side(tree_a, tree_b, part.rectangle, part.in_a):
         earlier, later = later, earlier
@@ -128,7 +128,7 @@ def _time(tree, node, share):
 
 @inline(force=True)
 def _middle(tree, node, low, high):
-    """[s] when the bodies are in the pose that stands for a node or its part."""
+    """[s] the time of the pose that represents a node or its part."""
     if is_whole(low, high):
         return tree.middle[node]
     return _time(tree, node, 0.5 * (low + high))
@@ -146,7 +146,7 @@ def meets_band(tree_a, tree_b, rectangle, band):
 
 @inline
 def middle_occurs(tree_a, tree_b, rectangle, band):
-    """True if the two times for which the poses of a rectangle stand occur together."""
+    """True if the two times that represent a rectangle occur together."""
     r = rectangle
     t_a = _middle(tree_a, r.node_a, r.low_a, r.high_a)
     t_b = _middle(tree_b, r.node_b, r.low_b, r.high_b)
@@ -161,10 +161,11 @@ def _share(tree, node, time):
 
 @inline
 def clipped(tree_a, tree_b, rectangle, band):
-    """The least rectangle about what of a rectangle of two intervals' parts lies in the band.
+    """The least rectangle about the part within the band of a rectangle of two intervals' parts.
 
-    Its middle lies in the band: with a0, a1 the ends of the one part and b0, b1 of the other, each end is that of
-    two times that occur together, so a1 <= b1 + slack and a0 <= b0 + slack, and half their sum; and the other way.
+    Its middle lies in the band. Let a0, a1 be the ends of the one part and b0, b1 those of the other. Each end
+    occurs together with some time of the other part, so a1 <= b1 + slack and a0 <= b0 + slack. Half their sum is
+    the same for the middles, and so with a and b exchanged.
     """
     r, reach = rectangle, band.slack + band.rounding
     a0, a1 = _time(tree_a, r.node_a, r.low_a), _time(tree_a, r.node_a, r.high_a)
@@ -189,10 +190,10 @@ def _halves_in_a(tree, r):
             Rectangle(r.node_a, r.node_b, r.low_a, at, r.low_b, r.high_b),
             Rectangle(r.node_a, r.node_b, at, r.high_a, r.low_b, r.high_b),
         )
-    left = tree.left[r.node_a]
+    earlier = tree.earlier[r.node_a]
     return (
-        Rectangle(left, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
-        Rectangle(left + 1, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
+        Rectangle(earlier, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
+        Rectangle(earlier + 1, r.node_b, 0.0, 1.0, r.low_b, r.high_b),
     )
 
 
@@ -204,10 +205,10 @@ def _halves_in_b(tree, r):
             Rectangle(r.node_a, r.node_b, r.low_a, r.high_a, r.low_b, at),
             Rectangle(r.node_a, r.node_b, r.low_a, r.high_a, at, r.high_b),
         )
-    left = tree.left[r.node_b]
+    earlier = tree.earlier[r.node_b]
     return (
-        Rectangle(r.node_a, left, r.low_a, r.high_a, 0.0, 1.0),
-        Rectangle(r.node_a, left + 1, r.low_a, r.high_a, 0.0, 1.0),
+        Rectangle(r.node_a, earlier, r.low_a, r.high_a, 0.0, 1.0),
+        Rectangle(r.node_a, earlier + 1, r.low_a, r.high_a, 0.0, 1.0),
     )
 
 

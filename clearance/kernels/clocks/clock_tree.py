@@ -1,8 +1,8 @@
-"""What moves by one clock, over spans of its time that are halved again and again: a tree of motion bounds.
+"""A tree of motion bounds over the time of one clock, in spans that are halved again and again.
 
-A leaf is a step, or the interval between two steps; a node is a span of leaves. Of each body a node knows the pose
-in its middle leaf and how far any point of the body gets from there over the whole span. All is made once, so
-that a search over the times of two clocks (`unsynchronised`) looks up what both bodies of a pair may do.
+A leaf is a step, or the interval between two steps; a node is a span of leaves. A node has the pose of each body
+in its middle leaf, and the greatest motion of the body's points from there over the whole span. The tree is made
+once. A search over the times of two clocks (`unsynchronised`) reads the motion of both bodies of a pair from it.
 Not for: parts of an interval (`interval_middle`).
 """
 
@@ -32,19 +32,20 @@ from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 
 ANY_TURN = math.pi
-"""[rad] No body turns farther from where it was."""
+"""[rad] The greatest turn that there is."""
 
 
 class ClockTree(NamedTuple):
-    """Spans of one clock's time, the root first, both halves of a span behind one another.
+    """Spans of one clock's time, the root first, both halves of a span one after the other.
 
     Attributes:
         start: the step or interval that is leaf 0.
         first, last: (nodes,) the leaves of each node are those from `first` to before `last`.
-        left: (nodes,) its earlier half; the later one follows it. -1 for a leaf.
-        low, high: (nodes,) [s] when it begins and ends. middle: (nodes,) [s] the step, or the middle of the
-            interval, that is its middle leaf.
-        moved: (nodes, k) [m] how far each of the k bodies of the clock gets from its pose in the middle leaf.
+        earlier: (nodes,) its earlier half; the later one follows it. -1 for a leaf.
+        low, high: (nodes,) [s] when it begins and ends. middle: (nodes,) [s] the time of its middle leaf: the
+            step, or the middle of the interval.
+        moved: (nodes, k) [m] the greatest motion of each of the k bodies of the clock from its pose in the middle
+            leaf.
         poses: (leaves * k, 4, 4) `world_from_body` [m] at the step or in the middle of the interval.
         motion_bounds: (leaves * k, 8) numbers of the `MotionBound` about it; zeros for a step.
         boxes: (leaves * k) of the bodies there.
@@ -53,7 +54,7 @@ class ClockTree(NamedTuple):
     start: int
     first: Integers
     last: Integers
-    left: Integers
+    earlier: Integers
     low: Floats
     high: Floats
     middle: Floats
@@ -65,7 +66,7 @@ class ClockTree(NamedTuple):
 
 @inline
 def new_clock_tree(start, n_leaves, n_bodies):
-    """A tree of so many leaves that nothing is known of."""
+    """An empty tree of so many leaves."""
     n_nodes, n_rows = 2 * n_leaves - 1, n_leaves * n_bodies
     return ClockTree(
         start, np.empty(n_nodes, dtype=np.int64), np.empty(n_nodes, dtype=np.int64),
@@ -77,19 +78,19 @@ def new_clock_tree(start, n_leaves, n_bodies):
 
 @inline(force=True)
 def n_leaves_of(tree):
-    """How many steps, or intervals, it is of."""
+    """The number of its steps or intervals."""
     return (len(tree.first) + 1) // 2
 
 
 @inline(force=True)
 def is_leaf_of_clock(tree, node):
     """True if a node is one step or one interval."""
-    return tree.left[node] < 0
+    return tree.earlier[node] < 0
 
 
 @inline(force=True)
 def middle_leaf(tree, node):
-    """The leaf in whose pose the bodies of a node are."""
+    """The leaf whose pose represents a node."""
     return (tree.first[node] + tree.last[node]) // 2
 
 
@@ -110,14 +111,14 @@ def motion_of_node(tree, node, column):
 
 @inline
 def _halve(tree, n_leaves):
-    """Fills which leaves each node has, the nodes level by level."""
+    """Fills the leaves of each node, level by level."""
     tree.first[0], tree.last[0] = 0, n_leaves
     n_nodes = 1
     for node in range(len(tree.first)):
         first, last = tree.first[node], tree.last[node]
-        tree.left[node] = -1
+        tree.earlier[node] = -1
         if last - first > 1:
-            tree.left[node] = n_nodes
+            tree.earlier[node] = n_nodes
             middle = (first + last) // 2
             tree.first[n_nodes], tree.last[n_nodes] = first, middle
             tree.first[n_nodes + 1], tree.last[n_nodes + 1] = middle, last
@@ -133,7 +134,7 @@ def _put(pose, out):
 
 @inline
 def _fill_leaf(surface, world, bodies, leaf, middle, tree):
-    """Writes where the bodies are in the middle of a leaf, and their boxes there."""
+    """Writes the poses and boxes of the bodies in the middle of a leaf."""
     for column in range(len(bodies)):
         body = bodies[column]
         row = leaf * len(bodies) + column
@@ -144,7 +145,7 @@ def _fill_leaf(surface, world, bodies, leaf, middle, tree):
 
 @inline
 def _fill_moved(surface, world, bodies, tree):
-    """Fills how far each body gets from the middle of each node: to the middle of a leaf, and within the leaf."""
+    """Fills the motion of each body from the middle of each node: to the middle of a leaf, and within it."""
     k = len(bodies)
     for node in range(len(tree.first)):
         for column in range(k):
@@ -168,9 +169,9 @@ def fill_steps_tree(
     """Fills a tree whose leaves are steps.
 
     Args:
-        world: with links of its own, since those of ball joints are written to.
-        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) those of the
-            clock, each carried by a link.
+        world: with links of its own, since ball joints are overwritten.
+        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) of the clock,
+            each carried by a link.
     """
     n_leaves = len(tree.poses) // len(bodies)
     middle = new_middle(len(world.links.parents))

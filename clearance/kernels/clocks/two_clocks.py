@@ -1,4 +1,4 @@
-"""What moves by which of two clocks, and what is known of a pair at a time of each before any search.
+"""The bodies of two clocks, and quick bounds on a pair at a time of each.
 
 Not for: searches over both times (`unsynchronised`, `unsynchronised_steps`).
 """
@@ -24,18 +24,18 @@ from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.separating_planes import separate
 
 FEW = 4
-"""Corners of a face that are looked at."""
+"""Corners of a face to visit."""
 
 
 class TwoClocks(NamedTuple):
-    """What moves by which clock.
+    """The bodies and motions of two clocks.
 
     Attributes:
         world: the bodies; the first of each pair moves by clock a, the second by clock b.
-        path: how all joints move: first from step to step of clock b, then of clock a.
-        tree_a, tree_b: what is known of the spans of either clock.
+        path: of all joints: first from step to step of clock b, then of clock a.
+        tree_a, tree_b: motion bounds over the spans of either clock.
         columns: (bodies,) the place of each body among those of its clock.
-        band: which times occur together.
+        band: the times that occur together.
     """
 
     world: World
@@ -47,10 +47,10 @@ class TwoClocks(NamedTuple):
 
 
 @inline
-def corners_apart(surface, faces, pose_a, pose_b):
-    """[m] how far apart two faces' nearest corners are, of the first few of each; infinite without faces.
+def corner_distance(surface, faces, pose_a, pose_b):
+    """[m] the distance of two faces' nearest corners, of the first few of each; infinite without faces.
 
-    Their bodies are no farther apart, so what could only be proven if they were needs no search.
+    The distance of the bodies is no greater, so a bound beyond it needs no search.
 
     Args:
         faces: (2,) or -1. pose_a, pose_b: `RigidMotion` of their bodies.
@@ -71,13 +71,13 @@ def corners_apart(surface, faces, pose_a, pose_b):
 
 
 @inline
-def apart_by_planes(surface, bodies, faces, limit, scratch):
-    """[m] a lower bound beyond `limit` by two planes between the bodies' hulls, or -inf if that is not found.
+def bound_by_planes(surface, bodies, faces, limit, scratch):
+    """[m] a lower bound beyond `limit` by two planes between the bodies' hulls, or -inf if there are none.
 
     Each tree is searched by itself: a few dozen nodes, where pairs of nodes take hundreds to thousands.
 
     Args:
-        bodies: a `PosedPair`. faces: (2,) where to begin, or -1; those that touch the planes are put there.
+        bodies: a `PosedPair`. faces: (2,) where to begin, or -1; overwritten by those that touch the planes.
     """
     roots = parts(bodies, surface.roots[bodies.a], surface.roots[bodies.b])
     m = bodies.frames.m

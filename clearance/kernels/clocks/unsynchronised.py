@@ -1,10 +1,10 @@
 """A proven lower bound on the clearance of motions by two clocks that nothing ties, or only to within a slack.
 
 For each interval of clock a: over all its times, all times of clock b within the band, and all pairs of a body of
-either clock. Rectangles of both times (`clock_rectangles`) are looked at with the motion bounds of both clocks'
-spans (`clock_tree`): a pair whose boxes stay apart, or that holds about the middle, is done there
-(`rectangle_pair`); with what is left the rectangle is halved in the time of the body that moves more.
-Not for: the steps (`unsynchronised_steps`), motion by one clock (`certify`).
+either clock. Rectangles of both times (`clock_rectangles`) are visited with the motion bounds of both clocks'
+spans (`clock_tree`). A pair is done in a rectangle if its boxes prove the target, or the search about the middle
+does (`rectangle_pair`). For the other pairs the rectangle is halved in the time of the body that moves more. Not
+for: the steps (`unsynchronised_steps`), motion by one clock (`certify`).
 """
 
 import math
@@ -26,10 +26,14 @@ from clearance.kernels.clocks.clock_rectangles import (
     new_rectangle_stack,
     put_open,
     put_rectangle,
-    take_rectangle,
+    read_rectangle,
 )
 from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
-from clearance.kernels.clocks.rectangle_pair import RectangleGoal, RectangleState, look_at_pair
+from clearance.kernels.clocks.rectangle_pair import (
+    RectangleGoal,
+    RectangleState,
+    prove_in_rectangle,
+)
 from clearance.kernels.clocks.two_clocks import TwoClocks
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.certify import ROUNDED_DOWN
@@ -49,11 +53,11 @@ from clearance.kernels.search.scratch import new_scratch
 
 
 class TwoClockBounds(NamedTuple):
-    """What is found of each interval of clock a.
+    """The bounds on each interval of clock a.
 
     Attributes:
         lower, upper: (m,) [m] proven, and the least distance seen.
-        share_a: (m,) where in the interval that was, 0 to 1. step_b, share_b: (m,) the interval of clock b, and
+        share_a: (m,) where in the interval it was seen, 0 to 1. step_b, share_b: (m,) the interval of clock b, and
             where in it. pair: (m,) which pair.
     """
 
@@ -66,7 +70,7 @@ class TwoClockBounds(NamedTuple):
 
 
 class StepsOfClock(NamedTuple):
-    """What is known of the steps of clock a.
+    """The clearances of the steps of clock a.
 
     Attributes:
         clearance: (m + 1,) [m] the least over all steps of clock b in the band.
@@ -80,7 +84,7 @@ class StepsOfClock(NamedTuple):
 
 @inline
 def _bring(clocks, tree, node, low, high, at, part):
-    """Puts `part` in the middle of a part of an interval, if it is one and `part` is not there yet."""
+    """Puts `part` in the middle of a part of an interval, unless the node is whole or `part` is there already."""
     leaf = tree.start + tree.first[node]
     if is_whole(low, high) or (at[0] == leaf and at[1] == low and at[2] == high):
         return
@@ -91,7 +95,7 @@ def _bring(clocks, tree, node, low, high, at, part):
 
 @inline
 def _goal_of(clocks, rectangle, aim, bounds, state):
-    """What is to be proven in a rectangle; the target is 0 where nothing is."""
+    """The bound to prove in a rectangle; the target is 0 where there is nothing to prove."""
     tree, node = clocks.tree_a, rectangle.node_a
     least, target, gap = 0.0, 0.0, aim.gap
     for row in range(tree.first[node], tree.last[node]):
@@ -108,7 +112,7 @@ def _goal_of(clocks, rectangle, aim, bounds, state):
 
 @inline
 def _note_seen(clocks, rectangle, pair, distance, bounds):
-    """Notes a distance that occurs in the middle of a rectangle [m], nearer than all before in its interval."""
+    """Notes a distance that occurs in the middle of a rectangle [m], the least in its interval so far."""
     r, tree_b = rectangle, clocks.tree_b
     row = clocks.tree_a.first[r.node_a]
     bounds.upper[row], bounds.pair[row] = distance, pair
@@ -118,45 +122,45 @@ def _note_seen(clocks, rectangle, pair, distance, bounds):
 
 
 @inline
-def _look(lent, surface, clocks, rectangle, count, aim, bounds, state):
-    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
+def _visit_pairs(lent, surface, clocks, rectangle, count, aim, bounds, state):
+    """Visits the listed pairs in a rectangle: (how many stay open, True to halve it in a's time).
 
-    Those that are left are listed.
+    The open pairs are listed.
 
-    Many arguments: what belongs together is in tuples already.
+    Many arguments: they are grouped in tuples already.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
     goal = _goal_of(clocks, r, aim, bounds, state)
     most_a, most_b = 0.0, 0.0
-    n_left = 0
+    n_open = 0
     for place in range(count):
         if goal.target <= 0.0:
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
             return 0, True
         pair = listed[place]
-        seen = look_at_pair(lent, surface, clocks, r, pair, goal, state)
+        seen = prove_in_rectangle(lent, surface, clocks, r, pair, goal, state)
         if seen.is_done:
             bound = seen.lower_bound
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
         else:
-            listed[n_left] = pair
-            n_left += 1
+            listed[n_open] = pair
+            n_open += 1
             most_a, most_b = max(most_a, seen.moved_a), max(most_b, seen.moved_b)
         if goal.counts and seen.least < goal.least:
             _note_seen(clocks, r, pair, seen.least, bounds)
             goal = _goal_of(clocks, r, aim, bounds, state)
     in_a = most_a > most_b
     if one_a and not one_b and not goal.counts:
-        in_a = False  # the times of clock b go beyond the band
+        in_a = False  # the times of clock b extend beyond the band
     elif not one_a and one_b:
-        in_a = True  # no distance counts before one interval of clock a is spoken of
-    return n_left, in_a
+        in_a = True  # a distance counts only in one interval of clock a
+    return n_open, in_a
 
 
 @inline
 def _seen_at(clocks, rectangle, in_a, bounds):
-    """[s] when the least distance of the intervals of a rectangle was seen, by one clock."""
+    """[s] the time by one clock at which the least distance of a rectangle's intervals was seen."""
     row = middle_leaf(clocks.tree_a, rectangle.node_a)
     step, share = bounds.step_b[row], bounds.share_b[row]
     if in_a:
@@ -167,7 +171,7 @@ def _seen_at(clocks, rectangle, in_a, bounds):
 
 @inline
 def _begin(clocks, steps, aim, bounds, state):
-    """Takes the nearer end of each interval as what was seen, and lets all times of both clocks wait."""
+    """Takes the nearer end of each interval as the least distance seen, and queues all times of both clocks."""
     n_steps = n_leaves_of(clocks.tree_b) + 1
     for row in range(len(bounds.upper)):
         end = 1 if steps.clearance[row + 1] < steps.clearance[row] else 0
@@ -184,17 +188,17 @@ def _begin(clocks, steps, aim, bounds, state):
 
 @inline
 def _end(clocks, bounds, state):
-    """Hands the bounds of the nodes of clock a down to its intervals."""
+    """Passes the bounds of the nodes of clock a down to its intervals."""
     tree, lower_bounds = clocks.tree_a, state.lower_bounds
     for node in range(len(tree.first)):
-        left = tree.left[node]
-        if left < 0:
+        earlier = tree.earlier[node]
+        if earlier < 0:
             row = tree.first[node]
             lower = min(lower_bounds[node], bounds.upper[row] * ROUNDED_DOWN)
             bounds.lower[row] = max(0.0, lower)
         else:
-            lower_bounds[left] = min(lower_bounds[left], lower_bounds[node])
-            lower_bounds[left + 1] = min(lower_bounds[left + 1], lower_bounds[node])
+            lower_bounds[earlier] = min(lower_bounds[earlier], lower_bounds[node])
+            lower_bounds[earlier + 1] = min(lower_bounds[earlier + 1], lower_bounds[node])
 
 
 @kernel
@@ -212,7 +216,7 @@ def certify_unsynchronised(
         surface: every face owns all its features.
         clocks: `TwoClocks`, with trees of intervals. steps: `StepsOfClock`, a clearance of 0 for a contact.
         aim: a `CertificateGoal`; its `most_parts` are rectangles of one interval of clock a.
-        tally: (5,) counts: rectangles, pairs that boxes keep apart, searches, nodes and faces looked at.
+        tally: (5,) counts: rectangles, pairs that boxes separate, searches, nodes and faces visited.
     """
     n_links, n_rows = len(clocks.world.links.parents), len(bounds.upper)
     n_pairs = len(clocks.world.pairs)
@@ -229,7 +233,7 @@ def certify_unsynchronised(
 
 
 class RectangleProofs(NamedTuple):
-    """What rectangles are asked: surface, clocks, bounds and state are lent."""
+    """The arguments of a visit of a rectangle; surface, clocks, bounds and state are lent."""
 
     surface: Surface
     clocks: TwoClocks
@@ -242,22 +246,24 @@ class RectangleProofs(NamedTuple):
 def _(search: RectangleProofs, place):
     clocks, aim, bounds, state = search.clocks, search.aim, search.bounds, search.state
     tree_a, tree_b = clocks.tree_a, clocks.tree_b
-    r, count = take_rectangle(state.waiting, place)
+    r, count = read_rectangle(state.waiting, place)
     if not meets_band(tree_a, tree_b, r, clocks.band):
         return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
     state.tally[0] += 1
     if is_leaf_of_clock(tree_a, r.node_a):
         row = tree_a.first[r.node_a]
-        state.n_looked_at[row] += 1
-        if state.n_looked_at[row] % aim.most_parts == 0:
+        state.n_visits[row] += 1
+        if state.n_visits[row] % aim.most_parts == 0:
             state.gaps[row] *= WIDER
         if is_leaf_of_clock(tree_b, r.node_b):
             r = clipped(tree_a, tree_b, r, clocks.band)
     _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
     _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
-    n_left, in_a = _look(search.surface, search.surface, clocks, r, count, aim, bounds, state)
+    n_open, in_a = _visit_pairs(
+        search.surface, search.surface, clocks, r, count, aim, bounds, state
+    )
     seen = _seen_at(clocks, r, in_a, bounds)
-    return Visit(search, OpenRectangle(r, in_a, n_left, seen), n_left > 0)
+    return Visit(search, OpenRectangle(r, in_a, n_open, seen), n_open > 0)
 
 
 @without_part.register

@@ -1,9 +1,9 @@
 """The least clearance of each step of one clock over all steps of another that can occur with it, exactly.
 
-As in `unsynchronised`, rectangles of both clocks' steps are looked at: a pair is measured in the middle, and what
-both bodies move in the rectangle is taken off. So a distance that was measured speaks for many steps at once, and
-it is the distance of two steps. Nothing is left out unless it is farther than the best strictly: ties go to the
-least pair, then to the least step of the other clock. Not for: what happens between the steps.
+As in `unsynchronised`, rectangles of both clocks' steps are visited. A pair is measured in the middle, and the
+motion of both bodies in the rectangle is subtracted. So one measured distance bounds many pairs of steps, and it
+occurs at one of them. A rectangle is skipped only if it is strictly farther than the best. Ties go to the least
+pair, then to the least step of the other clock. Not for: motion between the steps.
 """
 
 from typing import NamedTuple
@@ -25,10 +25,10 @@ from clearance.kernels.clocks.clock_rectangles import (
     new_rectangle_stack,
     put_open,
     put_rectangle,
-    take_rectangle,
+    read_rectangle,
 )
 from clearance.kernels.clocks.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
-from clearance.kernels.clocks.two_clocks import TwoClocks, apart_by_planes, corners_apart
+from clearance.kernels.clocks.two_clocks import TwoClocks, bound_by_planes, corner_distance
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface
@@ -46,20 +46,20 @@ from clearance.kernels.search.front import PairFront
 from clearance.kernels.search.proof import CHAIN_SLACK
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
-FIRST_LOOK = 16
-"""Steps of the other clock, evenly spread, at which all pairs are looked at before the first step is decided."""
+SAMPLED_STEPS = 16
+"""Steps of the other clock, evenly spread, at which all pairs are measured before the first rectangle."""
 
 WALK = 16
-"""Steps of the other clock at most from the last best one to where the next begins."""
+"""Most steps of the other clock to walk from the best one of the step before."""
 
 
 class StepMinima(NamedTuple):
-    """What is found of each step of clock a.
+    """The least clearance of each step of clock a.
 
     Attributes:
         clearance: (m,) [m] the least distance. step_b: (m,) the step of clock b. pair: (m,) which pair.
         points: (m, 2, 3) witness points in the world, each of its body at its own time [m].
-        gaps_sq: (m,) [m^2] room for the squares.
+        gaps_sq: (m,) [m^2] their squares.
     """
 
     clearance: Floats
@@ -70,7 +70,7 @@ class StepMinima(NamedTuple):
 
 
 class StepsState(NamedTuple):
-    """Scratch: rectangles that wait, the faces of each pair that were nearest, and that of a search."""
+    """Scratch: waiting rectangles, the witness faces of each pair, and scratch of a search."""
 
     waiting: RectangleStack
     carried: Carried
@@ -81,12 +81,12 @@ class StepsPair(NamedTuple):
     """A pair at one step of each clock.
 
     Attributes:
-        bodies: a `PosedPair`. apart: True if boxes say so. within: [m] how near is asked about.
+        bodies: a `PosedPair`. not_nested: True if boxes prove it. within: [m] greatest distance of interest.
     """
 
     pair: int
     bodies: PosedPair
-    apart: bool
+    not_nested: bool
     within: float
 
 
@@ -110,10 +110,10 @@ def _bodies_at(lent, clocks, pair, row_a, row_b):
 
 @inline
 def _measured(asked, state, tally):
-    """A `StepsPair` as `search` finds it."""
+    """The answer of `search` for a `StepsPair`."""
     faces = state.carried.faces[asked.pair]
     question = PairQuestion(
-        asked.within, asked.within, faces[0], faces[1], asked.apart, TO_THE_END, False
+        asked.within, asked.within, faces[0], faces[1], asked.not_nested, TO_THE_END, False
     )
     front = PairFront(state.carried.fronts, asked.pair, 0.0)
     found = search(asked.bodies, question, front, state.scratch)
@@ -146,7 +146,7 @@ def _note(row, step_b, pair, hit, found):
 def _at_steps(lent, clocks, pair, row, step_b, state, found, tally):
     """Measures a pair at a step of either clock, if it can be the least there; True if it is.
 
-    Many arguments: what belongs together is in tuples already.
+    Many arguments: they are grouped in tuples already.
     """
     row_a, row_b = _rows_of(clocks, pair, row, step_b)
     within = found.clearance[row] * NOT_LESS
@@ -162,8 +162,8 @@ def _at_steps(lent, clocks, pair, row, step_b, state, found, tally):
 def _occur(clocks, row, step_b):
     """True if two steps can occur together."""
     times = clocks.path.times
-    apart = abs(times[clocks.tree_a.start + row] - times[step_b])
-    return apart <= clocks.band.slack + 2.0 * clocks.band.rounding
+    not_nested = abs(times[clocks.tree_a.start + row] - times[step_b])
+    return not_nested <= clocks.band.slack + 2.0 * clocks.band.rounding
 
 
 @inline
@@ -181,16 +181,16 @@ def _nearest_step(clocks, row):
 
 
 @inline
-def _first_look(lent, clocks, row, state, found, tally):
-    """Some distance at a step of clock a that is near the least."""
+def _sample_step(lent, clocks, row, state, found, tally):
+    """Measures all pairs of a step of clock a at a few steps of clock b, for a distance near the least."""
     n_b = n_leaves_of(clocks.tree_b)
     own = _nearest_step(clocks, row)
     if not _occur(clocks, row, own):
         return
     for pair in range(len(clocks.world.pairs)):
         _at_steps(lent, clocks, pair, row, own, state, found, tally)
-    for k in range(FIRST_LOOK):
-        step_b = (n_b - 1) * k // (FIRST_LOOK - 1)
+    for k in range(SAMPLED_STEPS):
+        step_b = (n_b - 1) * k // (SAMPLED_STEPS - 1)
         if _occur(clocks, row, step_b):
             for pair in range(len(clocks.world.pairs)):
                 _at_steps(lent, clocks, pair, row, step_b, state, found, tally)
@@ -198,20 +198,20 @@ def _first_look(lent, clocks, row, state, found, tally):
 
 @inline
 def _walk(lent, clocks, row, state, found, tally):
-    """From the best of the step before, some distance at the next that is near the least."""
+    """Measures a step of clock a near the best of the step before, for a distance near the least."""
     n_b = n_leaves_of(clocks.tree_b)
     pair, step_b = found.pair[row - 1], found.step_b[row - 1]
     own = _nearest_step(clocks, row)
     if step_b < 0 or not _occur(clocks, row, own):
-        _first_look(lent, clocks, row, state, found, tally)
+        _sample_step(lent, clocks, row, state, found, tally)
         return
     while not _occur(clocks, row, step_b):
         step_b += 1 if step_b < own else -1
     _at_steps(lent, clocks, pair, row, step_b, state, found, tally)
-    for way in (-1, 1):
+    for side in (-1, 1):
         at = step_b
         for _ in range(WALK):
-            at += way
+            at += side
             if at < 0 or at >= n_b or not _occur(clocks, row, at):
                 break
             if not _at_steps(lent, clocks, pair, row, at, state, found, tally):
@@ -220,7 +220,7 @@ def _walk(lent, clocks, row, state, found, tally):
 
 @inline
 def _is_settled(clocks, rectangle, pair, found):
-    """True if a contact is known at the only step of clock a that comes before all that a pair can add."""
+    """True if a known contact at the only step of clock a comes before every contact of a pair here."""
     row = clocks.tree_a.first[rectangle.node_a]
     if found.gaps_sq[row] > 0.0 or not is_leaf_of_clock(clocks.tree_a, rectangle.node_a):
         return False
@@ -230,7 +230,7 @@ def _is_settled(clocks, rectangle, pair, found):
 
 @inline
 def _within(clocks, node, found):
-    """[m] the least distance seen at the steps of a node, the greatest of these."""
+    """[m] the least distance seen at each step of a node, the greatest of these."""
     within = 0.0
     for row in range(clocks.tree_a.first[node], clocks.tree_a.last[node]):
         within = max(within, found.clearance[row])
@@ -238,22 +238,22 @@ def _within(clocks, node, found):
 
 
 @inline
-def _look_at_pair(surface, asked, seen_enough, state, tally):
-    """(what is known of a pair in the middle of a rectangle, True if it is farther than was asked).
+def _measure_in_middle(surface, asked, seen_enough, state, tally):
+    """(the answer for a pair in the middle of a rectangle, True if its distance exceeds `asked.within`).
 
     Args:
-        seen_enough: [m] what comes nearer is to be measured; of what does not it is enough to know that it is not
-            farther than was asked.
+        seen_enough: [m] a pair that may be nearer is measured; for others it is enough to know that they are
+            within.
     """
     faces, bodies = state.carried.faces[asked.pair], asked.bodies
     a, b = bodies.frames.a, bodies.frames.b
-    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    seen = corner_distance(surface, faces, a, b) * NOT_LESS
     if seen_enough < seen < asked.within:
         return NOTHING_MEASURED, False
-    planes = apart_by_planes(surface, bodies, faces, asked.within, state.scratch)
+    planes = bound_by_planes(surface, bodies, faces, asked.within, state.scratch)
     if planes > asked.within:
         return NOTHING_MEASURED, True
-    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    seen = corner_distance(surface, faces, a, b) * NOT_LESS
     if seen_enough < seen < asked.within:
         return NOTHING_MEASURED, False
     near = _measured(asked, state, tally)
@@ -261,10 +261,10 @@ def _look_at_pair(surface, asked, seen_enough, state, tally):
 
 
 @inline
-def _look(lent, surface, clocks, rectangle, count, state, found, tally):
-    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
+def _visit_pairs(lent, surface, clocks, rectangle, count, state, found, tally):
+    """Visits the listed pairs in a rectangle: (how many stay open, True to halve it in a's time).
 
-    Many arguments: what belongs together is in tuples already.
+    Many arguments: they are grouped in tuples already.
     """
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns
@@ -272,7 +272,7 @@ def _look(lent, surface, clocks, rectangle, count, state, found, tally):
     one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
     occurs = middle_occurs(tree_a, tree_b, r, clocks.band)
     most_a, most_b = 0.0, 0.0
-    n_left = 0
+    n_open = 0
     for place in range(count):
         pair = listed[place]
         if _is_settled(clocks, r, pair, found):
@@ -290,23 +290,23 @@ def _look(lent, surface, clocks, rectangle, count, state, found, tally):
         seen_enough = found.clearance[leaf_a] if occurs else 0.0
         if one_a and one_b:
             seen_enough = np.inf
-        near, is_far = _look_at_pair(surface, asked, seen_enough, state, tally)
+        near, is_far = _measure_in_middle(surface, asked, seen_enough, state, tally)
         if occurs:
             _note(leaf_a, tree_b.start + leaf_b, pair, near.hit, found)
         if not (is_far or (one_a and one_b)):
-            listed[n_left] = pair
-            n_left += 1
+            listed[n_open] = pair
+            n_open += 1
             most_a, most_b = max(most_a, moved_a), max(most_b, moved_b)
-    return n_left, one_b or (most_a > most_b and not one_a)
+    return n_open, one_b or (most_a > most_b and not one_a)
 
 
 @inline
-def _look_at_few(lent, clocks, state, found, tally):
-    """Looks at some steps of clock a, evenly spread; at the others nothing is asked that is not nearer."""
+def _sample_few(lent, clocks, state, found, tally):
+    """Measures some steps of clock a, evenly spread; at the others only nearer pairs are of interest."""
     n_a, least = len(found.clearance), np.inf
-    for k in range(FIRST_LOOK):
-        row = (n_a - 1) * k // (FIRST_LOOK - 1)
-        _first_look(lent, clocks, row, state, found, tally)
+    for k in range(SAMPLED_STEPS):
+        row = (n_a - 1) * k // (SAMPLED_STEPS - 1)
+        _sample_step(lent, clocks, row, state, found, tally)
         least = min(least, found.clearance[row])
     for row in range(n_a):
         if found.clearance[row] > least:
@@ -321,7 +321,7 @@ def least_of_unsynchronised_steps(
 
     Args:
         clocks: `TwoClocks`, with trees of steps; that of b has all steps.
-        least_only: True if only the least of all these steps is wanted; what is found of others may be too much.
+        least_only: True if only the least of all these steps is wanted; distances of others may be too great.
         tally: (5,) as in `certify_unsynchronised`.
     """
     n_pairs = len(clocks.world.pairs)
@@ -346,9 +346,9 @@ def _least_of_steps(surface, clocks, least_only, state, found, tally):
     lent = lend(surface)
     waiting = state.waiting
     if least_only:
-        _look_at_few(lent, clocks, state, found, tally)
+        _sample_few(lent, clocks, state, found, tally)
     else:
-        _first_look(lent, clocks, 0, state, found, tally)
+        _sample_step(lent, clocks, 0, state, found, tally)
         for row in range(1, len(found.clearance)):
             _walk(lent, clocks, row, state, found, tally)
     put_rectangle(ALL_TIMES, len(waiting.listed), waiting, 0)
@@ -356,7 +356,7 @@ def _least_of_steps(surface, clocks, least_only, state, found, tally):
 
 
 class RectanglesOfSteps(NamedTuple):
-    """What rectangles are asked: all but the counts are lent."""
+    """The arguments of a visit of a rectangle; all but the counts are lent."""
 
     surface: Surface
     clocks: TwoClocks
@@ -369,21 +369,23 @@ class RectanglesOfSteps(NamedTuple):
 def _(search: RectanglesOfSteps, place):
     clocks, state, found, tally = search.clocks, search.state, search.found, search.tally
     tree_a, tree_b = clocks.tree_a, clocks.tree_b
-    r, count = take_rectangle(state.waiting, place)
+    r, count = read_rectangle(state.waiting, place)
     if not meets_band(tree_a, tree_b, r, clocks.band):
         return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
     tally[0] += 1
-    n_left, in_a = _look(search.surface, search.surface, clocks, r, count, state, found, tally)
+    n_open, in_a = _visit_pairs(
+        search.surface, search.surface, clocks, r, count, state, found, tally
+    )
     row = middle_leaf(tree_a, r.node_a)
     step = tree_a.start + row if in_a else found.step_b[row]
     seen = clocks.path.times[step] if step >= 0 else -np.inf
-    return Visit(search, OpenRectangle(r, in_a, n_left, seen), n_left > 0)
+    return Visit(search, OpenRectangle(r, in_a, n_open, seen), n_open > 0)
 
 
 @without_part.register
 def _(search: RectanglesOfSteps, part):
-    if part.count > 0:  # a result must not lack them
-        raise AssertionError("no room for what waits")
+    if part.count > 0:  # the result would lack these pairs
+        raise AssertionError("too many rectangles wait")
     return search
 
 

@@ -1,6 +1,6 @@
 """Lower bounds: each pruning bound is a function that never exceeds the distance it bounds.
 
-Where a box is taken, four boxes in lanes may stand in its place (`surface.group_at`); the bound is then of each.
+An argument that is a box may be four boxes in lanes (`surface.group_at`); the result then has a bound for each.
 """
 
 import math
@@ -29,7 +29,7 @@ SLACK = 128.0 * 2.0**-53
 """Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
 
 NO_REACH = 1e300
-"""[m] Less than nothing is known of boxes whose centres coincide."""
+"""[m] Stands for minus infinity: the bound of boxes whose centres coincide."""
 
 LEAN = 2.0**-20
 """Four times what rounding to single precision can turn the axes of a box, relative to 1."""
@@ -60,11 +60,11 @@ def between_boxes(p, u, v, w, d):
 def lower_bound_boxes(p, q, m, slack):
     """[m] a lower bound on the distance of two boxes, p in the frame of a and q in that of b.
 
-    The greatest of three: in the frame of either box the other one fits in an axis-parallel box of half
-    sizes |R| h, and the distance of two axis-parallel boxes is known; along the line of the centres both
-    boxes reach no farther than the sum of their half sizes' shares. The axes are orthonormal to `LEAN` / 4
-    only, which each of the three can lengthen by that share of the centres' distance. Where the boxes overlap
-    it is the last one, and the less the more they do.
+    The greatest of three. In the frame of either box the other one fits in an axis-parallel box of half sizes
+    |R| h, and the distance of two axis-parallel boxes is known. Along the line of the centres the reach of both
+    boxes is at most the sum of their half sizes' shares. The axes are orthonormal to `LEAN` / 4 only, which can
+    raise each of the three by that share of the centres' distance. Where the boxes overlap it is the last one,
+    which falls as they overlap more.
     """
     d = sub(turn(m, q.centre), sub(p.centre, m.t))
     n = between_boxes(p, turn(m, q.x), turn(m, q.y), turn(m, q.z), d)
@@ -96,7 +96,7 @@ def lower_bound_between(h, k, n, slack):
 
 
 class SeparatingDirection(NamedTuple):
-    """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b, from a to b.
+    """A direction that separates two bodies: along `u` in the frame of a, `v` in that of b, from a to b.
 
     Any unit vector gives a valid bound; that of the best witness points gives a tight one.
     """
@@ -132,7 +132,7 @@ def opposite(direction):
 
 @inline(force=True)
 def box_reach(box, direction):
-    """[m] how far a box reaches from its centre along a direction."""
+    """[m] half of the width of a box along a direction."""
     h = box.half
     return (
         h.x * abs(dot(box.x, direction))
@@ -162,8 +162,8 @@ def lower_bound_faces_along_direction(a, face_a, b, face_b, direction):
 
 
 @inline(force=True)
-def _beside(surface, face, other, face_other, m):
-    """(squared distance, where to) of what lies beyond the plane and one edge of a face, seen from its body.
+def _outward_gap(surface, face, other, face_other, m):
+    """(squared distance, direction) of a face from the plane and one edge of another face, in the other's frame.
 
     Args:
         m: from the frame of the other body to its own.
@@ -199,30 +199,30 @@ def _beside(surface, face, other, face_other, m):
 
 
 @inline(force=True)
-def direction_beside(a, face_a, b, face_b, from_a, from_b):
-    """A direction in which two faces are probably apart: up from the plane of one and away from its nearest edge.
+def direction_outward(a, face_a, b, face_b, from_a, from_b):
+    """A direction that probably separates two faces: up from the plane of one and outward from its nearest edge.
 
     Args:
         from_a, from_b: `a_from_b` and the inverse.
     """
-    of_a, d = _beside(a, face_a, b, face_b, from_a)
-    of_b, e = _beside(b, face_b, a, face_a, from_b)
+    of_a, d = _outward_gap(a, face_a, b, face_b, from_a)
+    of_b, e = _outward_gap(b, face_b, a, face_a, from_b)
     if of_b > of_a:
         d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
     return direction_between(Vec3(0.0, 0.0, 0.0), d, from_a)
 
 
 @inline(force=True)
-def lower_bound_faces_beside(a, face_a, b, face_b, m):
-    """[m] a lower bound on the distance of two faces but for rounding, `direction_beside`."""
+def lower_bound_faces_outward(a, face_a, b, face_b, m):
+    """[m] a lower bound on the distance of two faces along `direction_outward`, without rounding slack."""
     return lower_bound_faces_along_direction(
-        a, face_a, b, face_b, direction_beside(a, face_a, b, face_b, m, inverse(m))
+        a, face_a, b, face_b, direction_outward(a, face_a, b, face_b, m, inverse(m))
     )
 
 
 @inline(force=True)
 def lower_bound_faces_across(a, face_a, b, face_b, m):
-    """[m] the same, across an edge of each: the greatest of all pairs; 0 where none parts the faces."""
+    """[m] the same across an edge of each: the greatest of all pairs; 0 where none separates the faces."""
     most = 0.0
     first_a, last_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     first_b, last_b = b.face_starts[face_b], b.face_starts[face_b + 1]
@@ -245,7 +245,7 @@ def lower_bound_faces_across(a, face_a, b, face_b, m):
 
 @inline(force=True)
 def _reach(surface, root):
-    """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
+    """[m] an upper bound on the sum of coordinate magnitudes of a body's points."""
     box = box_of(surface, root)
     c, h = box.centre, box.half
     return abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
@@ -253,35 +253,35 @@ def _reach(surface, root):
 
 @inline(force=True)
 def rounding_slack(a, root_a, b, root_b, frames):
-    """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
+    """[m] the most that rounding, and rotations off orthonormal, can raise a box bound."""
     t = frames.m.t
-    apart = abs(t.x) + abs(t.y) + abs(t.z)
-    return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
+    shift = abs(t.x) + abs(t.y) + abs(t.z)
+    return (SLACK + 8.0 * frames.defect) * (shift + _reach(a, root_a) + _reach(b, root_b))
 
 
 @inline
 def margin_of(slack):
-    """[m] the rounding of a distance between two points of the bodies, with room, of their `rounding_slack`."""
+    """[m] the rounding of a distance between two points of the bodies, from their `rounding_slack`."""
     return 4.0 * slack
 
 
 @inline(force=True)
 def displacement(surface, root, before, after):
-    """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.
+    """[m] an upper bound on the motion of any point of a body from one pose to another.
 
     The displacement is the norm of an affine map, hence convex: its maximum over the body's box is
     attained at a corner. `before` and `after` are (4, 4) poses.
     """
     box = box_of(surface, root)
     a, b = rigid(after), rigid(before)
-    way = RigidMotion(
+    change = RigidMotion(
         a.xx - b.xx, a.xy - b.xy, a.xz - b.xz,
         a.yx - b.yx, a.yy - b.yy, a.yz - b.yz,
         a.zx - b.zx, a.zy - b.zy, a.zz - b.zz,
         sub(a.t, b.t),
     )  # fmt: skip
-    centre = move(way, box.centre)
-    x, y, z = turn(way, box.x), turn(way, box.y), turn(way, box.z)
+    centre = move(change, box.centre)
+    x, y, z = turn(change, box.x), turn(change, box.y), turn(change, box.z)
     most_sq = 0.0
     for corner in range(4):  # and the opposite one
         out = along(Vec3(0.0, 0.0, 0.0), box.half.x, x)

@@ -37,10 +37,10 @@ def _of_edge_and_triangle(p, q, x, y, z):
     """The points of an edge p q and a triangle x y z nearest to coinciding."""
     n = cross3(minus3(y, x), minus3(z, x))
     h = dot3(n, minus3(p, x))
-    way = minus(h, dot3(n, minus3(q, x)))
+    drop = minus(h, dot3(n, minus3(q, x)))
     t = p
-    if way.hi != 0.0:
-        s = over(h, way)
+    if drop.hi != 0.0:
+        s = over(h, drop)
         if 0.0 < s.hi <= 1.0:
             t = along3(p, s, minus3(q, p))
     best = point_and_triangle(t, x, y, z)

@@ -1,7 +1,7 @@
-"""All feature pairs of two faces that could be the nearest, in double-double: where the first is not proven.
+"""All feature pairs of two faces that could be the nearest, in double-double, if the first is not proven.
 
-Doubles leave out what is farther than a limit or has its feet clearly outside; the rest is measured. Not for:
-the usual case, in which one feature pair and its lower bound suffice (`refine`).
+Doubles exclude pairs that are farther than a limit or whose feet are clearly outside; the others are measured. Not
+for: the usual case, in which one feature pair and its lower bound suffice (`refine`).
 """
 
 import math
@@ -21,7 +21,7 @@ from clearance.kernels.features.wide_features import Simplex, size_features
 
 
 class FeatureCutoff(NamedTuple):
-    """What features have to be measured.
+    """Which features must be measured.
 
     Attributes:
         limit, margin: [m] as in `face_pair`.
@@ -32,7 +32,7 @@ class FeatureCutoff(NamedTuple):
 
 
 class NearestFeatures(NamedTuple):
-    """The nearest feature pair so far, its squared distance [m^2], and what all measured ones are beyond [m]."""
+    """The nearest feature pair so far, its squared distance [m^2], and a lower bound on all measured ones [m]."""
 
     gap_sq: Wide
     feature: Feature
@@ -40,7 +40,7 @@ class NearestFeatures(NamedTuple):
 
 
 class PosedCorner(NamedTuple):
-    """A vertex `at` of one body, where it is in the frame of the other [m], and True if it is of body a."""
+    """A vertex `at` of one body, its point in the frame of the other [m], and True if it is of body a."""
 
     at: int
     y: Vec3
@@ -49,7 +49,7 @@ class PosedCorner(NamedTuple):
 
 
 @inline
-def _take(frames, one, two, feature, best):
+def _with_feature(frames, one, two, feature, best):
     """`best`, or a feature pair that is nearer."""
     sized = size_features(frames, one, two)
     found_sq = sized.pair.gap_sq
@@ -70,13 +70,13 @@ def _corner_of(one, at, frames, is_a):
 
 
 @inline
-def _take_corner(frames, corner, other, n_corners, k, best):
+def _with_corner(frames, corner, other, n_corners, k, best):
     """`best`, or a vertex against feature `k` of the other body, of so many corners, where that is nearer."""
     if corner.is_a:
         feature = Feature(1, corner.at, n_corners, k)
-        return _take(frames, corner.simplex, other, feature, best)
+        return _with_feature(frames, corner.simplex, other, feature, best)
     feature = Feature(n_corners, k, 1, corner.at)
-    return _take(frames, other, corner.simplex, feature, best)
+    return _with_feature(frames, other, corner.simplex, feature, best)
 
 
 @inline
@@ -87,7 +87,7 @@ def _corner_to_face(corner, two, face, frames, cutoff, best):
         if abs(height(two, face, y)) > cutoff.limit or not may_be_over(two, face, y, cutoff.margin):
             return best
     for k in range(two.face_starts[face] + 1, two.face_starts[face + 1] - 1):
-        best = _take_corner(frames, corner, simplex(two, face, 3, k), 3, k, best)
+        best = _with_corner(frames, corner, simplex(two, face, 3, k), 3, k, best)
     return best
 
 
@@ -102,13 +102,13 @@ def _corner_to_segments(corner, two, face, frames, cutoff, best):
             continue
         if gap_sq(y, nearest_on_segment(y, start, end)) > cutoff.limit * cutoff.limit:
             continue
-        best = _take_corner(frames, corner, simplex(two, face, 2, s), 2, s, best)
+        best = _with_corner(frames, corner, simplex(two, face, 2, s), 2, s, best)
     return best
 
 
 @inline
-def _far_apart(p0, p1, q0, q1, limit):
-    """True if two segments are clearly farther apart than a limit, by the plane between their middles."""
+def _are_far(p0, p1, q0, q1, limit):
+    """True if the distance of two segments clearly exceeds a limit, by the plane between their middles."""
     u, v = sub(p1, p0), sub(q1, q0)
     w = Vec3(
         0.5 * ((q0.x + q1.x) - (p0.x + p1.x)),
@@ -130,7 +130,7 @@ def _between_corners(a, face_a, b, face_b, frames, cutoff, best):
             i = a.owned_vertices[o]
             if gap_sq(row(a.vertices, i), y) <= cutoff.limit * cutoff.limit:
                 one, two = simplex(a, face_a, 1, i), simplex(b, face_b, 1, j)
-                best = _take(frames, one, two, Feature(1, i, 1, j), best)
+                best = _with_feature(frames, one, two, Feature(1, i, 1, j), best)
     return best
 
 
@@ -143,11 +143,11 @@ def _between_segments(a, face_a, b, face_b, frames, cutoff, best):
         for i in range(n_segments(a, face_a)):
             i0, i1 = segment(a, face_a, i)
             p0, p1 = row(a.vertices, i0), row(a.vertices, i1)
-            if _far_apart(p0, p1, q0, q1, cutoff.limit):
+            if _are_far(p0, p1, q0, q1, cutoff.limit):
                 continue
             if may_be_inside_both(p0, p1, q0, q1, cutoff.margin):
                 one, two = simplex(a, face_a, 2, i), simplex(b, face_b, 2, j)
-                best = _take(frames, one, two, Feature(2, i, 2, j), best)
+                best = _with_feature(frames, one, two, Feature(2, i, 2, j), best)
     return best
 
 

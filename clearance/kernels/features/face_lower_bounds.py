@@ -1,6 +1,6 @@
-"""Lower bounds on the distance of two faces along a direction: what proves that a pair of points is the nearest.
+"""Lower bounds on the distance of two faces along a direction: they prove that a pair of points is the nearest.
 
-Weak duality: for any w, two convex sets are at least (min w . y - max w . x) / |w| apart. A face that
+Weak duality: for any w, the distance of two convex sets is at least (min w . y - max w . x) / |w|. A face that
 rounding has bent is not convex, only the triangles of its fan are; so its parts are bounded one by one.
 Not for: which points are the nearest (`wide_features`).
 """
@@ -30,16 +30,16 @@ from clearance.kernels.arithmetic.double_double import (
 from clearance.kernels.arithmetic.vec3 import Vec3, along, cross, dot, row, sub, turn, turn_back
 
 CLOSE = 64.0 * 2.0**-53
-"""Rounding of a plain share, relative to the sizes of direction and corner: 12 operations, with room."""
+"""Rounding of a share in doubles, relative to the sizes of direction and corner: 12 operations, with a margin."""
 
 TILT = 2.0**-20
-"""How far a direction is turned away from the triangle under a corner, to see the others of a bent fan."""
+"""The tilt of a direction away from the triangle under a corner, to bound the others of a bent fan."""
 
 SURE = 2.0**-60
-"""Share of a distance that its lower bound may be below it for the points to count as proven the nearest."""
+"""Points are proven the nearest if their lower bound is low by at most this share of their distance."""
 
 UNSURE = 2.0**-48
-"""Share of the rounding in doubles that its lower bound may be below it: twice that of double-double."""
+"""And by at most this share of the rounding in doubles: twice the rounding of double-double."""
 
 
 class CornerRange(NamedTuple):
@@ -50,7 +50,7 @@ class CornerRange(NamedTuple):
 
 
 class FaceCorners(NamedTuple):
-    """Corners of a face: what a bound needs of a `Surface`.
+    """Corners of a face, the part of a `Surface` that a bound needs.
 
     Attributes:
         points: (v, 3) [m] in the frame of the body. flat: (c,) indices into `points`.
@@ -79,7 +79,8 @@ def corners_of(surface, face, part):
 
 @inline
 def _greatest_share(corners, frames, is_a, pair):
-    """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and what its rounding is relative to.
+    """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and the size that its rounding scales
+    with.
 
     Only corners that are greatest within rounding are measured in double-double.
     """
@@ -137,7 +138,7 @@ def _plain_lower_bound(a, face_a, part_a, b, face_b, part_b, m, w):
 
 @inline
 def _beyond(surface, face, corner, third, w):
-    """`w` (frame of the face's body), tilted towards what lies beyond the diagonal to a corner from `third`."""
+    """`w` (frame of the face's body), tilted towards the side of the diagonal to a corner opposite `third`."""
     flat = surface.face_vertices
     first = row(surface.vertices, flat[surface.face_starts[face]])
     aside = cross(sub(row(surface.vertices, flat[corner]), first), w)

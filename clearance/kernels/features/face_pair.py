@@ -1,7 +1,7 @@
-"""The nearest features of two faces in doubles: a filter that leaves out nothing that could be the minimum.
+"""The nearest features of two faces in doubles: a filter that passes everything that could be the minimum.
 
-The minimum of two polygons is attained by a vertex and a face, a vertex and an edge, or two edges inside
-both; each is a candidate here, over the features that the two faces own. Not for: the answer itself
+A vertex and a face, a vertex and an edge, or two edges attain the minimum of two polygons. Each of these is a
+candidate here, over the features that the two faces own. Not for: the answer itself
 (`refine`), contact (`predicates`), and which face pairs to measure (`descent`).
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
-from clearance.kernels.features.bounds import lower_bound_faces_beside
+from clearance.kernels.features.bounds import lower_bound_faces_outward
 from clearance.kernels.features.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
 
@@ -24,19 +24,19 @@ LEANING = 2.0**-6
 """Difference of two unit vectors, within which a face pair is known to be nearest at features of others."""
 
 OWN_DIRECTION = 0.5 * LEANING * LEANING
-"""Share of the least distance that the bound of a face pair may be short of it for that."""
+"""The bound of a face pair may be low by this share of the least distance for that."""
 
 CLEARLY = 1.0 + 2.0**-26
-"""Where rounding makes a distance more uncertain than that, all faces are measured: what else they own may be as
-near, and `error_bound` would depend on whether it was seen."""
+"""If rounding makes a distance more uncertain than that, all faces are measured: other features may be as near,
+and `error_bound` would depend on whether they were seen."""
 
 
 class Hit(NamedTuple):
-    """A pair of points, both in the frame of body a until it is the answer, which is in the world.
+    """A pair of points, both in the frame of body a; in an answer in the world.
 
     Attributes:
-        gap_sq: [m^2] an upper bound on the squared distance but for the margin of rounding; in an answer
-            the square of the distance.
+        gap_sq: [m^2] an upper bound on the squared distance, apart from the margin of rounding; in an
+            answer the square of the distance.
     """
 
     gap_sq: float
@@ -61,7 +61,7 @@ def write_points(hit, points):
 
 
 CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES, UNSEEN = range(7)
-"""Kinds of feature pairs, that of a first; none that was seen."""
+"""Kinds of feature pairs, the feature of a first; the last one: none was seen."""
 
 
 class FeatureCandidate(NamedTuple):
@@ -69,7 +69,7 @@ class FeatureCandidate(NamedTuple):
 
     Attributes:
         near_sq: [m^2] their squared distance.
-        kind, i, j: what they are: indices of vertices or of owned edges; not used for a face.
+        kind, i, j: the kind, and indices of vertices or of owned edges; not used for a face.
     """
 
     near_sq: float
@@ -82,7 +82,7 @@ NOTHING_SEEN = FeatureCandidate(math.inf, UNSEEN, 0, 0)
 
 
 class FacePairState(NamedTuple):
-    """The best pair so far, and what was seen of the face pair at hand."""
+    """The best pair so far, and the nearest features of the current face pair."""
 
     best: Hit
     seen: FeatureCandidate
@@ -101,7 +101,7 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
 
 
 @inline(force=True)
-def take(near, hit, candidate):
+def with_candidate(near, hit, candidate):
     """`near` with one more pair of points and of features, which are within the limit."""
     best, seen = near.best, near.seen
     if hit.gap_sq < best.gap_sq:
@@ -112,10 +112,10 @@ def take(near, hit, candidate):
 
 
 @inline(force=True)
-def take_within(near, limit_sq, hit, kind, i, j):
+def with_candidate_within(near, limit_sq, hit, kind, i, j):
     """`near` with one more pair of points, of features `i` and `j`, if it is within the limit."""
     if hit.gap_sq <= limit_sq:
-        near = take(near, hit, FeatureCandidate(hit.gap_sq, kind, i, j))
+        near = with_candidate(near, hit, FeatureCandidate(hit.gap_sq, kind, i, j))
     return near
 
 
@@ -132,11 +132,11 @@ def is_over(surface, face, x):
 @inline(force=True)
 def may_be_over(surface, face, x, margin):
     """True unless the foot of `x` is outside the face by more than rounding."""
-    room = margin * surface.blunt[face] + surface.width[face]
+    tolerance = margin * surface.blunt[face] + surface.width[face]
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
         outward = row(surface.corner_normals, c)
         d = sub(x, row(surface.vertices, surface.face_vertices[c]))
-        if dot(outward, d) > LOOSE * (abs(d.x) + abs(d.y) + abs(d.z)) + room:
+        if dot(outward, d) > LOOSE * (abs(d.x) + abs(d.y) + abs(d.z)) + tolerance:
             return False
     return True
 
@@ -176,7 +176,7 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
                 q = move(m, along(x, -h, row(b.normals, face_b)))
                 upper_sq = _upper_sq(b, face_b, h, margin)
                 hit = Hit(upper_sq, face_a, face_b, p, q)
-                near = take(near, hit, FeatureCandidate(h * h, CORNER_FACE, i, 0))
+                near = with_candidate(near, hit, FeatureCandidate(h * h, CORNER_FACE, i, 0))
     return near
 
 
@@ -193,14 +193,14 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
                 p = along(q, -h, row(a.normals, face_a))
                 upper_sq = _upper_sq(a, face_a, h, margin)
                 hit = Hit(upper_sq, face_a, face_b, p, q)
-                near = take(near, hit, FeatureCandidate(h * h, FACE_CORNER, 0, j))
+                near = with_candidate(near, hit, FeatureCandidate(h * h, FACE_CORNER, 0, j))
         for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[e, 0])
             p1 = row(a.vertices, a.owned_edges[e, 1])
             inside, p = foot_inside(q, p0, p1)
             if inside:
                 hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
-                near = take_within(near, limit_sq, hit, EDGE_CORNER, e, j)
+                near = with_candidate_within(near, limit_sq, hit, EDGE_CORNER, e, j)
     return near
 
 
@@ -208,8 +208,8 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
 
-    Edges that the direction `d` of the best points so far separates are not measured: of faces with many corners
-    most. Without such points it is zero, which separates nothing.
+    Edges that the direction `d` of the best points so far separates are not measured; on faces with many corners
+    these are most. Without such points `d` is zero and separates nothing.
     """
     d = sub(near.best.q, near.best.p)
     reach = (math.sqrt(min(limit_sq, near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))
@@ -228,7 +228,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
             inside, q = foot_inside(p, q0, q1)
             if inside:
                 hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
-                near = take_within(near, limit_sq, hit, CORNER_EDGE, i, e)
+                near = with_candidate_within(near, limit_sq, hit, CORNER_EDGE, i, e)
         for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[i, 0])
             p1 = row(a.vertices, a.owned_edges[i, 1])
@@ -237,7 +237,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
             inside, p, q = common_perpendicular(p0, p1, q0, q1, margin)
             if inside:
                 hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
-                near = take_within(near, limit_sq, hit, EDGES, i, e)
+                near = with_candidate_within(near, limit_sq, hit, EDGES, i, e)
     return near
 
 
@@ -251,7 +251,7 @@ def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
             i = a.owned_vertices[k]
             p = row(a.vertices, i)
             hit = Hit(gap_sq(p, q), face_a, face_b, p, q)
-            near = take_within(near, limit_sq, hit, CORNERS, i, j)
+            near = with_candidate_within(near, limit_sq, hit, CORNERS, i, j)
     return near
 
 
@@ -274,10 +274,10 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
 
 @inline(force=True)
 def _may_own_farthest(surface, face, u, depth):
-    """False if nothing that a face owns is its farthest along any direction within `LEANING` of `u`.
+    """False if a face owns none of its farthest features along any direction within `LEANING` of `u`.
 
-    A corner, an edge or the face is farthest; all its corners are as high as the highest, but for the leaning, and
-    `depth` [m] of rounding.
+    A corner, an edge or the whole face is farthest. Its corners are as high as the highest one, within the leaning
+    and `depth` [m] of rounding.
     """
     owns = np.int64(surface.owns[face])
     if owns == ANYTHING:
@@ -304,7 +304,7 @@ def _may_own_farthest(surface, face, u, depth):
 
 @inline(force=True)
 def may_own_nearest(a, face_a, b, face_b, direction, along_direction, best_gap, margin):
-    """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
+    """False if two faces, should they be the nearest of all, are nearest at features that other faces own.
 
     Args:
         along_direction: [m] the bound of the faces along `direction`. Where it is within `OWN_DIRECTION` of the
@@ -321,5 +321,5 @@ def may_own_nearest(a, face_a, b, face_b, direction, along_direction, best_gap, 
 
 @inline(force=True)
 def may_meet(a, face_a, b, face_b, m, margin):
-    """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
-    return lower_bound_faces_beside(a, face_a, b, face_b, m) <= margin
+    """False only if two faces are clearly separate along `direction_outward`."""
+    return lower_bound_faces_outward(a, face_a, b, face_b, m) <= margin

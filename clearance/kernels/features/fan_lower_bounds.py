@@ -1,7 +1,7 @@
 """The lower bound of two bent faces, triangle by triangle of their fans: slow, and rarely needed.
 
-Where two faces bent by rounding lie parallel over each other, no one direction shows all of their triangles
-apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
+Where two faces bent by rounding lie parallel over each other, no single direction separates all of their
+triangles. Each pair of triangles is convex; the direction between its own nearest features separates it.
 """
 
 from clearance.compile.decorators import inline, kernel
@@ -12,7 +12,7 @@ from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.features.wide_features import PointPair, Simplex, wide_feature
 
 MOST = 64
-"""Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
+"""Most triangle pairs; faces with more have the bound of their convex hulls."""
 
 
 @inline(force=True)
@@ -53,7 +53,7 @@ def lower_bound_of_fans(faces: PosedPair, pair: PointPair, least: Wide, lower_bo
     """[m] `lower_bound`, or a greater lower bound on the distance of two faces.
 
     Args:
-        least: (`Wide`) the lower bound that is enough: triangles that have it along `pair` are not looked at.
+        least: (`Wide`) the lower bound that is enough: triangles with it along `pair` are skipped.
     """
     a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames

@@ -1,4 +1,4 @@
-"""Names of feature pairs of two faces, and their corners: a few integers that a search can keep."""
+"""Names of feature pairs of two faces, and their corners: a few integers that a search can store."""
 
 from typing import NamedTuple
 

@@ -48,9 +48,9 @@ NO_MEETING = Meeting(False, True, 0, 0, 0)
 def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
     """True if a segment x y (body frame) goes through the plane of a face clearly beyond one of its edges.
 
-    Heights h and what lies beyond an edge, s, are linear along the segment. Where it meets the face |h| is at
-    most the tolerance t and s at most 0; it does not if |h_y| s_x + |h_x| s_y > t |s_x - s_y|. With errors of up
-    to t in each of the four, and t below both |h|, 3 t times the sum of their magnitudes is enough.
+    The height h and the distance s beyond an edge are linear along the segment. Where it meets the face |h| is at
+    most the tolerance t and s at most 0. It misses if |h_y| s_x + |h_x| s_y > t |s_x - s_y|. With errors of up to
+    t in each of the four, and t below both |h|, 3 t times the sum of their magnitudes is enough.
     """
     if h_x * h_y >= 0.0 or min(abs(h_x), abs(h_y)) <= tolerance:
         return False
@@ -137,8 +137,7 @@ def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
 def meeting(faces: PosedPair, exact: ExactScratch) -> Meeting:
     """Where two faces have a point in common, exactly: the first edge and triangle found to meet.
 
-    Of two flat faces that meet an edge of one meets the other. Where one is bent, its fan's diagonals are
-    edges too.
+    If two flat faces meet, an edge of one meets the other. If one is bent, its fan's diagonals are edges too.
     """
     a, b = faces.surface_a, faces.surface_b
     face_a, face_b, frames = faces.a, faces.b, faces.frames

@@ -1,4 +1,4 @@
-"""Two parts of two surfaces, one of each, and how the surfaces lie: what most questions of a pair begin with."""
+"""Two parts of two surfaces, one of each, and the poses of the surfaces: the start of most questions of a pair."""
 
 from typing import Annotated, NamedTuple
 
@@ -12,7 +12,7 @@ class PosedPair(NamedTuple):
     """Two parts of two surfaces: faces, nodes of their trees or bodies, as the argument's name says.
 
     Attributes:
-        surface_a, surface_b: lent, so that a call hands over two addresses and no arrays.
+        surface_a, surface_b: lent, so that a call passes two addresses and no arrays.
         a, b: the part of each.
         frames: of `frames_of`.
     """

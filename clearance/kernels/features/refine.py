@@ -1,9 +1,9 @@
 """The face pairs that could be the minimum, measured again in double-double.
 
-Vertices and poses are taken exactly as given. The search (`descent`) names the face pairs; here the feature
-pair that doubles found the nearest is measured to some 30 digits, and a lower bound along its direction
-mostly proves that it is. Only where it does not are all features within the limit measured. The least
-wins, ties go to the least faces, and the lower bound says how far the answer can be above the truth.
+Vertices and poses are used exactly as given. The search (`descent`) names the face pairs. Here the feature pair
+that doubles found the nearest is measured to some 30 digits, and a lower bound along its direction mostly proves
+it. Only where it does not, all features within the limit are measured. The least wins, and ties go to the least
+faces. The lower bound limits how far the answer can exceed the true distance.
 """
 
 import math
@@ -59,7 +59,7 @@ class RefinedDistance(NamedTuple):
 
 
 NOTHING_REFINED = RefinedDistance(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
-"""What any pair of points beats."""
+"""Infinitely far: any pair of points is nearer."""
 
 
 @inline
@@ -139,7 +139,7 @@ class RefineQueue(NamedTuple):
 
     Attributes:
         faces: (n, 2) int64. near_sq: (n,) [m^2]. features: (n, 3) int64 kind, i, j.
-        least_sq: (n,) [m^2] a face pair whose features are no nearer needs not be refined: near_sq, or less.
+        least_sq: (n,) [m^2] of the nearest features that the face pair may have: near_sq, or less.
     """
 
     faces: Integers2
@@ -161,7 +161,7 @@ def new_refine_queue():
 
 @inline(force=True)
 def put(waiting, at, face_a, face_b, seen, least_sq):
-    """Lets a face pair wait at a place."""
+    """Queues a face pair at a place."""
     waiting.faces[at, 0], waiting.faces[at, 1] = face_a, face_b
     waiting.near_sq[at], waiting.least_sq[at] = seen.near_sq, least_sq
     features = waiting.features
@@ -169,11 +169,11 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 
 
 class RefineBounds(NamedTuple):
-    """What bounds the distances of all faces when some are refined.
+    """Bounds on the distances of all faces while some are refined.
 
     Attributes:
-        direction: along which the bodies are farthest apart, as far as is known. slack: [m] its rounding.
-        least: [m] no two faces are nearer but for what rounding hides.
+        direction: the best separating direction so far. slack: [m] its rounding.
+        least: [m] a lower bound on the distance of any two faces, except features that rounding hides.
     """
 
     direction: SeparatingDirection
@@ -183,7 +183,7 @@ class RefineBounds(NamedTuple):
 
 @inline(force=True)
 def settle(bodies, waiting, n_waiting, cutoff, bounds, best):
-    """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
+    """`best` after all waiting face pairs that can still win, by features seen or hidden by rounding.
 
     Args:
         bodies: any parts of the surfaces that the faces are of.
@@ -216,18 +216,21 @@ def settle(bodies, waiting, n_waiting, cutoff, bounds, best):
 
 @inline(force=True)
 def shed(a, b, best_gap, margin, waiting, n_waiting):
-    """Drops the waiting face pairs that cannot win any more; how many are left."""
-    kept = 0
+    """Drops the waiting face pairs that cannot win any more; how many remain."""
+    n_remaining = 0
     for i in range(n_waiting):
         limit = limit_of(a, waiting.faces[i, 0], b, waiting.faces[i, 1], best_gap, margin)
         if waiting.least_sq[i] <= limit * limit:
-            waiting.near_sq[kept], waiting.least_sq[kept] = waiting.near_sq[i], waiting.least_sq[i]
+            waiting.near_sq[n_remaining], waiting.least_sq[n_remaining] = (
+                waiting.near_sq[i],
+                waiting.least_sq[i],
+            )
             for k in range(2):
-                waiting.faces[kept, k] = waiting.faces[i, k]
+                waiting.faces[n_remaining, k] = waiting.faces[i, k]
             for k in range(3):
-                waiting.features[kept, k] = waiting.features[i, k]
-            kept += 1
-    return kept
+                waiting.features[n_remaining, k] = waiting.features[i, k]
+            n_remaining += 1
+    return n_remaining
 
 
 @inline

@@ -1,48 +1,52 @@
-"""What rounding hides of two faces: features that were taken for outside, and how near they can be.
+"""Features of two faces that rounding hides: they seem to be outside, and may be near.
 
-Whether the foot of a corner is inside a face or an edge is known to rounding only. Where it is outside but for
-rounding, another face's feature beside it is measured, which is as near only where faces are `told_apart`. Others
-wait with a lower bound in place of what was seen. Not for: what is seen (`face_pair`).
+Rounding limits the test whether the foot of a corner is inside a face or an edge. A foot just outside belongs to a
+feature of a neighbouring face, which is measured instead. It is as near only where `is_beyond_rounding` holds.
+Other face pairs wait with a lower bound in place of a distance. Not for: visible features (`face_pair`).
 """
 
 from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.vec3 import gap_sq, inverse, move, row
-from clearance.kernels.features.bounds import lower_bound_faces_across, lower_bound_faces_beside
+from clearance.kernels.features.bounds import lower_bound_faces_across, lower_bound_faces_outward
 from clearance.kernels.features.face_pair import has_plane
 from clearance.kernels.features.segments import nearest_on_segment
 
-TOLD = 2.0**-26
-"""Share of their distance below which rounding aside, with room, does not hide features of two faces."""
+HIDING_SHARE = 2.0**-26
+"""Rounding below this share of the distance of two faces, with a margin, hides none of their features."""
 
 PASSED_OVER = 2.0**-56
-"""Share of a distance by which a face pair that was passed over can be nearer than the answer.
+"""Share of a distance by which a skipped face pair can be nearer than the answer.
 
-Its features were taken for outside, so that others beside them are measured, off to the side by 2^-28 of the
-distance at most; that lengthens it by half the square. `TOLD` grants 64 times what points are off, and four
-times the width of a face without a plane. Directions are off by 2^-34 where a normal is the least certain, and by
-2^-28 where an edge is as short as 2^-24 of the bodies' size.
+Its features seemed to be outside, and neighbouring ones were measured instead. These lie to the side by at most
+2^-28 of the distance, which lengthens it by half the square. `HIDING_SHARE` allows 64 times the error of points,
+and four times the width of a face without a plane. Directions are off by 2^-34 where a normal is the least
+certain, and by 2^-28 where an edge is as short as 2^-24 of the bodies' size.
 """
 
 
 @inline(force=True)
-def _unsure(surface, face):
-    """[m] how far its triangles, or its inside where it has no plane, may be off what stands for a face."""
+def _shape_error(surface, face):
+    """[m] the greatest distance of a face from its plane, or from its edges if it has no plane."""
     if surface.bent[face] or not has_plane(surface, face):
         return surface.width[face]
     return 0.0
 
 
 @inline(force=True)
-def told_apart(a, face_a, b, face_b, gap, margin):
-    """True if what rounding can hide of two faces that are `gap` apart is no nearer than by `PASSED_OVER`."""
-    return 2.0 * margin + 4.0 * (_unsure(a, face_a) + _unsure(b, face_b)) <= TOLD * gap
+def is_beyond_rounding(a, face_a, b, face_b, gap, margin):
+    """True if hidden features of two faces with a distance of `gap` [m] are nearer by at most `PASSED_OVER`."""
+    return (
+        2.0 * margin + 4.0 * (_shape_error(a, face_a) + _shape_error(b, face_b))
+        <= HIDING_SHARE * gap
+    )
 
 
 @inline(force=True)
 def _corner_near(one, face_one, two, face_two, two_from_one, limit):
-    """True if a corner that a face owns may be within a limit of the inside of one that is bent or has no plane.
+    """True if a corner that a face owns may be within a limit of the inside of a face that is bent or has no
+    plane.
 
-    What has no plane is no farther from its edges than its width.
+    Points of a face without a plane are within its width of its edges.
     """
     if has_plane(two, face_two):
         return two.bent[face_two]
@@ -63,15 +67,16 @@ def _corner_near(one, face_one, two, face_two, two_from_one, limit):
 def may_hide(a, face_a, b, face_b, m, margin, limit, least):
     """True if rounding can hide features of two faces within a limit, whatever was seen.
 
-    Nothing is hidden where faces are `told_apart`; if only their own shape leaves them undecided, corners are.
+    Nothing is hidden where `is_beyond_rounding` holds. If only the shape of a face leaves that open, corners
+    decide.
 
     Args:
-        least: [m] no two faces are nearer but for what is hidden.
+        least: [m] a lower bound on the distance of any two faces, except hidden features.
     """
-    if told_apart(a, face_a, b, face_b, least, margin):
+    if is_beyond_rounding(a, face_a, b, face_b, least, margin):
         return False
     return (
-        2.0 * margin > TOLD * least
+        2.0 * margin > HIDING_SHARE * least
         or _corner_near(a, face_a, b, face_b, inverse(m), limit + margin)
         or _corner_near(b, face_b, a, face_a, m, limit + margin)
     )
@@ -80,9 +85,9 @@ def may_hide(a, face_a, b, face_b, m, margin, limit, least):
 @inline(force=True)
 def sure_gap(a, face_a, b, face_b, m, margin, along_direction):
     """[m] a lower bound on the distance of two faces: `along_direction`, or a greater one if too close."""
-    if told_apart(a, face_a, b, face_b, along_direction, margin):
+    if is_beyond_rounding(a, face_a, b, face_b, along_direction, margin):
         return along_direction
-    gap = max(along_direction, lower_bound_faces_beside(a, face_a, b, face_b, m) - margin)
+    gap = max(along_direction, lower_bound_faces_outward(a, face_a, b, face_b, m) - margin)
     if gap > 0.0:
         return gap
     return max(gap, lower_bound_faces_across(a, face_a, b, face_b, m) - margin)

@@ -38,9 +38,9 @@ def foot_inside(x, start, end):
 
 @inline(force=True)
 def _may_still_be_inside(over, u, v, r, n_sq, margin):
-    """True if feet that are `over` beyond the ends, times |n|^2, may be inside but for rounding of the ends.
+    """True if feet beyond the ends by `over` / |n|^2 may be inside, given the rounding of the ends.
 
-    Not if the segments are parallel but for it: then they are no nearer inside than at the ends, but for it.
+    False if the segments are parallel within rounding: then they are no nearer inside than at the ends.
     """
     u_sq, v_sq = dot(u, u), dot(v, v)
     rounding = margin * math.sqrt(u_sq * v_sq) * math.sqrt(u_sq + v_sq + dot(r, r))
@@ -51,10 +51,10 @@ def _may_still_be_inside(over, u, v, r, n_sq, margin):
 def common_perpendicular(p0, p1, q0, q1, margin):
     """(inside, p, q): the feet of the common perpendicular of two segments, if inside both.
 
-    Near parallelism rounding moves the feet far: those that are beyond the ends but for it are taken at the ends.
-    Parallel segments have none: their minimum is attained at an end point, which other candidates cover. The
-    second foot is that of the first one: near parallelism both would be rounded independently, and their
-    distance off by the root of the rounding instead of the rounding itself.
+    Near parallelism rounding moves the feet far: feet just beyond an end are put at the end. Parallel segments
+    have none: their minimum is at an end point, which other candidates cover. The second foot is the foot of the
+    first one. Rounded independently near parallelism, their distance would be off by the root of the rounding
+    instead of the rounding itself.
     Source: cross-product form of Eberly 2015; measured the most accurate of four near parallelism.
     """
     u = sub(p1, p0)
@@ -81,8 +81,8 @@ def may_be_inside(x, start, end, margin):
     d = sub(end, start)
     length_sq = dot(d, d)
     s = dot(sub(x, start), d)
-    room = LOOSE * length_sq + margin * (abs(d.x) + abs(d.y) + abs(d.z))
-    return -room <= s <= length_sq + room
+    tolerance = LOOSE * length_sq + margin * (abs(d.x) + abs(d.y) + abs(d.z))
+    return -tolerance <= s <= length_sq + tolerance
 
 
 @inline(force=True)
@@ -99,9 +99,9 @@ def may_be_inside_both(p0, p1, q0, q1, margin):
     s = dot(cross(r, v), n) / n_sq
     t = dot(cross(r, u), n) / n_sq
     far = margin * STEEPEST
-    room_s = LOOSE + far / max(abs(u.x), max(abs(u.y), abs(u.z)))
-    room_t = LOOSE + far / max(abs(v.x), max(abs(v.y), abs(v.z)))
-    return -room_s <= s <= 1.0 + room_s and -room_t <= t <= 1.0 + room_t
+    tolerance_s = LOOSE + far / max(abs(u.x), max(abs(u.y), abs(u.z)))
+    tolerance_t = LOOSE + far / max(abs(v.x), max(abs(v.y), abs(v.z)))
+    return -tolerance_s <= s <= 1.0 + tolerance_s and -tolerance_t <= t <= 1.0 + tolerance_t
 
 
 LOOSE = 2.0**-10

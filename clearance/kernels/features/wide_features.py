@@ -1,4 +1,4 @@
-"""Nearest points of two features in double-double: what the answer is made of.
+"""Nearest points of two features in double-double: the parts of the answer.
 
 A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: which features to measure
 (`face_pair`, `every_feature`) and whether the answer is the minimum (`refine`).
@@ -34,7 +34,7 @@ from clearance.kernels.arithmetic.double_double import (
 )
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, sub
 
-WELL_APART = 2.0**-40
+NOT_PARALLEL = 2.0**-40
 """Squared sine of the angle above which the vector product of two edges keeps 80 bits."""
 
 LONG = 2.0**-20
@@ -135,7 +135,7 @@ def two_segments(p0, p1, q0, q1):
     t = cross3(n, r)
     at_p, at_q = dot3(v, t), dot3(u, t)
     inside = at_p.hi >= 0.0 and minus(n_sq, at_p).hi >= 0.0 and at_q.hi >= 0.0
-    flat = WELL_APART * dot(rounded(u), rounded(u)) * dot(rounded(v), rounded(v))
+    flat = NOT_PARALLEL * dot(rounded(u), rounded(u)) * dot(rounded(v), rounded(v))
     if inside and minus(n_sq, at_q).hi >= 0.0 and n_sq.hi > flat:
         h = dot3(r, n)
         if is_medium(n_sq):
@@ -185,7 +185,7 @@ def wide_feature(frames, one, two):
 
 @inline
 def _unevenness(frames, corners, is_a, pair):
-    """[m] how far a triangle's corners are off the plane of its rounded normal, along which a height was taken."""
+    """[m] the distance of a triangle's corners from the plane of its rounded normal, used for heights."""
     if corners.n < 3:
         return 0.0
     u, v = sub(corners.v, corners.u), sub(corners.w, corners.u)
@@ -201,7 +201,7 @@ def _unevenness(frames, corners, is_a, pair):
 
 @inline
 def too_far(frames, one, two, pair, length):
-    """[m] how much a height along a rounded normal, of a triangle or two segments, may be above the truth."""
+    """[m] the most by which a height along a rounded normal, of a triangle or two segments, may be too great."""
     if one.n == 2 and two.n == 2:
         u, v = sub(one.v, one.u), sub(two.v, two.u)
         if dot(u, u) * dot(v, v) <= SLENDER * SLENDER * pair.w_sq.hi:

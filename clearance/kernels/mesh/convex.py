@@ -1,6 +1,6 @@
-"""Which polygons are clearly convex: most are, and it is decided without planes and tolerances.
+"""Whether polygons are clearly convex: a quick test that most pass.
 
-Not for: refusing a polygon (`geometry.faces` looks at those again that are not).
+Not for: refusing a polygon (`geometry.faces` tests the others again).
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from clearance.compile.decorators import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
 FLAT = 1e-12
-"""[-] How far corners may be off the plane, relative to the polygon's size."""
+"""[-] Greatest distance of corners from the plane, relative to the polygon's size."""
 
 
 @inline
@@ -23,15 +23,15 @@ def _seems_convex(corners):
         size = max(size, dot(side, side))
     if not 1e-200 < dot(total, total) < 1e200:
         return False
-    room = FLAT * np.sqrt(
+    tolerance = FLAT * np.sqrt(
         max(size, dot(sub(row(corners, n - 1), first), sub(row(corners, n - 1), first)))
     )
-    room *= np.sqrt(dot(total, total))
+    tolerance *= np.sqrt(dot(total, total))
     for i in range(n):
         here, ahead, after = row(corners, i), row(corners, (i + 1) % n), row(corners, (i + 2) % n)
         if not dot(cross(sub(ahead, here), sub(after, ahead)), total) > 0.0:
             return False
-        if not abs(dot(sub(here, first), total)) <= room:
+        if not abs(dot(sub(here, first), total)) <= tolerance:
             return False
         if 1 <= i < n - 1 and not dot(cross(sub(here, first), sub(ahead, first)), total) > 0.0:
             return False

@@ -1,8 +1,8 @@
-"""Compiled steps of merging coplanar triangles: planes, groups, and half-edges taken away one by one.
+"""Compiled steps of merging coplanar triangles: planes, groups, and half-edges removed one by one.
 
 All decisions are exact signs (`expansion`). The surface is rings of half-edges: `tail` is the vertex where a
 half-edge starts, `ahead` and `behind` link it into its face, `twin` is the same edge in the neighbour or -1.
-Not for: what is merged into what, in which order, and what is kept (room `geometry`).
+Not for: which faces are merged, and in which order (room `geometry`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class FacePlanes(NamedTuple):
     """The plane of each face, (m,) each.
 
     Attributes:
-        group: equal for faces of one plane, below 0 for those that stay as they are.
+        group: equal for faces of one plane, below 0 for faces that are not merged.
         axes, signs: of `triangle_axes`.
     """
 
@@ -44,7 +44,7 @@ class FacePlanes(NamedTuple):
 
 @inline
 def turn(vertices, i, j, k, axis, terms):
-    """The exact sign of the turn i, j, k seen along coordinate `axis` (which is left out)."""
+    """The exact sign of the turn i, j, k, projected along coordinate `axis`."""
     x = (axis + 1) % 3
     y = (axis + 2) % 3
     a, b, c = vertices[i], vertices[j], vertices[k]
@@ -135,7 +135,7 @@ def straight_corners(vertices: Floats2, before: Integers, at: Integers, after: I
 
 @inline
 def _unlink(h, g, ahead, behind):
-    """Takes the half-edges h and g = twin of h out, so that their two rings become one."""
+    """Removes the half-edges h and g = twin of h, so that their two rings become one."""
     ahead[behind[h]] = ahead[g]
     behind[ahead[g]] = behind[h]
     ahead[behind[g]] = ahead[h]
@@ -153,7 +153,7 @@ def _stays_convex(vertices, u, v, w, axis, sign, terms):
 def absorb_needles(vertices: Floats2, half_edges: HalfEdges, axes: Integers, parents: Integers):
     """Gives the corner of each zero-area triangle to the proper face across its longest edge.
 
-    Changes `ahead`, `behind`, `parents` (face joined into face) and `twin` (-2 for an edge taken away) in
+    Changes `ahead`, `behind`, `parents` (face joined into face) and `twin` (-2 for a removed edge) in
     place. The face keeps its points: the corner lies exactly on its edge.
     """
     tail, twin, face = half_edges.tail, half_edges.twin, half_edges.face
@@ -180,7 +180,7 @@ def absorb_needles(vertices: Floats2, half_edges: HalfEdges, axes: Integers, par
 def merge_rings(
     vertices: Floats2, order: Integers, half_edges: HalfEdges, planes: FacePlanes, parents: Integers
 ):
-    """Takes away, in `order`, each edge between two faces of one plane whose union is convex.
+    """Removes, in `order`, each edge between two faces of one plane whose union is convex.
 
     Args:
         order: (k,) half-edges, one of each pair. planes: `FacePlanes`.
@@ -217,7 +217,7 @@ def merge_rings(
 def rings(
     half_edges: HalfEdges, parents: Integers, n_faces: int
 ) -> tuple[Integers, Integers, Integers]:
-    """The faces that are left, as (starts, flat vertices, index of the first face that went into each)."""
+    """The remaining faces, as (starts, flat vertices, index of the first face merged into each)."""
     tail, ahead, twin, face = half_edges.tail, half_edges.ahead, half_edges.twin, half_edges.face
     starts = np.zeros(n_faces + 1, dtype=np.int64)
     flat = np.empty(len(tail), dtype=np.int64)

@@ -1,6 +1,6 @@
-"""Corners of a face, four in one register: what is asked of each is worked out for all at once.
+"""Corners of a face, four in one register: each result is computed for all four at once.
 
-Each lane holds what a loop over the corners would give, to the bit. Not for: the numbers themselves (`lanes`).
+Each lane has the result of a loop over the corners, to the bit. Not for: arithmetic in lanes (`lanes`).
 """
 
 from clearance.compile.decorators import inline

@@ -1,9 +1,9 @@
-"""Compiled ear cutting of one polygon in the plane: exact turns, and a grid over what can block an ear.
+"""Compiled ear cutting of one polygon in the plane: exact turns, and a grid of the corners that can block an ear.
 
-A corner that turns left is an ear if no corner that does not turn left lies in its triangle (Meisters, Polygons
-have ears, 1975). Where a polygon is simple, corners that turn left keep doing so while ears go, so the grid is
-made once and only loses corners. All triangles turn left or are flat, and their boundaries add up to the
-polygon's: where it is simple they cover exactly it. Not for: which polygons need this (`load.mesh.polygon_cut`).
+A corner that turns left is an ear if its triangle has no corner that does not turn left (Meisters, Polygons have
+ears, 1975). In a simple polygon, corners that turn left still do so after ears are cut. So the grid is made once
+and only loses corners. All triangles turn left or are flat, and their boundaries add up to the polygon's: they
+cover a simple polygon exactly. Not for: which polygons need this (`load.mesh.polygon_cut`).
 """
 
 from __future__ import annotations
@@ -18,20 +18,21 @@ from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d
 
 LEFT, STRAIGHT, RIGHT, GONE = 1, 0, -1, 2
 CUT, CROSSES, TOO_MUCH = 0, 1, 2
+N_WAITING, N_TRIANGLES, N_VISITED = 0, 1, 2
 
 _CLEAR = 1e-14
-"""[-] A difference of two products beyond this share of their sum has the sign that it shows."""
+"""[-] A difference of two products beyond this share of their sum has the right sign."""
 
 
 class CornerRing(NamedTuple):
-    """The corners that are left, and which of them the next round looks at.
+    """The remaining corners, and those that the next round visits.
 
     Attributes:
         ahead, behind: (n,) the neighbours of each corner.
         turns: (n,) `LEFT`, `STRAIGHT`, `RIGHT` or `GONE`.
-        touched: (n,) the round in which a neighbour went.
-        waiting: (n,) the corners that were touched in this round, of which there are `counts[0]`.
-        counts: (3,) the corners in `waiting`, the triangles written, and what was looked at so far.
+        touched: (n,) the round in which a neighbour was cut off.
+        waiting: (n,) the corners touched in this round, `counts[N_WAITING]` of them.
+        counts: (3,) by `N_WAITING` corners in `waiting`, `N_TRIANGLES` written, `N_VISITED` corners and cells.
     """
 
     ahead: np.ndarray
@@ -85,14 +86,14 @@ def _is_same(points, i, j):
 
 @inline
 def _is_right(points, i, j, k):
-    """Whether i, j, k turn right by more than rounding; where they hardly turn this says no, and takes no time."""
+    """True if i, j, k turn right by more than rounding: a quick test, False where they hardly turn."""
     left = (points[j, 0] - points[i, 0]) * (points[k, 1] - points[i, 1])
     right = (points[j, 1] - points[i, 1]) * (points[k, 0] - points[i, 0])
     return left - right < -_CLEAR * (abs(left) + abs(right))
 
 
 @inline
-def _holds(points, a, b, c, p, terms):
+def _contains(points, a, b, c, p, terms):
     """Whether corner p lies in the closed triangle a, b, c, and at none of its corners."""
     for axis in range(2):
         u, v, w, x = points[a, axis], points[b, axis], points[c, axis], points[p, axis]
@@ -143,50 +144,50 @@ def _is_blocked(b, points, ring, grid, frame, terms):
         bottom = max(0, _cell(low, least, per_length, n_side, 1) - 1)
         top = min(n_side - 1, _cell(high, least, per_length, n_side, 1) + 1)
         begin, end = starts[column * n_side + bottom], starts[column * n_side + top + 1]
-        ring.counts[2] += 1 + end - begin
+        ring.counts[N_VISITED] += 1 + end - begin
         for k in range(begin, end):
             p = corners[k]
             if ring.turns[p] == STRAIGHT or ring.turns[p] == RIGHT:
-                if p != a and p != c and _holds(points, a, b, c, p, terms):
+                if p != a and p != c and _contains(points, a, b, c, p, terms):
                     return True
     return False
 
 
 @inline
-def _take(i, points, ring, triangles, stamp, terms):
+def _cut_off(i, points, ring, triangles, stamp, terms):
     """Cuts corner i off; its neighbours are turned anew and wait for the next round."""
     before, after = ring.behind[i], ring.ahead[i]
-    triangles[ring.counts[1]] = (before, i, after)
-    ring.counts[1] += 1
+    triangles[ring.counts[N_TRIANGLES]] = (before, i, after)
+    ring.counts[N_TRIANGLES] += 1
     ring.ahead[before], ring.behind[after] = after, before
     ring.turns[i] = GONE
     for j in (before, after):
         ring.turns[j] = _turn(points, ring.behind[j], j, ring.ahead[j], terms)
         if ring.touched[j] != stamp:
             ring.touched[j] = stamp
-            ring.waiting[ring.counts[0]] = j
-            ring.counts[0] += 1
+            ring.waiting[ring.counts[N_WAITING]] = j
+            ring.counts[N_WAITING] += 1
 
 
 @inline
-def _take_straight(points, ring, triangles, stamp, terms):
-    """Cuts all straight corners off, for want of an ear."""
+def _cut_straight(points, ring, triangles, stamp, terms):
+    """Cuts all straight corners off, if there is no ear."""
     for i in range(len(points)):
-        if ring.turns[i] == STRAIGHT and ring.counts[1] < len(triangles) - 1:
-            _take(i, points, ring, triangles, stamp, terms)
+        if ring.turns[i] == STRAIGHT and ring.counts[N_TRIANGLES] < len(triangles) - 1:
+            _cut_off(i, points, ring, triangles, stamp, terms)
 
 
 @inline
-def _take_ears(looked_at, points, ring, triangles, grid, frame, stamp, terms):
+def _cut_ears(visited, points, ring, triangles, grid, frame, stamp, terms):
     """One round: cuts off the ears among some corners, but no two neighbours, which would make needles."""
-    ring.counts[0] = 0
-    for i in looked_at:
-        if ring.counts[1] == len(triangles) - 1:
+    ring.counts[N_WAITING] = 0
+    for i in visited:
+        if ring.counts[N_TRIANGLES] == len(triangles) - 1:
             return
-        ring.counts[2] += 1
+        ring.counts[N_VISITED] += 1
         if ring.turns[i] == LEFT and ring.touched[i] != stamp:
             if not _is_blocked(i, points, ring, grid, frame, terms):
-                _take(i, points, ring, triangles, stamp, terms)
+                _cut_off(i, points, ring, triangles, stamp, terms)
 
 
 @inline
@@ -215,24 +216,24 @@ def _frame_of(points, turns):
 
 @inline
 def _cut_rounds(points, ring, triangles, grid, frame, most, terms):
-    """Cuts ears, round after round, until three corners are left; then `CUT`."""
-    looked_at, all_are = np.flatnonzero(ring.turns == LEFT), True
+    """Cuts ears, round after round, until three corners remain; then `CUT`."""
+    visited, all_are = np.flatnonzero(ring.turns == LEFT), True
     stamp = 0
-    while ring.counts[1] < len(triangles) - 1:
-        n_before = ring.counts[1]
-        _take_ears(looked_at, points, ring, triangles, grid, frame, stamp, terms)
+    while ring.counts[N_TRIANGLES] < len(triangles) - 1:
+        n_before = ring.counts[N_TRIANGLES]
+        _cut_ears(visited, points, ring, triangles, grid, frame, stamp, terms)
         stamp += 1
-        if ring.counts[2] > most:
+        if ring.counts[N_VISITED] > most:
             return TOO_MUCH
-        if ring.counts[1] > n_before:
-            looked_at, all_are = ring.waiting[: ring.counts[0]].copy(), False
+        if ring.counts[N_TRIANGLES] > n_before:
+            visited, all_are = ring.waiting[: ring.counts[N_WAITING]].copy(), False
             continue
-        if all_are:  # no ear is left: the rest is straight, or crosses itself
-            _take_straight(points, ring, triangles, stamp, terms)
-            if ring.counts[1] == n_before:
+        if all_are:  # no ear remains: the rest is straight, or crosses itself
+            _cut_straight(points, ring, triangles, stamp, terms)
+            if ring.counts[N_TRIANGLES] == n_before:
                 return CROSSES
-        looked_at, all_are = np.flatnonzero(ring.turns == LEFT), True
-        ring.counts[2] += len(points)
+        visited, all_are = np.flatnonzero(ring.turns == LEFT), True
+        ring.counts[N_VISITED] += len(points)
     return CUT
 
 
@@ -242,11 +243,10 @@ def cut_ears(points: Floats2, triangles: Integers2, most: int) -> tuple[int, int
 
     Args:
         points: all within 1 of 0, so that products of coordinates do not overflow.
-        most: how many corners and cells may be looked at.
+        most: corners and cells to visit.
 
     Returns:
-        What came of it: `CUT`, `CROSSES` where no ear is left, `TOO_MUCH` where `most` was reached; and how many
-        were looked at.
+        The outcome: `CUT`, `CROSSES` without an ear, `TOO_MUCH` where `most` was reached; and the number visited.
     """
     terms = np.empty(N_TERMS)
     ring = _ring_of(points, terms)
@@ -257,4 +257,4 @@ def cut_ears(points: Floats2, triangles: Integers2, most: int) -> tuple[int, int
         i, j, k = np.flatnonzero(ring.turns != GONE)  # three in the ring's order
         triangles[len(triangles) - 1] = (i, j, k)
         outcome = CUT if _turn(points, i, j, k, terms) >= 0 else CROSSES
-    return outcome, ring.counts[2]
+    return outcome, ring.counts[N_VISITED]

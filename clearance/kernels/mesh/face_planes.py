@@ -1,4 +1,4 @@
-"""The plane of each face and how far rounding may have moved it: what the search in doubles relies on."""
+"""The plane of each face and its error by rounding: the search in doubles relies on both."""
 
 import math
 
@@ -10,11 +10,11 @@ from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
 SLENDER = 2.0**-15
-"""Sine of a corner's angle below which the normal is not used: heights over it would be wrong by more than
-a few per mille."""
+"""Sine of a corner's angle below which the normal is not used: heights would be wrong by more than a few per
+mille."""
 
 ROUNDING = 64.0 * 2.0**-53
-"""Relative error of an area vector, with room."""
+"""Relative error of an area vector, with a margin."""
 
 
 @inline
@@ -116,7 +116,7 @@ def _is_bent(points, flat, start, end, normal, terms):
 
 @inline
 def _cut_off(points, flat, start, end, normal):
-    """[m] how far corners are beyond the line of an edge: so far outside may seem what is over the face."""
+    """[m] the greatest distance of corners beyond an edge's line: points over the face may seem so far outside."""
     most = 0.0
     for c in range(start, end):
         first = row(points, flat[c])

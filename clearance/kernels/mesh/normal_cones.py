@@ -1,4 +1,4 @@
-"""Which nodes can hold the nearest points of two bodies, by the way their faces look: normal cones.
+"""Which nodes can hold the nearest points of two bodies, by the normals of their faces: normal cones.
 
 Let p and q be nearest, at a distance above 0, and d the direction from p to q. Let the faces round the vertex or
 edge that p is on be planar and convex, and meet two by two, in opposite directions, along each edge there. Then d
@@ -19,8 +19,8 @@ with the directions from the one box to the other. It does not matter which side
 closed, or whether it cuts itself elsewhere.
 
 While a body moves, its normals turn by no more than the motion does. Two nodes that are turned away in all of an
-interval hold the nearest points at no instant of it before the bodies meet. If the others stay apart by some
-distance, so do the bodies: their distance is above 0 at first, is that of the others while it is, and cannot leap.
+interval hold the nearest points at no instant of it before the bodies meet. If the others keep some distance, so
+do the bodies. Their distance is above 0 at first, equals that of the others while above 0, and cannot leap.
 
 Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001 (local minimum distances).
 """
@@ -40,10 +40,10 @@ from clearance.kernels.arithmetic.lanes import (
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, turn
 
 MARGIN = 2.0**-8
-"""[rad] more than rounding of normals, cones and directions, and poses that are off orthonormal, can turn them."""
+"""[rad] more than the turn of normals, cones and directions by rounding, and by poses off orthonormal."""
 
 WIDEST = 1.2
-"""[rad] A cone wider than this, to either side, is none; it must be less than a right angle."""
+"""[rad] Greatest half angle of a cone, less than a right angle; a wider one is no cone."""
 
 NO_CONE = 1e6
 """Stands for the sine of a node without a cone: no angle is too wide for it."""
@@ -98,18 +98,18 @@ def normal_cones_of(cones_p, group, cones_q, other, m, slack):
 
 
 @inline(force=True)
-def while_moving(cones, cos_turn, sin_turn, way):
-    """What holds of both at every instant of a motion.
+def while_moving(cones, cos_turn, sin_turn, movement):
+    """The cones that are valid at every instant of a motion.
 
     Args:
-        cos_turn, sin_turn: of the angle that the bodies turn by at most, less than a right angle with `WIDEST`.
-        way: [m] how far any point moves at most.
+        cos_turn, sin_turn: of the greatest turn of the bodies, less than a right angle with `WIDEST`.
+        movement: [m] the greatest motion of any point.
     """
     u, cos_u, sin_u, v, cos_v, sin_v, reach = cones
     return NormalCones(
         u, cos_u * cos_turn - sin_u * sin_turn, sin_u * cos_turn + cos_u * sin_turn,
         v, cos_v * cos_turn - sin_v * sin_turn, sin_v * cos_turn + cos_v * sin_turn,
-        reach + way,
+        reach + movement,
     )  # fmt: skip
 
 

@@ -1,8 +1,8 @@
-"""The flat form in which kernels see polyhedra: faces, the features each face answers for, and the tree.
+"""The flat form of polyhedra in kernels: faces, the features that each face owns, and the tree.
 
 Every vertex and edge is owned by the face of least index that holds it, so that a search over face pairs
 meets each pair of features once (Curtis, Tamstorf & Manocha 2008, representative triangles) and ties fall
-to the least index by themselves. Several bodies lie behind one another in one `Surface`, with `roots`.
+to the least index by themselves. Several bodies lie one after the other in one `Surface`, with `roots`.
 """
 
 from typing import NamedTuple
@@ -40,8 +40,8 @@ class Surface(NamedTuple):
         face_starts, face_vertices: (f + 1,), (c,) corners of the faces in order.
         normals: (f, 3) unit outward, zeros where a face is so slender that rounding decides them.
         blunt: (f,) the reciprocal of a lower bound on the sharpest corner's angle; 1 without a normal.
-        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one; where it
-            bends inward, also how far beside it what is over it may seem.
+        width: (f,) [m] the greatest distance of the fan from its plane, or from its edges without one; where
+            it bends inward, also by how much points over it may seem outside.
         bent: (f,) True where the corners are not exactly in one plane or the boundary turns the wrong way.
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.

@@ -20,7 +20,7 @@ TURNED = 2.0**-21
 """Eight times the rounding of a number to single precision, relative to it."""
 
 SMALL = 16 * WIDTH
-"""Parts of at most so many faces are cut into whole groups of leaves, so that few lanes stay empty."""
+"""Parts of up to this many faces are cut into whole groups of leaves, so that few lanes stay empty."""
 
 LEAST_HALF = 2.0**-125
 """[m] half sizes are no less, so that none is lost below the least normal number in single precision."""
@@ -95,8 +95,8 @@ def _fit(points, starts, order, first, last, v, low, high):
 def _store(v, low, high, centre, box):
     """Writes one box: axes as rows, then half sizes rounded outward; centre in the body frame.
 
-    An axis is turned by rounding by at most 2^-24, so that a coordinate along it changes by that share of
-    the others; sixteen times as much is given.
+    Rounding turns an axis by at most 2^-24, so a coordinate along it changes by that share of the others; sixteen
+    times as much is added.
     """
     reach = 0.0
     for axis in range(3):
@@ -106,23 +106,25 @@ def _store(v, low, high, centre, box):
         for axis in range(3):
             box[3 * axis + row] = v[row, axis]
             centre[row] += v[row, axis] * 0.5 * (low[axis] + high[axis])
-    room = reach * (OUTWARD - 1.0) + LEAST_HALF
+    scratch = reach * (OUTWARD - 1.0) + LEAST_HALF
     for axis in range(3):
-        room += TURNED * (high[axis] - low[axis])
+        scratch += TURNED * (high[axis] - low[axis])
     for axis in range(3):
-        box[9 + axis] = (0.5 * (high[axis] - low[axis]) * OUTWARD + room) * (1.0 + TURNED)
+        box[9 + axis] = (0.5 * (high[axis] - low[axis]) * OUTWARD + scratch) * (1.0 + TURNED)
 
 
 @inline
-def _enclose(points, starts, order, first, last, room, centre, box):
+def _enclose(points, starts, order, first, last, scratch, centre, box):
     """Writes the box of the faces `order[first:last]`: the better of two frames; its surface area."""
-    _principal_axes(points, starts, order, first, last, room.v, room.c)
-    area = _fit(points, starts, order, first, last, room.v, room.low, room.high)
-    area_body = _fit(points, starts, order, first, last, room.body, room.low_body, room.high_body)
+    _principal_axes(points, starts, order, first, last, scratch.v, scratch.c)
+    area = _fit(points, starts, order, first, last, scratch.v, scratch.low, scratch.high)
+    area_body = _fit(
+        points, starts, order, first, last, scratch.body, scratch.low_body, scratch.high_body
+    )
     if area_body <= area:
-        _store(room.body, room.low_body, room.high_body, centre, box)
+        _store(scratch.body, scratch.low_body, scratch.high_body, centre, box)
         return area_body
-    _store(room.v, room.low, room.high, centre, box)
+    _store(scratch.v, scratch.low, scratch.high, centre, box)
     return area
 
 
@@ -174,7 +176,7 @@ def _full_groups(order, first, last, cut, middles):
 
 
 class BuildScratch(NamedTuple):
-    """Where boxes are fitted, and the up to four parts of the node in hand: first and last, area, box."""
+    """Memory to fit boxes, and the up to four parts of the current node: first and last, area, box."""
 
     v: np.ndarray
     c: np.ndarray
@@ -190,7 +192,7 @@ class BuildScratch(NamedTuple):
 
 
 @inline
-def _room():
+def _new_scratch():
     return BuildScratch(
         np.empty((3, 3)), np.empty((3, 3)), np.eye(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
         np.empty((WIDTH, 2), dtype=np.int64), np.empty(WIDTH), np.empty((WIDTH, 3)),
@@ -199,45 +201,45 @@ def _room():
 
 
 @inline
-def _set_part(points, starts, order, part, first, last, room):
-    room.spans[part, 0], room.spans[part, 1] = first, last
-    room.areas[part] = _enclose(
-        points, starts, order, first, last, room, room.centres[part], room.boxes[part]
+def _set_part(points, starts, order, part, first, last, scratch):
+    scratch.spans[part, 0], scratch.spans[part, 1] = first, last
+    scratch.areas[part] = _enclose(
+        points, starts, order, first, last, scratch, scratch.centres[part], scratch.boxes[part]
     )
 
 
 @inline
-def _parts(points, starts, order, middles, room):
-    """Splits the part in `room`, the widest first, until there are four or all fit into a group; their number."""
+def _parts(points, starts, order, middles, scratch):
+    """Splits the part in `scratch`, widest first, into up to four until all fit into a group; their number."""
     n_parts = 1
     few = (
-        WIDTH if room.spans[0, 1] - room.spans[0, 0] > WIDTH else 1
+        WIDTH if scratch.spans[0, 1] - scratch.spans[0, 0] > WIDTH else 1
     )  # so that few lanes stay empty
     while n_parts < WIDTH:
         widest = -1
         for part in range(n_parts):
-            if room.spans[part, 1] - room.spans[part, 0] > few:
-                if widest < 0 or room.areas[part] > room.areas[widest]:
+            if scratch.spans[part, 1] - scratch.spans[part, 0] > few:
+                if widest < 0 or scratch.areas[part] > scratch.areas[widest]:
                     widest = part
         if widest < 0:
             break
-        first, last = room.spans[widest, 0], room.spans[widest, 1]
-        cut = _split(points, starts, order, first, last, room.boxes[widest], middles)
-        _set_part(points, starts, order, widest, first, cut, room)
-        _set_part(points, starts, order, n_parts, cut, last, room)
+        first, last = scratch.spans[widest, 0], scratch.spans[widest, 1]
+        cut = _split(points, starts, order, first, last, scratch.boxes[widest], middles)
+        _set_part(points, starts, order, widest, first, cut, scratch)
+        _set_part(points, starts, order, n_parts, cut, last, scratch)
         n_parts += 1
     return n_parts
 
 
 @inline
-def _write_group(room, n_parts, group, centres, boxes):
+def _write_group(scratch, n_parts, group, centres, boxes):
     """The boxes of the parts as a group of nodes; lanes without one repeat the first."""
     for k in range(WIDTH):
         part = k if k < n_parts else 0
         for i in range(3):
-            centres[3 * group + i, k] = room.centres[part, i]
+            centres[3 * group + i, k] = scratch.centres[part, i]
         for i in range(12):
-            boxes[12 * group + i, k] = room.boxes[part, i]
+            boxes[12 * group + i, k] = scratch.boxes[part, i]
 
 
 @kernel
@@ -251,15 +253,15 @@ def build_tree(
 ) -> int:
     """Fills the nodes of a tree over the f faces in `order`, with corners `points[starts[i]:starts[i + 1]]`.
 
-    The order becomes that of the leaves. `centres`, `boxes` and `children` are those of `Surface`, with room for
-    `most_groups(f)`; node 0 is the root. Returns how many groups there are.
+    The order becomes that of the leaves. `centres`, `boxes` and `children` are those of `Surface`, with a capacity
+    of `most_groups(f)`; node 0 is the root. Returns the number of groups.
     """
     n_faces = len(order)
     middles = np.empty(len(starts) - 1)
-    room = _room()
+    scratch = _new_scratch()
     waiting = np.empty((3 * n_faces + 1, 3), dtype=np.int64)
-    _set_part(points, starts, order, 0, 0, n_faces, room)
-    _write_group(room, 1, 0, centres, boxes)
+    _set_part(points, starts, order, 0, 0, n_faces, scratch)
+    _write_group(scratch, 1, 0, centres, boxes)
     children[:] = -1
     waiting[0, 0], waiting[0, 1], waiting[0, 2] = 0, 0, n_faces
     n_waiting = 1
@@ -270,25 +272,28 @@ def build_tree(
         if last - first == 1:
             children[node, 0], children[node, 1] = order[first], 0
             continue
-        _take_part(node, first, last, centres, boxes, room)
-        n_parts = _parts(points, starts, order, middles, room)
-        _write_group(room, n_parts, n_groups, centres, boxes)
+        _begin_with(node, first, last, centres, boxes, scratch)
+        n_parts = _parts(points, starts, order, middles, scratch)
+        _write_group(scratch, n_parts, n_groups, centres, boxes)
         children[node, 0], children[node, 1] = n_groups, n_parts
         for part in range(n_parts - 1, -1, -1):
             waiting[n_waiting, 0] = WIDTH * n_groups + part
-            waiting[n_waiting, 1], waiting[n_waiting, 2] = room.spans[part, 0], room.spans[part, 1]
+            waiting[n_waiting, 1], waiting[n_waiting, 2] = (
+                scratch.spans[part, 0],
+                scratch.spans[part, 1],
+            )
             n_waiting += 1
         n_groups += 1
     return n_groups
 
 
 @inline
-def _take_part(node, first, last, centres, boxes, room):
-    """Makes a node that is written the first part in `room`."""
+def _begin_with(node, first, last, centres, boxes, scratch):
+    """Makes a written node the first part in `scratch`."""
     group, k = node // WIDTH, node % WIDTH
-    room.spans[0, 0], room.spans[0, 1] = first, last
+    scratch.spans[0, 0], scratch.spans[0, 1] = first, last
     for i in range(12):
-        room.boxes[0, i] = boxes[12 * group + i, k]
+        scratch.boxes[0, i] = boxes[12 * group + i, k]
 
 
 def most_groups(n_faces):

@@ -1,7 +1,7 @@
-"""What each pair was last found to be: it holds for as long as neither of its bodies has moved.
+"""The last answer of each pair: valid as long as neither of its bodies has moved.
 
-A base on its stand, an arm that waits for another, a joint that a program leaves alone: their pairs are measured
-once. Not for: bounds on what has moved (`sweep`).
+Pairs of bodies that rest, as a base on its stand or an arm that waits for another, are measured once. Not for:
+bounds on bodies that have moved (`sweep`).
 """
 
 from typing import NamedTuple
@@ -20,7 +20,7 @@ class AnswerCache(NamedTuple):
     """The last answers.
 
     Attributes:
-        asked: (p,) how often both bodies had moved when the pair was measured, or `NEVER` if nothing was found.
+        asked: (p,) the moves of both bodies when the pair was measured, or `NEVER` without an answer.
         gaps_sq, lower_bounds: (p,) [m^2] the squared distance, [m] the proven bound.
         faces: (p, 2). points: (p, 2, 3) in the world [m].
     """
@@ -34,7 +34,7 @@ class AnswerCache(NamedTuple):
 
 @inline
 def no_answers(n_pairs):
-    """Nothing is known yet."""
+    """A cache without answers."""
     return AnswerCache(
         np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
         np.empty((n_pairs, 2), dtype=np.int64), np.empty((n_pairs, 2, 3)),
@@ -42,11 +42,11 @@ def no_answers(n_pairs):
 
 
 @inline(force=True)
-def still_holds(answers, pair, moves, gap):
-    """True if a pair need not be measured to know whether it is within `gap` [m], and how near.
+def is_still_valid(answers, pair, moves, gap):
+    """True if the last answer of a pair is valid and within `gap` [m].
 
     Args:
-        moves: how often both bodies have moved so far.
+        moves: the number of moves of both bodies so far.
     """
     return answers.asked[pair] == moves and answers.gaps_sq[pair] <= gap * gap
 
@@ -71,7 +71,7 @@ def answer_of(answers, pair):
 
 @inline
 def note_answer(answers, pair, moves, hit, lower_bound):
-    """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found. `moves` as above."""
+    """Stores the answer of a pair; `hit.face_a` is 2**62 if there is none. `moves` as above."""
     answers.asked[pair] = NEVER
     if hit.face_a == 2**62:
         return

@@ -1,7 +1,7 @@
-"""How far apart whole bodies are by their boxes alone: what is known of a pair before any search.
+"""Lower bounds on the distance of whole bodies by their boxes alone, before any search.
 
-The box of a body is placed in the world once for all its pairs, and a ball about it separates most of them for a
-third of what two boxes take. Not for: nodes of trees (`bounds`, `node_pairs`).
+The box of a body is placed in the world once for all its pairs. A ball about it separates most of them, in a third
+of the time of two boxes. Not for: nodes of trees (`bounds`, `node_pairs`).
 """
 
 import math
@@ -21,13 +21,13 @@ OUTWARD = 1.0 + 2.0**-20
 
 
 class BodyBoxes(NamedTuple):
-    """The boxes of all bodies where they are, and balls about them.
+    """The boxes of all bodies in the world, and balls about them.
 
     Attributes:
         axes: (bodies, 3, 3) of each box, a row an axis. centres, halves: (bodies, 3) [m], in the world.
         radii: (bodies,) [m] of the balls about the centres.
-        slacks: (bodies,) [m] what rounding, and a rotation that is not quite orthonormal, can raise a bound.
-        moves: (bodies,) how often each body had moved when its box was placed, or -1.
+        slacks: (bodies,) [m] the most that rounding and rotations off orthonormal can raise a bound.
+        moves: (bodies,) the moves of each body when its box was placed, or -1.
     """
 
     axes: Floats3
@@ -40,7 +40,7 @@ class BodyBoxes(NamedTuple):
 
 @inline
 def new_body_boxes(n_bodies):
-    """Boxes of which none is placed yet."""
+    """Boxes, none of them placed yet."""
     return BodyBoxes(
         np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3)), np.empty((n_bodies, 3)), np.empty(n_bodies),
         np.empty(n_bodies), np.full(n_bodies, -1),
@@ -49,7 +49,7 @@ def new_body_boxes(n_bodies):
 
 @inline
 def place_box(surface, root, body, pose, boxes):
-    """Puts the box of a body, that of the root of its tree, to where the body is, at a `RigidMotion`."""
+    """Places the box of a body, that of the root of its tree, at the pose of the body, a `RigidMotion`."""
     box = box_of(surface, root)
     centre, x, y, z = (
         move(pose, box.centre),
@@ -78,7 +78,7 @@ def _box(boxes, body):
 
 @inline(force=True)
 def _beyond(box, d, slack):
-    """[m] a lower bound on the distance of a box from what lies `d` from its centre."""
+    """[m] a lower bound on the distance of a box from a point at `d` from its centre."""
     x = max(0.0, abs(dot(box.x, d)) - box.half.x - slack)
     y = max(0.0, abs(dot(box.y, d)) - box.half.y - slack)
     z = max(0.0, abs(dot(box.z, d)) - box.half.z - slack)
@@ -93,9 +93,9 @@ def bound_of_bodies(boxes, a, b, enough):
 
 @inline(force=True)
 def bound_between(boxes, a, others, b, enough):
-    """[m] the same of body `a` of some boxes and body `b` of others.
+    """[m] the same for body `a` of some boxes and body `b` of others.
 
-    The box of each against the ball about the other's; where that is not enough, both boxes.
+    First the box of each against the ball about the other; where that is not enough, both boxes.
     """
     p, q = _box(boxes, a), _box(others, b)
     d = sub(q.centre, p.centre)

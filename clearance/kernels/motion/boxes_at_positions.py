@@ -1,7 +1,7 @@
-"""Whether boxes about bodies may overlap with the joints at some positions, in one call.
+"""Whether the boxes of bodies may overlap with the joints at some positions, in one call.
 
-A caller that asks about one position after another has no other use for the poses of the links, and two calls from
-Python cost more than all that they do. Not for: poses that are known (`search.boxes_along_path`).
+A caller that asks about one position after another needs no poses of links, and two calls from Python cost more
+than their work. Not for: known poses (`search.boxes_along_path`).
 """
 
 import numpy as np
@@ -24,8 +24,8 @@ def overlaps_at_positions(
     """The number of pairs whose boxes may overlap at one of n positions.
 
     Args:
-        links: a `Links`. boxes, pairs, spans: as `steps_together` takes them, and fills them.
-        positions: (n, columns) [rad or m]. poses: (n, links, 4, 4) [m] where those of the links are written.
+        links: a `Links`. boxes, pairs, spans: as of `steps_together`.
+        positions: (n, columns) [rad or m]. poses: (n, links, 4, 4) [m] of the links, overwritten.
     """
     all_wanted = np.zeros(len(links.parents), dtype=np.int64)
     for i in range(len(positions)):

@@ -1,12 +1,11 @@
 """A proven lower bound on the clearance of the continuous motion between two steps.
 
-In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
-the bodies can move in the interval: along the direction of the nearest points where two faces or boxes are
-seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
-interval are passed over (`normal_cones`): at its first instant the distance is above 0, or nothing is asked.
-What does not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a
-pair is lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what
-its bodies move in them: pairs that it keeps above the target are not asked.
+In the middle of an interval the trees are descended as for a distance. Each bound is lowered by the motion of the
+bodies in the interval, along the direction of the nearest points. So sliding past costs nothing to first order.
+Nodes that are turned away in all of the interval are skipped (`normal_cones`); the distance at its first instant
+is above 0, or the proof ends. If the bound misses the target, the interval is halved, the earlier half first.
+After `most_parts` parts the target of a pair is lowered until it can be proven, so the loop ends. A bound on a
+pair, less the motion of its bodies, holds for later intervals: while it exceeds the target, the pair is skipped.
 
 Not for: one pair over one interval (`twist`), the steps themselves (`sweep`).
 """
@@ -54,15 +53,15 @@ from clearance.kernels.search.proof import allowed_gap
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
-"""Covers the rounding of the steps' clearances, which are right to the last place."""
+"""Covers the rounding of the steps' clearances, which are exact to the last place."""
 
 
 class CertifiedMotion(NamedTuple):
-    """What moves and how.
+    """The bodies and their motion.
 
     Attributes:
-        world: the bodies and their pairs. Ball joints are among the links as joints that turn, whose fixed parts
-            and axes are written for each interval: the arrays belong to this motion.
+        world: the bodies and their pairs. Ball joints are joints that turn, with fixed parts and axes written
+            anew for each interval; so the arrays belong to this motion.
         path: how the joint above each link moves from step to step.
     """
 
@@ -71,13 +70,13 @@ class CertifiedMotion(NamedTuple):
 
 
 class CertifiedSteps(NamedTuple):
-    """The steps between which the motion is certified, and what is known of them.
+    """The steps between which the motion is certified.
 
     Attributes:
-        first, last: the intervals are those between these two.
-        order: (n,) the pair to look at first in each interval.
-        clearance: (n,) [m] of the steps over these pairs, proven to within rounding; or any distance, where it is
-            enough to know whether the motion stays that far, less the gap.
+        first, last: the intervals lie between these two.
+        order: (n,) the pair to ask first in each interval.
+        clearance: (n,) [m] of the steps over these pairs, proven to within rounding. Or any distance, to learn
+            whether the motion stays farther than that, less the gap.
     """
 
     first: int
@@ -87,12 +86,12 @@ class CertifiedSteps(NamedTuple):
 
 
 class IntervalBounds(NamedTuple):
-    """What is found of each interval.
+    """The bounds on each interval.
 
     Attributes:
-        lower, upper: (n,) [m] proven, and the least distance asked about or seen.
-        share: (n,) where in the interval `upper` was seen, 0 to 1; -1 where nothing less than was asked about was.
-        pair: (n,) which pair was seen there, or -1.
+        lower, upper: (n,) [m] proven, and the least distance given or seen.
+        share: (n,) where in the interval `upper` was seen, 0 to 1; -1 where no less than the given one was seen.
+        pair: (n,) the pair seen there, or -1.
     """
 
     lower: Floats
@@ -102,13 +101,13 @@ class IntervalBounds(NamedTuple):
 
 
 class CertifyState(NamedTuple):
-    """What is carried from interval to interval, and scratch.
+    """State that lasts from interval to interval, and scratch.
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
-        motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] what of it is the
-            rounding of orientations, which holds in all parts of it.
-        carried: of all pairs, without fronts; a bound is one over an interval.
+        motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] the rounding of
+            orientations in it, which is the same in all parts.
+        carried: of all pairs, without fronts; a bound is over an interval.
         waiting: (DEPTH, 2) parts of an interval.
     """
 
@@ -122,7 +121,7 @@ class CertifyState(NamedTuple):
 
 @inline
 def _go_on(surface, world, path, step, state):
-    """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
+    """Goes to the interval after `step`: its middle, each body's motion bound, and its displacement at the end."""
     begin_arcs(world.links, path.balls, step)
     go_to_middle(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
@@ -143,7 +142,7 @@ def _go_on(surface, world, path, step, state):
 
 @inline
 def _pose_of(world, body, middle):
-    """Where a body is in `middle`."""
+    """The pose of a body in `middle`."""
     frame = world.frames[body]
     return rigid(middle.poses[frame] if frame >= 0 else world.standing[body])
 
@@ -152,7 +151,7 @@ class MovingPair(NamedTuple):
     """A pair in the interval after a step.
 
     Attributes:
-        surface, state: lent. motion, aim: as of `certify`. tally: counts, as there.
+        surface, state: lent. motion, aim, tally: as of `certify`.
     """
 
     surface: Surface
@@ -212,7 +211,7 @@ def certify(
     Args:
         surface: every face owns all its features.
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
-        tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
+        tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces visited.
     """
     world = motion.world
     if (world.links.kinds == BALL).any():
@@ -235,7 +234,7 @@ def _certify(lent, motion, steps, aim, bounds, tally, state):
         tally[i] = 0
     for step in range(steps.first, steps.last):
         least = min(clearance[step], clearance[step + 1])
-        lower_bound = least  # 0 for a contact: then nothing is left to prove
+        lower_bound = least  # 0 for a contact: then there is nothing to prove
         share, seen = -1.0, np.int64(-1)
         _go_on(surface, world, motion.path, step, state)
         for turn in range(-1, len(pairs)):

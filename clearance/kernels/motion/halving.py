@@ -1,6 +1,6 @@
-"""Time that is halved until it is proven: one loop for an interval, and for rectangles of two clocks' times.
+"""Time is halved until each part is proven: one loop for an interval, and for rectangles of two clocks' times.
 
-A pair over an interval is a search of its own here; who asks says how a part of the interval is proven: without
+A pair over an interval is a search of its own here. The caller's type defines the proof of a part: without
 tolerances (`certify`), or with them (`budget.sweep`). Not for: one part (`search.proof`).
 """
 
@@ -11,14 +11,14 @@ from clearance.compile.declared import Floats2
 from clearance.compile.decorators import by_type, inline
 
 DEPTH = 64
-"""Parts of an interval that can wait, one a halving; after 52 the ends are one number."""
+"""Most waiting parts of an interval, one a halving; after 52 the ends are the same number."""
 
 WIDER = 4.0
-"""Times as wide is the gap of a pair in an interval that has come to its most parts."""
+"""The gap of a pair grows by this factor each time it has used up its most parts."""
 
 
 class Visit(NamedTuple):
-    """What comes of a part of time: the search after it, the part, and True if it is to be halved."""
+    """The result for a part of time: the search after it, the part, and True if it must be halved."""
 
     search: Any
     part: Any
@@ -27,28 +27,28 @@ class Visit(NamedTuple):
 
 @by_type
 def with_part(search, place):
-    """Takes the part that waits at a place and asks about it, as a `Visit`."""
+    """Visits the part that waits at a place, as a `Visit`."""
     raise TypeError
 
 
 @by_type
 def without_part(search, part):
-    """The search after it has given up a part that cannot be halved any more."""
+    """The search after a part that cannot be halved any more."""
     raise TypeError
 
 
 @by_type
 def put_halves(search, part, place):
-    """Lets the halves of a part wait at a place and the next; the last one is asked first."""
+    """Queues the halves of a part at a place and the next; the last one is visited first."""
     raise TypeError
 
 
 @inline
 def halve(search, depth):
-    """The search after all of a part that waits at place 0.
+    """The search after the whole part that waits at place 0.
 
     Args:
-        depth: as many parts can wait.
+        depth: most parts that can wait.
     """
     n_waiting = 1
     while n_waiting > 0:
@@ -71,7 +71,7 @@ def prove_part(asked, low, high, n_parts, least, gap):
 
     Args:
         n_parts: the number of the part, 1 for the whole interval.
-        least: [m] the least that is known to occur. gap: [m] how far the bound may stay below it.
+        least: [m] the least distance known to occur. gap: [m] allowed between it and the bound.
     """
     raise TypeError
 
@@ -80,9 +80,9 @@ class PairInterval(NamedTuple):
     """A pair over an interval.
 
     Attributes:
-        asked: what `prove_part` takes. waiting: (DEPTH, 2) parts. most_parts: after which the gap is widened.
-        lower_bound: [m] of the parts so far. least: [m] asked about or seen. share: where that was, 0 to 1, or -1.
-        gap: [m] as above. n_parts: so far. in_contact: True if nothing is left to prove.
+        asked: the argument of `prove_part`. waiting: (DEPTH, 2) parts. most_parts: after these the gap is widened.
+        lower_bound: [m] of the parts so far. least: [m] given or seen. share: where it was seen, 0 to 1, or -1.
+        gap: [m] as above. n_parts: so far. in_contact: True if the proof has ended in contact.
     """
 
     asked: Any

@@ -1,6 +1,6 @@
-"""The middle of an interval, or of a part of it: where the links are there, and how far bodies move about it.
+"""The middle of an interval, or of a part of it: the poses of the links, and the motion of bodies about them.
 
-Not for: what is proven from that (`certify`, `unsynchronised`), the bounds themselves (`joint_motion_bound`).
+Not for: proofs (`certify`, `unsynchronised`), and the bounds themselves (`joint_motion_bound`).
 """
 
 from typing import NamedTuple
@@ -33,7 +33,7 @@ class IntervalMiddle(NamedTuple):
 
 @inline
 def begin_arcs(links, balls, step):
-    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after."""
+    """Gives ball joints their orientation at `step` as a fixed part, and their axis in the interval after it."""
     for ball in range(len(balls.links)):
         link, arc = balls.links[ball], balls.arcs[step, ball]
         orient(balls.parent_from_joint[ball], arc, links.parent_from_joint[link])
@@ -89,7 +89,7 @@ def loosened_motion_bound_in(surface, world, balls, body, middle):
 
 @inline
 def note_motion_bound(bound, numbers):
-    """Keeps a motion bound as eight numbers."""
+    """Writes a motion bound as eight numbers."""
     v, w = bound.velocity, bound.spin
     numbers[0], numbers[1], numbers[2] = v.x, v.y, v.z
     numbers[3], numbers[4], numbers[5] = w.x, w.y, w.z

@@ -1,14 +1,15 @@
-"""The interval motion bound: how far bodies can have moved, by their joints alone, so that steps are passed over.
+"""The interval motion bound: the most that bodies can have moved, by their joints alone, so that steps are
+skipped.
 
 A joint that turns by an angle w moves no point farther than w times its distance from the axis, one that slides by
 w no farther than w; a change of several joints is made one after another. So between any two steps
 
     |x' - x| <= sum over the joints k above the link of |q_k' - q_k| radius_k,
 
-with radius_k, the motion radius, the farthest that a point of the body gets from joint k in any pose. No pose
-needs to be made for it.
+with radius_k, the motion radius: the farthest that a point of the body gets from joint k in any pose. It needs no
+pose.
 
-A ball joint follows the four parts of a unit quaternion. Of q and -q take the one nearer to q': with t the angle
+A ball joint follows the four parts of a unit quaternion. Take the nearer one of q and -q to q': with t the angle
 between the orientations, q . q' = cos(t/2), so |q' - q|^2 = 2 - 2 cos(t/2) and |q' - q| = 2 sin(t/4). A point at
 most r from the joint moves no farther than the chord
 
@@ -34,18 +35,18 @@ from clearance.kernels.motion.kinematics import (
 )
 
 OUTWARD = 1.0 + 2.0**-16
-"""Covers the rounding of the sums here and of what the rotations of a chain stretch."""
+"""Covers the rounding of the sums here and the stretch by the rotations of a chain."""
 
 POSE_ROUNDING = 2.0**-36
-"""Rounding of the poses of a chain of up to a thousand links, relative to how far from the origin it reaches."""
+"""Rounding of the poses of a chain of up to a thousand links, relative to its reach from the origin."""
 
 ANGLE_ROUNDING = 2.0**-50
-"""Rounding of the position of a joint that follows another, relative to the magnitudes of what is added."""
+"""Rounding of the position of a joint that follows another, relative to the magnitudes of the summands."""
 
 
 @inline
 def _radius(box):
-    """[m] how far a body gets from the origin of its frame."""
+    """[m] the greatest distance of a body's points from the origin of its frame."""
     far_sq = 0.0
     for corner in range(8):
         x = corner_of(box, corner)
@@ -55,7 +56,7 @@ def _radius(box):
 
 @inline
 def _radius_about(box, axis):
-    """[m] how far a body gets from a unit axis through the origin of its frame."""
+    """[m] the greatest distance of a body's points from a unit axis through the origin of its frame."""
     far_sq = 0.0
     for corner in range(8):
         away = cross(corner_of(box, corner), axis)
@@ -71,7 +72,7 @@ def _length(pose):
 
 @inline
 def _farthest_slide(links, link, positions):
-    """[m] how far the joint above a link slides at most."""
+    """[m] the greatest slide of the joint above a link."""
     column = links.columns[link]
     most = 0.0
     for i in range(0 if column == NO_COLUMN else len(positions)):
@@ -93,9 +94,9 @@ def _least_length(positions, column):
 
 @inline
 def _motion_radii_of_body(box, links, link, positions, motion_radii):
-    """Fills `motion_radii` (columns,) of one body, and returns what rounding can move it [m]."""
+    """Fills `motion_radii` (columns,) of one body, and returns its motion by rounding [m]."""
     radius = _radius(box)
-    beyond = 0.0  # [m] from the origin of the link that is looked at to the body's own
+    beyond = 0.0  # [m] from the origin of the current link to the body's own
     own = True  # nothing moves between that link and the body
     stretch = OUTWARD  # by rotations that are off orthonormal
     noise = 0.0
@@ -127,11 +128,11 @@ def _motion_radii_of_body(box, links, link, positions, motion_radii):
 
 @inline
 def fill_motion_radii(surface, world, positions, motion_radii, noise):
-    """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
+    """Fills the motion radii of each body for each column of `positions`, and its motion by rounding.
 
     Args:
         world: a `World`.
-        positions: (k, columns) of all steps that are spoken of [rad or m].
+        positions: (k, columns) of all steps [rad or m].
         motion_radii: (bodies, columns) [m per rad, m, or part of a quaternion]. noise: (bodies,) [m].
     """
     frames = world.frames
@@ -148,15 +149,15 @@ def fill_motion_radii(surface, world, positions, motion_radii, noise):
 
 @inline(force=True)
 def interval_motion_bound_of(positions, last, step, motion_radii, noise):
-    """[m] no less than what a body moves from one step to another.
+    """[m] an upper bound on the motion of a body from one step to another.
 
     Args:
         positions: as in `fill_motion_radii`; last, step: rows of it. motion_radii: (columns,), noise: of the body.
     """
-    way = noise
+    moved = noise
     for column in range(len(motion_radii)):
         before, after = positions[last, column], positions[step, column]
-        way += motion_radii[column] * (
+        moved += motion_radii[column] * (
             abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before))
         )
-    return way
+    return moved

@@ -2,8 +2,8 @@
 
 About the middle of an interval, where joint k moves by s swing_k + b_k with |s| <= 1 and |b_k| <= bend_k, a point
 x moves by s v(x) + r: v is the link's twist by the swings, an affine map of x. |r| is at most half the greatest
-second derivative over all joint motions of |swing_k| + bend_k, and what the bends do in the first order.
-In an interval a ball joint is one that turns about an axis; only the rounding of its orientation comes on top.
+second derivative over all joint motions of |swing_k| + bend_k, plus the first-order motion by the bends.
+In an interval a ball joint turns about one axis; only the rounding of its orientation is added.
 Source: the product of exponentials differentiated twice; joints nearer to the link come first, since only they
 move the link about an axis.
 """
@@ -46,14 +46,14 @@ class MotionBound(NamedTuple):
 
 
 AT_REST = MotionBound(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0), 0.0, 0.0)
-"""Of a body that stands."""
+"""The bound of a standing body."""
 
 
 class PairMotion(NamedTuple):
     """The motion bounds of both bodies of a pair.
 
     Attributes:
-        b_moves: False if b stands, which saves half of the work.
+        b_moves: False if b stands; that saves half of the work.
     """
 
     a: MotionBound
@@ -95,8 +95,8 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
 
     Args:
         poses: (n_links, 4, 4) in the middle of the interval.
-        swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval, to first order.
-        bend: (n_links,) [rad or m] how far from that it can be; 0 for linear motion.
+        swing: (n_links,) [rad or m] half of the motion of each link's joint in the interval, to first order.
+        bend: (n_links,) [rad or m] the greatest deviation from that; 0 for linear motion.
         world_from_body: the pose of the link as `Rigid`.
     """
     shallower = 0.0  # sum of the motions of the turning joints between here and the base
@@ -108,7 +108,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
     turn = shallower
     spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
     rest = 0.0
-    moved = 0.0  # how far the joints up to here move any point of the body
+    moved = 0.0  # the greatest motion of a point of the body by the joints up to here
     i = link
     while links.parents[i] != NO_PARENT:
         size = abs(swing[i]) + bend[i]
@@ -137,44 +137,44 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
 
 @inline
 def orientation_rounding(box, links, link, balls, middle):
-    """[m] how far rounding of the orientations of ball joints can move any point of a body fixed to `link`.
+    """[m] the greatest motion of a point of a body fixed to `link` by rounding of the orientations of ball joints.
 
-    It is a turn about any axis, so what counts is how far the body reaches from the joint, whatever moves between.
+    The rounding is a turn about any axis, so it is multiplied by the body's greatest distance from the joint.
 
     Args:
         balls: a `BallPath`. middle: of an interval, with `positions`, `swing` and `bend`.
     """
     reach = math.sqrt(dot(box.centre, box.centre)) + math.sqrt(dot(box.half, box.half))
-    way = 0.0
+    distance = 0.0
     while links.parents[link] != NO_PARENT:
         for ball in range(len(balls.links)):
             if balls.links[ball] == link:
-                way += BALL_ROUNDING * reach
+                distance += BALL_ROUNDING * reach
         if links.kinds[link] == SLIDING:
             reach += abs(middle.positions[link]) + abs(middle.swing[link]) + middle.bend[link]
         t = rigid(links.parent_from_joint[link]).t
         reach += math.sqrt(dot(t, t))
         link = links.parents[link]
-    return way * (1.0 + LEAN)
+    return distance * (1.0 + LEAN)
 
 
 @inline
-def loosened(motion_bound, way):
-    """The motion bound with `way` [m] more that points can be anywhere."""
+def loosened(motion_bound, distance):
+    """The motion bound with a greater rest, by a distance [m]."""
     return MotionBound(
-        motion_bound.velocity, motion_bound.spin, motion_bound.rest + way, motion_bound.turn
+        motion_bound.velocity, motion_bound.spin, motion_bound.rest + distance, motion_bound.turn
     )
 
 
 @inline
 def velocity_at(motion_bound, x):
-    """How a point of the body moves in the first order over half the interval [m]."""
+    """The first-order motion of a point of the body over half the interval [m]."""
     return add(motion_bound.velocity, cross(motion_bound.spin, x))
 
 
 @inline
 def motion_bound_of_box(box, motion_bound):
-    """[m] an upper bound on how far any point of a box moves from the middle."""
+    """[m] an upper bound on the motion of any point of a box from the middle."""
     v = velocity_at(motion_bound, box.centre)
     radius = square_root(dot(box.half, box.half)) * (1.0 + LEAN)
     turning = math.sqrt(dot(motion_bound.spin, motion_bound.spin)) * radius
@@ -183,14 +183,14 @@ def motion_bound_of_box(box, motion_bound):
 
 @inline
 def motion_bound_of_box_along(box, direction, motion_bound):
-    """[m] an upper bound on how far any point of a box moves along a unit direction, either way."""
+    """[m] an upper bound on the motion of any point of a box along a unit direction, in either sense."""
     first = abs(dot(direction, velocity_at(motion_bound, box.centre)))
     return first + box_reach(box, cross(direction, motion_bound.spin)) + motion_bound.rest
 
 
 @inline
 def motion_bound_of_face_along(surface, face, direction, motion_bound):
-    """[m] an upper bound on how far any point of a face moves along a unit direction, either way."""
+    """[m] an upper bound on the motion of any point of a face along a unit direction, in either sense."""
     first = 0.0
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
         x = row(surface.vertices, surface.face_vertices[c])

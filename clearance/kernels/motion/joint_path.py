@@ -1,8 +1,7 @@
-"""Where a joint is between two samples, and how far it gets from the middle of a part of the interval.
+"""The position of a joint between two samples, and its motion from the middle of a part of the interval.
 
-Linear where positions are all that is given; where velocities are given too, the cubic that has them at both
-samples (Hermite). The cubic is written as the linear motion and an excess, which vanishes with the excess of the
-velocities over the mean velocity:
+Without velocities the motion is linear. With velocities it is the Hermite cubic, which has them at both samples.
+The cubic is the linear motion plus an excess, which vanishes if the velocities equal the mean velocity:
 
     q(s) = q0 + s D + s (1 - s) ((1 - s) e0 - s e1),  D = q1 - q0,  e0 = T v0 - D,  e1 = T v1 - D.
 
@@ -33,8 +32,8 @@ class BallPath(NamedTuple):
     Attributes:
         links: (b,) below them.
         parent_from_joint: (b, 4, 4) the fixed parts of the joints [m].
-        arcs: (n - 1, b, 8) the orientation before as a quaternion (x, y, z, w); a unit axis, as it is seen from
-            there; the angle [rad].
+        arcs: (n - 1, b, 8) the orientation before as a quaternion (x, y, z, w); a unit axis in that orientation;
+            the angle [rad].
     """
 
     links: Integers
@@ -43,10 +42,10 @@ class BallPath(NamedTuple):
 
 
 ANGLE = 7
-"""Its place in an arc."""
+"""The place of the angle in an arc."""
 
 NO_BALLS = BallPath(np.empty(0, dtype=np.int64), np.empty((0, 4, 4)), np.empty((0, 0, 8)))
-"""Of links that no ball joint carries."""
+"""The path of links without ball joints."""
 
 
 class JointPath(NamedTuple):
@@ -56,7 +55,7 @@ class JointPath(NamedTuple):
         times: (n,) [s].
         positions: (n, n_links) [rad or m].
         velocities: (n, n_links) [rad/s or m/s], or (0, n_links) where all joints move linearly.
-        is_cubic: (n_links,) False for a joint that moves linearly all the same.
+        is_cubic: (n_links,) False for a joint that moves linearly even so.
         balls: of the ball joints, which have no positions or velocities of their own.
     """
 

@@ -15,15 +15,16 @@ NO_PARENT, NO_COLUMN = -1, -1
 
 
 class Links(NamedTuple):
-    """The links of all robots behind one another, parents before children, and what moves them.
+    """The links of all robots one after the other, parents before children, and their joints.
 
     Attributes:
-        parents: (links,) or `NO_PARENT` for a root, which stands.
+        parents: (links,) or `NO_PARENT` for a root; roots stand.
         kinds: (links,) of the joint above each link. axes: (links, 3) its unit axis.
-        parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
-        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`. A ball joint follows four from
-            there on: a quaternion (x, y, z, w) of length one to within rounding.
-        factors, offsets: (links,) its position is factor times that, plus offset [rad or m]; 1, 0 of a ball joint.
+        parent_from_joint: (links, 4, 4) its fixed part [m]; the pose in the world for a root.
+        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`. A ball joint follows four
+            columns: a quaternion (x, y, z, w) of length one to within rounding.
+        factors, offsets: (links,) its position is factor times the column, plus offset [rad or m]; 1, 0 for a ball
+            joint.
     """
 
     parents: Integers
@@ -53,15 +54,15 @@ def _turned(m, axis, position):
 @inline(force=True)
 def _slid(m, axis, position):
     """The motion `m` after a slide along an axis."""
-    way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
-    return RigidMotion(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
+    shift = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
+    return RigidMotion(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, shift))
 
 
 @inline(force=True)
 def _oriented(m, positions, column):
     """The motion `m` after the rotation of the quaternion at `positions[column : column + 4]`.
 
-    Exactness: of whatever length the quaternion is, the rotation is orthonormal to a few roundings.
+    Exactness: the rotation is orthonormal to a few roundings, for a quaternion of any length.
     """
     x, y, z = positions[column], positions[column + 1], positions[column + 2]
     w = positions[column + 3]
@@ -102,13 +103,13 @@ def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out)
 
 
 @inline(force=True)
-def place_links(links, positions, poses, wanted, look):
-    """Fills `poses` (links, 4, 4) of the links whose `wanted` (links,) is `look`, the joints at `positions`.
+def place_links(links, positions, poses, wanted, visit):
+    """Fills `poses` (links, 4, 4) of the links whose `wanted` (links,) is `visit`, the joints at `positions`.
 
-    With a link all above it must be wanted. Poses [m]; positions (columns,) [rad or m].
+    All links above a wanted one must be wanted. Poses [m]; positions (columns,) [rad or m].
     """
     for link in range(len(links.parents)):
-        if wanted[link] != look:
+        if wanted[link] != visit:
             continue
         parent = links.parents[link]
         if parent == NO_PARENT:
@@ -132,7 +133,7 @@ def place_links(links, positions, poses, wanted, look):
 
 @inline(force=True)
 def place_by_joint(links, link, positions, poses):
-    """Writes the pose of one link in `poses` (links, 4, 4) [m], where that of its parent is.
+    """Writes the pose of one link in `poses` (links, 4, 4) [m], which has the pose of its parent.
 
     No joint is a ball joint; `positions` (links,) [rad or m] of the joint above each link.
     """

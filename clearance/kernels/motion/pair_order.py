@@ -1,9 +1,8 @@
-"""The pairs of each body, that with the least bound first, so that most need no look to be passed over.
+"""The pairs of each body in the order of their bounds, so that most are skipped without a visit.
 
-Where only the first body of a pair moves, what it moves takes the same from the bounds of all its pairs: their
-order lasts until one of them is measured, and the first whose bound is beyond the best ends the look at them.
-Pairs of which both bodies move (`world`) come behind those in the list of the first, in no order: each is looked
-at.
+If only the first body of a pair moves, its motion lowers the bounds of all its pairs alike. Their order lasts
+until one of them is measured, and the first bound beyond the best ends the visit of the list. Pairs of two moving
+bodies (`world`) come last in the list of the first body, in no order: each is visited.
 """
 
 from typing import NamedTuple
@@ -18,7 +17,7 @@ class PairOrder(NamedTuple):
     """The pairs of body k are `pairs[starts[k]:starts[k + 1]]`; in order are those before `ends[k]`.
 
     Attributes:
-        starts: (bodies + 2,). After all bodies' there is a list of one: the pair that is asked first.
+        starts: (bodies + 2,). After the lists of all bodies comes a list of one: the pair to ask first.
         ends: (bodies + 1,).
         pairs: (p + 1,).
     """
@@ -39,7 +38,7 @@ def new_pair_order(n_bodies, n_pairs):
 
 @inline
 def fill_order(body_pairs, frames, order):
-    """Fills the lists from (p, 2) bodies, and the links that carry them; each in the order of the pairs."""
+    """Fills the lists from (p, 2) bodies and the links that carry them, each in the order of the pairs."""
     starts, ends = order.starts, order.ends
     for pair in range(len(body_pairs)):
         starts[body_pairs[pair, 0]] += 1
@@ -48,7 +47,7 @@ def fill_order(body_pairs, frames, order):
         end += starts[body]
         starts[body] = end
     starts[len(starts) - 1] = end + 1
-    for turn in range(2):  # from behind: first those of which both bodies move
+    for turn in range(2):  # backwards: first the pairs of two moving bodies
         for pair in range(len(body_pairs) - 1, -1, -1):
             body = body_pairs[pair, 0]
             if (frames[body_pairs[pair, 1]] >= 0) == (turn == 0):
@@ -80,7 +79,7 @@ def sort_all(bounds, order):
 
 @inline(force=True)
 def _move_on(bounds, pairs, place, end):
-    """Moves a pair on from its place to where it belongs before `end`, if those after it are in order."""
+    """Moves a pair from its place to its place in order before `end`; those after it are in order."""
     pair = pairs[place]
     while place + 1 < end and bounds[pairs[place + 1]] < bounds[pair]:
         pairs[place] = pairs[place + 1]
@@ -102,7 +101,7 @@ def sort_one(bounds, order, body, pair):
     place = order.starts[body]
     while place < order.ends[body] and pairs[place] != pair:
         place += 1
-    if place == order.ends[body]:  # one of which both bodies move
+    if place == order.ends[body]:  # a pair of two moving bodies
         return
     while place > order.starts[body] and bounds[pairs[place - 1]] > bounds[pair]:
         pairs[place] = pairs[place - 1]

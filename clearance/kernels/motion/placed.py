@@ -1,6 +1,6 @@
-"""Where the bodies are, each at the last step at which it was looked at, and how far it has come by then.
+"""The poses of the bodies, each at its last visit, and their motion up to then.
 
-Not for: which of them need a look (`schedule`), and where bodies are between the steps (`joint_motion_bound`).
+Not for: which bodies need a visit (`schedule`), and their motion between the steps (`joint_motion_bound`).
 """
 
 from typing import NamedTuple
@@ -17,26 +17,26 @@ GROWTH = 1.0 + 1e-9
 
 
 class PlacedBodies(NamedTuple):
-    """Where each body was seen last.
+    """The poses at the last visit of each body.
 
     Attributes:
-        links: (links, 4, 4) `world_from_link` [m] of those that were wanted at the last look.
-        wanted: (links,) the last look at which each was wanted, or -1.
+        links: (links, 4, 4) `world_from_link` [m] of the links wanted at the last visit.
+        wanted: (links,) the last visit at which each was wanted, or -1.
         poses: (bodies, 4, 4) `world_from_body` [m].
-        moves: (bodies,) how often it was found elsewhere than before.
-        looks: (bodies,) how often it was looked at after the first time.
+        moves: (bodies,) how often its pose has changed.
+        visits: (bodies,) how often it was visited after the first time.
     """
 
     links: Floats3
     wanted: Integers
     poses: Floats3
     moves: Integers
-    looks: Integers
+    visits: Integers
 
 
 @inline
 def new_placed_bodies(n_links, n_bodies):
-    """Bodies that are nowhere yet."""
+    """Bodies without poses yet."""
     return PlacedBodies(
         np.empty((n_links, 4, 4)), np.full(n_links, -1), np.empty((n_bodies, 4, 4)),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
@@ -44,10 +44,10 @@ def new_placed_bodies(n_links, n_bodies):
 
 
 @inline(force=True)
-def _want(links, link, look, wanted):
+def _want(links, link, visit, wanted):
     """Marks a link and all above it."""
-    while link != NO_PARENT and wanted[link] != look:
-        wanted[link] = look
+    while link != NO_PARENT and wanted[link] != visit:
+        wanted[link] = visit
         link = links.parents[link]
 
 
@@ -70,7 +70,7 @@ def _put(pose, placed, body):
 
 @inline
 def put_all(world, positions, placed):
-    """Puts every body where it is with the joints at `positions` (columns,); this is look 0."""
+    """Places every body with the joints at `positions` (columns,); this is visit 0."""
     for body in range(len(world.frames)):
         _want(world.links, world.frames[body], 0, placed.wanted)
     place_links(world.links, positions, placed.links, placed.wanted, 0)
@@ -80,18 +80,18 @@ def put_all(world, positions, placed):
 
 
 @inline(force=True)
-def bring(surface, world, bodies, positions, look, placed, moved):
-    """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,).
+def bring(surface, world, bodies, positions, visit, placed, moved):
+    """Places `bodies`, all carried by links, with the joints at `positions` (columns,).
 
     Args:
-        moved: (bodies,) [m] to which is added how far each has come.
+        moved: (bodies,) [m] total motion of each, increased.
     """
     for body in bodies:
-        _want(world.links, world.frames[body], look, placed.wanted)
-    place_links(world.links, positions, placed.links, placed.wanted, look)
+        _want(world.links, world.frames[body], visit, placed.wanted)
+    place_links(world.links, positions, placed.links, placed.wanted, visit)
     for body in bodies:
         before, after = placed.poses[body], placed.links[world.frames[body]]
-        placed.looks[body] += 1
+        placed.visits[body] += 1
         if _has_moved(before, after):
             placed.moves[body] += 1
             moved[body] += (

@@ -1,7 +1,7 @@
-"""The search of one step: the nearest pair of some bodies, or that of each pair that is near enough.
+"""The search of one step: the nearest pair of some bodies, or the distance of each pair that is near enough.
 
-Pairs whose carried bound exceeds the best are not measured. Not for: which steps and bodies are looked at
-(`sweep`), one pair (`search.body_pair`).
+Pairs whose carried bound exceeds the best are not measured. Not for: which steps and bodies are visited (`sweep`),
+one pair (`search.body_pair`).
 """
 
 from typing import NamedTuple
@@ -13,12 +13,12 @@ from clearance.kernels.features.face_pair import Hit, nothing_yet
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.motion.answer_cache import (
     answer_of,
+    is_still_valid,
     note_answer,
-    still_holds,
     was_contact,
 )
 from clearance.kernels.motion.pair_order import sort_first, sort_one
-from clearance.kernels.motion.schedule import forget_between, note_between, note_look
+from clearance.kernels.motion.schedule import forget_between, note_between, note_visit
 from clearance.kernels.motion.sweep_rows import write_pair
 from clearance.kernels.motion.sweep_state import (
     NOT_LESS,
@@ -34,22 +34,21 @@ from clearance.kernels.search.carried import (
     front_of,
     moved_of,
 )
-from clearance.kernels.search.front import forget
+from clearance.kernels.search.front import forget_front
 
-LOOK_AHEAD = 2.0
-"""Mean displacements between two looks: within so many of them beyond the best a pair is still measured, so that
-its bound lasts."""
+STEPS_AHEAD = 2.0
+"""A pair is measured up to this many mean displacements beyond the best, so that its bound lasts."""
 
 LITTLE = 0.03
-"""Of the best: where bodies move more in a step, nothing is measured beyond it."""
+"""Share of the best: where bodies move more in a step, no pair is measured beyond the best."""
 
 
-class RowLook(NamedTuple):
-    """What one row asks for.
+class RowQuestion(NamedTuple):
+    """The question of one row.
 
     Attributes:
-        bodies: those that are looked at. row: its place in the results. step: its number.
-        first: the pair that is asked before all others, or -1. known: one that is not measured, or -1.
+        bodies: to visit. row: its place in the results. step: its number.
+        first: the pair to ask first, or -1. known: a pair that is not measured, or -1.
         lowest: [m] a bound on the distance of all pairs of all other bodies.
         effort: of `PairQuestion`.
     """
@@ -64,10 +63,10 @@ class RowLook(NamedTuple):
 
 
 class RowNearest(NamedTuple):
-    """What a row comes to.
+    """The answer of a row.
 
     Attributes:
-        hit, pair: the nearest points and their pair, or -1. gap: [m] what is farther is not asked.
+        hit, pair: the nearest points and their pair, or -1. gap: [m] pairs with a greater bound are skipped.
         lowest: [m] a bound on the distance of all pairs.
     """
 
@@ -79,7 +78,7 @@ class RowNearest(NamedTuple):
 
 @inline(force=True)
 def nearest_by_boxes(surface, world, bodies, state, winner):
-    """The pair to ask first where the last winner has moved farther than it was apart."""
+    """The pair to ask first if the motion of the last nearest pair exceeds its distance."""
     order, bounds = state.order, state.carried.lower_bounds
     nearest = np.inf
     for body in bodies:
@@ -106,20 +105,22 @@ def nearest_by_boxes(surface, world, bodies, state, winner):
 
 @inline
 def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
-    """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on.
+    """The nearest points of a pair, if within `gap` [m], and a proven bound [m], which is stored.
 
     Many arguments: it is inlined into its one caller, whose locals they are.
     """
     placed, answers, carried = state.placed, state.answers, state.carried
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_of(world.pairs, pair, carried)
-    if still_holds(answers, pair, moves, gap):
+    if is_still_valid(answers, pair, moves, gap):
         return answer_of(answers, pair)
-    ahead = moved / max(1, placed.looks[body_a])
-    limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
+    ahead = moved / max(1, placed.visits[body_a])
+    limit = gap + (STEPS_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
     if lower_bound <= 0.0:
-        forget(carried.fronts, pair)  # where bodies may meet, nearest first from the roots is best
-    apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+        forget_front(carried.fronts, pair)  # where bodies may meet, a search from the roots is best
+    not_nested = (
+        lower_bound > 0.0 or effort < TO_THE_END
+    )  # an upper bound holds for nested bodies too
     touches = was_contact(answers, pair)
     measured = search(
         PosedPair(
@@ -130,7 +131,7 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
             pair_frames(world, pair, placed.poses),
         ),
         PairQuestion(
-            limit, gap, carried.faces[pair, 0], carried.faces[pair, 1], apart, effort, touches
+            limit, gap, carried.faces[pair, 0], carried.faces[pair, 1], not_nested, effort, touches
         ),
         front_of(world.pairs, pair, carried),
         state.scratch,
@@ -146,8 +147,8 @@ def _measured_pair(world, pair, lower_bound, gap, effort, lent, state, tally):
 
 
 @inline
-def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally):
-    """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer.
+def _with_pair(surface, lent, world, pair, question, goal, state, best, pair_rows, tally):
+    """(the best of a row after a pair, [m] a bound on its distance): the pair is measured if it may be nearer.
 
     Many arguments: it is inlined into its one caller, whose locals they are.
     """
@@ -157,31 +158,33 @@ def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, t
         lower_bound = bounded_again(surface, world, pair, state, gap)
     if lower_bound <= gap:
         hit, lower_bound = _measured_pair(
-            world, pair, lower_bound, gap, look.effort, lent, state, tally
+            world, pair, lower_bound, gap, question.effort, lent, state, tally
         )
         if hit.face_a != 2**62:
             seen = np.sqrt(hit.gap_sq)
             if hit.gap_sq < best.hit.gap_sq or (hit.gap_sq == best.hit.gap_sq and pair < best.pair):
                 best = RowNearest(hit, pair, best.gap if goal.each else min(gap, seen), best.lowest)
             if goal.each:
-                write_pair(look.row, look.step, pair, hit, pair_rows)
+                write_pair(question.row, question.step, pair, hit, pair_rows)
                 if goal.lasting:
                     state.within[pair] = min(gap, seen * NOT_LESS)
     return best, lower_bound
 
 
 @inline
-def nearest_of(lent, world, look, goal, state, pair_rows, tally):
+def nearest_of(lent, world, question, goal, state, pair_rows, tally):
     """The nearest pair of some bodies at a row, as a `RowNearest`; `lent` is the surface of all bodies."""
     surface = lent
-    order, first = state.order, look.first
-    best = RowNearest(nothing_yet(np.inf), -1, state.within[0], look.lowest)
-    lowest = look.lowest
+    order, first = state.order, question.first
+    best = RowNearest(nothing_yet(np.inf), -1, state.within[0], question.lowest)
+    lowest = question.lowest
     order.pairs[len(world.pairs)] = first
     tally[0] += len(world.pairs)
-    forget_between(world.groups, look.bodies, state.due)
-    for turn in range(-1 if first >= 0 else 0, len(look.bodies)):
-        body = len(world.frames) if turn < 0 else look.bodies[turn]  # the list of one, asked first
+    forget_between(world.groups, question.bodies, state.schedule)
+    for turn in range(-1 if first >= 0 else 0, len(question.bodies)):
+        body = (
+            len(world.frames) if turn < 0 else question.bodies[turn]
+        )  # the list of the first pair
         nearest = between = np.inf
         place, end = order.starts[body], order.starts[body + 1]
         in_order, stop = order.ends[body], order.ends[body]
@@ -194,7 +197,7 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally):
                 lower_bound = spare(world, first, state, goal)
             elif best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
                 pass  # no nearer, and not the least pair
-            elif pair == look.known:
+            elif pair == question.known:
                 lowest = min(lowest, lower_bound)
                 lower_bound = spare(world, pair, state, goal)
             elif is_beyond:
@@ -203,7 +206,7 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally):
                     stop, place = place, in_order
             else:
                 best, lower_bound = _with_pair(
-                    surface, lent, world, pair, look, goal, state, best, pair_rows, tally
+                    surface, lent, world, pair, question, goal, state, best, pair_rows, tally
                 )
                 lowest = min(lowest, lower_bound)
                 lower_bound = spare(world, pair, state, goal)
@@ -212,8 +215,8 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally):
             else:
                 between = min(between, lower_bound)
         if turn >= 0:
-            note_look(body, look.row, nearest, state.due)
-            note_between(world.groups[body], between, state.due)
+            note_visit(body, question.row, nearest, state.schedule)
+            note_between(world.groups[body], between, state.schedule)
         if goal.each:
             continue
         if turn < 0:

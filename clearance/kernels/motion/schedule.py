@@ -1,11 +1,11 @@
-"""Which bodies need a look, where only what is near is asked for: those that may have moved as far as they may.
+"""Which bodies need a visit, where only near pairs are asked for: those that may have used up their bound.
 
-A body may move as far as the least bound of its pairs exceeds what is asked; until then, by the positions of the
-joints alone (`interval_motion_bound`), no pair of it can come within what is asked. So every body has a clock of
-its own: at a step at which none is due, no pose is made, and where one is, only its pairs are looked at.
+The least bound of a body's pairs exceeds the distance asked for by some margin. Until the body has moved by that
+margin (`interval_motion_bound`), no pair of it can come within that distance. So each body is due at its own
+times. At a step without due bodies no pose is computed; at others only the pairs of due bodies are visited.
 
-Bodies between which there are pairs that both move are one group, looked at together: it is due where one of its
-bodies is, or where the two that have moved farthest may have come as near as the least bound between its bodies.
+Bodies with pairs that both move form a group and are visited together. A group is due where one of its bodies is,
+or where its two greatest motions may have used up the least bound between its bodies.
 """
 
 from typing import NamedTuple
@@ -17,37 +17,37 @@ from clearance.compile.decorators import inline
 from clearance.kernels.motion.interval_motion_bound import interval_motion_bound_of
 
 ROUNDED_UP = 1.0 + 2.0**-51
-"""Makes a sum of two lengths no less than the true one."""
+"""Rounds a sum of two lengths up."""
 
 
 class Schedule(NamedTuple):
-    """When each body was looked at, and how far it may move until it is due.
+    """The last visit of each body, and its bounds then.
 
     Attributes:
         motion_radii, noise: of `fill_motion_radii`.
-        nearest: (bodies,) [m] the least bound of the pairs of each at the last look at it.
-        rows, looks: (bodies,) the step of that look and its number.
-        bodies: (bodies,) in front those that are due.
-        between: (groups,) [m] the least bound of the pairs at the last look of which both bodies move.
-        ways: (bodies,) [m] and most: (groups, 2) [m] room: how far each may have moved, and the farthest two.
-        is_due: (groups,) room.
+        nearest: (bodies,) [m] the least bound of the pairs of each at its last visit.
+        rows, visits: (bodies,) the step of that visit and its number.
+        bodies: (bodies,) the due ones first.
+        between: (groups,) [m] the least bound at the last visit of the pairs of two moving bodies.
+        moved: (bodies,) [m] scratch: the motion of each since. most: (groups, 2) [m] scratch: the two greatest.
+        is_due: (groups,) scratch.
     """
 
     motion_radii: Floats2
     noise: Floats
     nearest: Floats
     rows: Integers
-    looks: Integers
+    visits: Integers
     bodies: Integers
     between: Floats
-    ways: Floats
+    moved: Floats
     most: Floats2
     is_due: Flags
 
 
 @inline
 def new_schedule(n_bodies, n_columns):
-    """Nothing is said yet."""
+    """A schedule without visits."""
     return Schedule(
         np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
@@ -57,68 +57,68 @@ def new_schedule(n_bodies, n_columns):
 
 
 @inline
-def all_due(frames, due):
-    """Makes all bodies due that links carry; the number of them."""
+def all_due(frames, schedule):
+    """Makes all bodies that links carry due; the number of them."""
     n_due = 0
     for body in range(len(frames)):
         if frames[body] >= 0:
-            due.bodies[n_due] = body
+            schedule.bodies[n_due] = body
             n_due += 1
     return n_due
 
 
 @inline(force=True)
-def find_due(world, positions, row, look, within, due):
-    """Finds who can come `within` [m] at a row of `positions`: (how many, [m] how near the others can be).
+def find_due(world, positions, row, visit, within, schedule):
+    """Finds the bodies that can come `within` [m] at a row of `positions`: (how many, [m] a bound on all others).
 
     Args:
-        look: the number of the look that follows.
+        visit: the number of the visit that follows.
     """
-    frames, groups, most = world.frames, world.groups, due.most
+    frames, groups, most = world.frames, world.groups, schedule.most
     for body in range(len(frames)):
         group = groups[body]
-        most[group, 0], most[group, 1], due.is_due[group] = 0.0, 0.0, False
+        most[group, 0], most[group, 1], schedule.is_due[group] = 0.0, 0.0, False
     for body in range(len(frames)):
         if frames[body] < 0:
             continue
         group = groups[body]
-        way = interval_motion_bound_of(
-            positions, due.rows[body], row, due.motion_radii[body], due.noise[body]
+        moved = interval_motion_bound_of(
+            positions, schedule.rows[body], row, schedule.motion_radii[body], schedule.noise[body]
         )
-        due.ways[body] = way
-        if way > most[group, 1]:
-            most[group, 0], most[group, 1] = max(way, most[group, 0]), min(way, most[group, 0])
-        if due.nearest[body] - way <= within:
-            due.is_due[group] = True
+        schedule.moved[body] = moved
+        if moved > most[group, 1]:
+            most[group, 0], most[group, 1] = max(moved, most[group, 0]), min(moved, most[group, 0])
+        if schedule.nearest[body] - moved <= within:
+            schedule.is_due[group] = True
     n_due = 0
     least = np.inf
     for body in range(len(frames)):
         if frames[body] < 0:
             continue
         group = groups[body]
-        apart = due.between[group] - (most[group, 0] + most[group, 1]) * ROUNDED_UP
-        if due.is_due[group] or apart <= within:
-            due.bodies[n_due], due.looks[body] = body, look
+        separation = schedule.between[group] - (most[group, 0] + most[group, 1]) * ROUNDED_UP
+        if schedule.is_due[group] or separation <= within:
+            schedule.bodies[n_due], schedule.visits[body] = body, visit
             n_due += 1
         else:
-            least = min(least, min(apart, due.nearest[body] - due.ways[body]))
+            least = min(least, min(separation, schedule.nearest[body] - schedule.moved[body]))
     return n_due, least
 
 
 @inline(force=True)
-def forget_between(groups, bodies, due):
-    """Nothing is known of the pairs between the bodies of these bodies' groups."""
+def forget_between(groups, bodies, schedule):
+    """Resets the bounds between the bodies of these bodies' groups."""
     for body in bodies:
-        due.between[groups[body]] = np.inf
+        schedule.between[groups[body]] = np.inf
 
 
 @inline(force=True)
-def note_between(group, bound, due):
-    """Notes a bound of a pair of which both bodies move [m]."""
-    due.between[group] = min(due.between[group], bound)
+def note_between(group, bound, schedule):
+    """Notes a bound of a pair of two moving bodies [m]."""
+    schedule.between[group] = min(schedule.between[group], bound)
 
 
 @inline(force=True)
-def note_look(body, row, nearest, due):
-    """Notes that a body was looked at, and the least bound of its pairs [m]."""
-    due.rows[body], due.nearest[body] = row, nearest
+def note_visit(body, row, nearest, schedule):
+    """Notes a visit of a body, and the least bound of its pairs [m]."""
+    schedule.rows[body], schedule.nearest[body] = row, nearest

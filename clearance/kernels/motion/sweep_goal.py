@@ -1,18 +1,18 @@
-"""What is asked of a sweep."""
+"""The question of a sweep."""
 
 from typing import NamedTuple
 
 from clearance.compile.declared import Floats, Floats2, Integers
 
 
-class Goal(NamedTuple):
-    """What is asked of a sweep.
+class SweepGoal(NamedTuple):
+    """The pairs and distances that a sweep looks for.
 
     Attributes:
-        within: (p,) [m] each pair is measured only where it is not farther apart; the same for all pairs
+        within: (p,) [m] a pair is measured only where its distance is at most this; the same for all pairs
             unless `each`.
         each: every pair has a best of its own; else all pairs of a step share one.
-        lasting: a best holds for the later steps too: only what is nearer than all before is measured.
+        lasting: a best holds for the later steps too: only nearer pairs are measured.
     """
 
     within: Floats
@@ -21,11 +21,11 @@ class Goal(NamedTuple):
 
 
 class SweptSteps(NamedTuple):
-    """What is swept.
+    """The steps of a sweep.
 
     Attributes:
         positions: (k, columns) of the joints at the steps [rad or m]. steps: (k,) their numbers.
-        known: (k,) the pair that is not measured at each, since it has been, or -1; (0,) where all are.
+        known: (k,) the pair at each that is known already, or -1; (0,) without such pairs.
     """
 
     positions: Floats2
@@ -33,12 +33,12 @@ class SweptSteps(NamedTuple):
     known: Integers
 
 
-class FirstLook(NamedTuple):
-    """A rough look at a few rows before all others: how near those come, no later one need be farther.
+class FirstPass(NamedTuple):
+    """A rough first pass over a few rows: its least distance is an upper bound for all others.
 
     Attributes:
-        rows: (m,) in their order; none if there is to be no such look.
-        effort: of `PairQuestion`; what is found with less than `TO_THE_END` is an upper bound.
+        rows: (m,) in their order; none for no first pass.
+        effort: of `PairQuestion`; with less than `TO_THE_END` the distance found is an upper bound.
     """
 
     rows: Integers

@@ -1,4 +1,4 @@
-"""What a sweep finds: a row a step, and what is least of each pair."""
+"""The results of a sweep: a row a step, and the least distance of each pair."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ class StepRows(NamedTuple):
     """Results, one row a step.
 
     Attributes:
-        clearance: (k,) [m] of the nearest pair, infinite where none is within what was asked.
+        clearance: (k,) [m] of the nearest pair, infinite where none is near enough.
         lower_bound: (k,) [m] a proven lower bound on the distance of all pairs.
         pair: (k,) the nearest pair, or -1.
         faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
@@ -31,8 +31,8 @@ class PairRows(NamedTuple):
 
     Attributes:
         every: (k, p) [m] clearance at each step, or (0, p) if only the least are wanted.
-        clearance, step, points: (p,), (p,), (p, 2, 3) the least of each pair, infinite and -1 if there is
-            none, and the first step that has it.
+        clearance, step, points: (p,), (p,), (p, 2, 3) the least of each pair and its first step; infinite and -1
+            without one.
     """
 
     every: Floats2
@@ -42,7 +42,7 @@ class PairRows(NamedTuple):
 
 
 class SweepRows(NamedTuple):
-    """All that a sweep finds."""
+    """All results of a sweep."""
 
     rows: StepRows
     pair_rows: PairRows
@@ -61,7 +61,7 @@ def write_step(row, pair, hit, lower_bound, rows):
 
 @inline
 def write_pair(row, step, pair, hit, pair_rows):
-    """Writes what a pair was found to be at a step, where that is asked for, and its least."""
+    """Writes the distance of a pair at a step, if asked for, and its least."""
     gap = np.sqrt(hit.gap_sq)
     if len(pair_rows.every) > 0:
         pair_rows.every[row, pair] = gap
@@ -73,7 +73,7 @@ def write_pair(row, step, pair, hit, pair_rows):
 
 @inline(force=True)
 def pass_over(n_pairs, row, lower_bound, rows, tally):
-    """Writes a row at which nothing needs a look: none of so many pairs is nearer than `lower_bound` [m]."""
+    """Writes a row without visits: none of so many pairs is nearer than `lower_bound` [m]."""
     write_step(row, -1, nothing_yet(np.inf), lower_bound, rows)
     tally[0] += n_pairs
     tally[4] += 1

@@ -1,7 +1,7 @@
-"""What a sweep carries from step to step, foremost a lower bound on the distance of each pair.
+"""The state of a sweep from step to step, foremost a lower bound on the distance of each pair.
 
-Between steps no point of a body moves farther than its displacement says, so that a bound on a pair's distance,
-less what both bodies have moved since, still holds. Not for: which pairs are measured (`row_search`).
+The displacement bounds the motion of every point of a body. So a bound on a pair's distance, less the motion of
+both bodies since, still holds. Not for: which pairs are measured (`row_search`).
 """
 
 from typing import NamedTuple
@@ -19,18 +19,18 @@ from clearance.kernels.search.front import POOL
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 NOT_LESS = 1.0 + 2.0**-50
-"""Makes room for what is equally near after its square was rounded."""
+"""Admits pairs that are equally near, although squares were rounded."""
 
 
 class SweepState(NamedTuple):
-    """What is carried from step to step, and scratch for the search.
+    """State that lasts from step to step, and scratch for the search.
 
     Attributes:
-        within: (p,) [m] as in `Goal`, less where that is found.
+        within: (p,) [m] as in `SweepGoal`, lowered by distances found.
         carried: of all pairs. order: of each body's pairs by their bounds, unless each has a best of its own.
-        placed: where the bodies are. due: which of them need a look.
-        boxes: of the bodies where they were last asked for.
-        answers: the last ones of the pairs.
+        placed: poses of the bodies. schedule: which of them need a visit.
+        boxes: of the bodies at their last use.
+        answers: the last answers of the pairs.
         scratch: of a search.
     """
 
@@ -38,7 +38,7 @@ class SweepState(NamedTuple):
     carried: Carried
     order: PairOrder
     placed: PlacedBodies
-    due: Schedule
+    schedule: Schedule
     boxes: BodyBoxes
     answers: AnswerCache
     scratch: Scratch
@@ -46,7 +46,7 @@ class SweepState(NamedTuple):
 
 @inline(force=True)
 def spare(world, pair, state, goal):
-    """[m] the same, less how near the pair must come where that is another distance for each."""
+    """[m] how far the carried bound of a pair exceeds the distance asked for, if each pair has its own."""
     return carried_bound(world.pairs, pair, state.carried) - (
         state.within[pair] if goal.each else 0.0
     )
@@ -54,7 +54,7 @@ def spare(world, pair, state, goal):
 
 @inline(force=True)
 def bounded_again(surface, world, pair, state, enough):
-    """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
+    """[m] the greater of the carried bound of a pair and the bound by both bodies' boxes now; it is stored."""
     by_boxes = box_bound(surface, world, pair, state.placed, state.boxes, enough)
     lower_bound = max(carried_bound(world.pairs, pair, state.carried), by_boxes)
     carry(world.pairs, pair, lower_bound, state.carried)

@@ -1,6 +1,6 @@
-"""The motion of both bodies of a pair over an interval as a displacement, and what is proven of the pair under it.
+"""The motion of both bodies of a pair over an interval as a displacement, and the proof for the pair under it.
 
-Not for: which pairs and intervals are asked, and halving them (`certify`).
+Not for: choosing pairs and intervals, and halving them (`certify`).
 """
 
 import math
@@ -37,17 +37,24 @@ from clearance.kernels.search.displacement import (
     turned_away_while,
 )
 from clearance.kernels.search.front import PairFront
-from clearance.kernels.search.proof import CHAIN_SLACK, Goal, Proof, Start, allowed_gap, prove
+from clearance.kernels.search.proof import (
+    CHAIN_SLACK,
+    Proof,
+    ProofGoal,
+    ProofStart,
+    allowed_gap,
+    prove,
+)
 from clearance.kernels.search.scratch import Scratch
 
 
 class CertificateGoal(NamedTuple):
-    """What is to be proven.
+    """The bound to prove.
 
     Attributes:
-        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
-        fail: [m] the limit that is to be decided, if need be with a smaller gap.
-        most_parts: of one interval and pair, after which the gap is widened fourfold, and so on.
+        gap: [m] allowed between `lower` and `upper`, the least distance seen.
+        fail: [m] the limit to decide, if need be with a smaller gap.
+        most_parts: of one interval and pair; after these, and again after as many, the gap grows fourfold.
     """
 
     gap: float
@@ -56,10 +63,11 @@ class CertificateGoal(NamedTuple):
 
 
 class Twist(NamedTuple):
-    """How both bodies move about the middle of an interval.
+    """The motion of both bodies about the middle of an interval.
 
     Attributes:
-        slack: [m] what rounding can raise a bound by. b_moves: False if b stands, which saves half of the work.
+        slack: [m] the most that rounding can raise a bound. b_moves: False if b stands; that saves half of the
+            work.
         turn: of both bodies together.
     """
 
@@ -132,7 +140,7 @@ def _(twist: Twist, direction):
 
 @is_nearly_still.register
 def _(twist: Twist, motion, little):
-    return twist.turn.way < little
+    return twist.turn.movement < little
 
 
 @inline
@@ -140,7 +148,7 @@ def _twist_of(roots, motion, slack):
     moved = motion_bound_of_box(box_of(roots.surface_a, roots.a), motion.a)
     if motion.b_moves:
         moved += motion_bound_of_box(box_of(roots.surface_b, roots.b), motion.b)
-    angle = max(motion.a.turn, motion.b.turn)  # by which the normals of either turn at most
+    angle = max(motion.a.turn, motion.b.turn)  # the greatest turn of a normal of either
     turn = Turn(angle, math.cos(angle), math.sin(angle), moved)
     return Twist(slack, motion.a, motion.b, motion.b_moves, turn)
 
@@ -154,9 +162,9 @@ def _start(roots, witness_faces, slack):
         face_a, face_b = witness_faces[0], witness_faces[1]
         near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
         if near.face_a != 2**62:
-            return Start(near.p, near.q, math.sqrt(near.gap_sq) + margin, face_a, face_b)
+            return ProofStart(near.p, near.q, math.sqrt(near.gap_sq) + margin, face_a, face_b)
     p, q = box_of(a, roots.a).centre, move(m, box_of(b, roots.b).centre)
-    return Start(p, q, math.inf, witness_faces[0], witness_faces[1])
+    return ProofStart(p, q, math.inf, witness_faces[0], witness_faces[1])
 
 
 @kernel
@@ -169,19 +177,19 @@ def prove_while_moving(
     front: PairFront,
     scratch: Scratch,
 ) -> Proof:
-    """A `Proof` over the interval for one pair, within the allowed gap below `least` or what is found.
+    """A `Proof` over the interval for one pair, within the allowed gap below `least` or the distance found.
 
     Args:
         bodies: of surfaces in which every face owns all its features.
         witness_faces: (2,) the faces that were nearest before, or -1; overwritten.
-        least: [m] asked about.
+        least: [m] given.
     """
     a, b = bodies.surface_a, bodies.surface_b
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
     target = least - allowed_gap(least, aim.gap, aim.fail)
-    thin = radii_of(a, bodies.a, b, bodies.b).both
-    goal = Goal(target, least, aim.gap, aim.fail, thin, False, True, 0, 0.0)
+    skin = radii_of(a, bodies.a, b, bodies.b).both
+    goal = ProofGoal(target, least, aim.gap, aim.fail, skin, False, True, 0, 0.0)
     start = _start(roots, witness_faces, slack)
     proof = prove(roots, _twist_of(roots, motion, slack), start, goal, front, scratch)
     witness_faces[0], witness_faces[1] = proof.face_a, proof.face_b

@@ -1,4 +1,4 @@
-"""The bodies of a sweep: what carries each, which pairs of them are measured, and where they are."""
+"""The bodies of a sweep: the links that carry them, the pairs to measure, and their poses."""
 
 from typing import NamedTuple
 
@@ -11,19 +11,19 @@ from clearance.kernels.motion.kinematics import Links
 
 
 class World(NamedTuple):
-    """What moves where.
+    """The bodies and the links that carry them.
 
-    A body is a solid in a place. A solid has several where pairs of it are seen from several links: two links of
-    one robot are measured in the frame of the nearest link above both, so that only the joints between move them.
+    A body is a solid in a place. Two links of one robot are measured in the frame of the nearest link above both,
+    so that only the joints between move them. So a solid may have several bodies, one for each such frame.
 
     Attributes:
         solids: (bodies,) the number of each in the surface.
-        frames: (bodies,) link that carries the body, or -1 for one that stands.
-        groups: (bodies,) numbers from 0; bodies of one group are looked at together. Two bodies of a pair that
-            both move are of one group.
-        standing: (bodies, 4, 4) poses of the bodies that stand [m].
+        frames: (bodies,) link that carries the body, or -1 for a standing body.
+        groups: (bodies,) numbers from 0; bodies of one group are visited together. Two moving bodies of a pair
+            are of one group.
+        standing: (bodies, 4, 4) poses of the standing bodies [m].
         pairs: (p, 2) bodies to measure against each other; a link carries the first, and perhaps the second.
-        links: what moves the links.
+        links: of all robots.
     """
 
     solids: Integers
@@ -36,7 +36,7 @@ class World(NamedTuple):
 
 @inline(force=True)
 def pair_frames(world, pair, poses):
-    """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
+    """The frames of both bodies of a pair, of `poses` (bodies, 4, 4)."""
     return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
 
 

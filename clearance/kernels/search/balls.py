@@ -1,6 +1,7 @@
-"""Clouds: bodies of points that each stand for a ball. The search is for the points, the answer less the radii.
+"""Clouds: bodies of points, each the centre of a ball. The search measures the points; the radii are subtracted
+last.
 
-Bodies that are no clouds have the radius 0, so that one search serves all. Not for: the search (`descent`).
+Other bodies have the radius 0, so one search serves all. Not for: the search (`descent`).
 """
 
 import math
@@ -12,7 +13,7 @@ from clearance.kernels.arithmetic.vec3 import along, dot, sub
 
 
 class Radii(NamedTuple):
-    """[m] of the balls of two bodies, and their sum, never less than it."""
+    """[m] of the balls of two bodies, and their sum, rounded up."""
 
     a: float
     b: float
@@ -35,17 +36,17 @@ def radii_of(a, body_a, b, body_b):
 
 @inline
 def less_balls(length, error, p, q, radii):
-    """(distance, error, p, q) [m] of balls whose centres are a `Wide` length apart, to within an error.
+    """(distance, error, p, q) [m] of two balls. Their centres have a `Wide` distance, known to within an error.
 
-    The difference is taken in 106 bits and rounded once. Balls that touch have distance 0 and one point, on the
-    body that is no cloud where there is one.
+    The difference is taken in 106 bits and rounded once. Balls that touch have distance 0 and one point. It lies
+    on the other body where only one is a cloud.
     """
-    left = minus(minus(length, wide(radii.a)), wide(radii.b))
+    remaining = minus(minus(length, wide(radii.a)), wide(radii.b))
     d = sub(q, p)
     far = math.sqrt(dot(d, d))
-    if left.hi <= 0.0:
+    if remaining.hi <= 0.0:
         share = min(radii.a, far) / far if far > 0.0 else 0.0
         p = along(p, share, d)
-        return 0.0, max(0.0, error + left.hi), p, p
+        return 0.0, max(0.0, error + remaining.hi), p, p
     of_a, of_b = radii.a / far, radii.b / far
-    return left.hi, error + abs(left.lo), along(p, of_a, d), along(q, -of_b, d)
+    return remaining.hi, error + abs(remaining.lo), along(p, of_a, d), along(q, -of_b, d)

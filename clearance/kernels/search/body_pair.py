@@ -1,4 +1,4 @@
-"""The distance of two bodies: descent of their trees, then containment, then what the balls of clouds take off."""
+"""The distance of two bodies: descent of their trees, then containment, then the radii of clouds."""
 
 from typing import NamedTuple
 
@@ -32,7 +32,7 @@ from clearance.kernels.search.front import (
     HULLS_NEARER,
     HULLS_TOUCH,
     PairFront,
-    forget,
+    forget_front,
     is_worth_separating,
     note_separating_planes,
 )
@@ -46,35 +46,35 @@ TO_THE_END = 2**62
 
 
 class PairQuestion(NamedTuple):
-    """What is asked of a body pair.
+    """A question about a body pair.
 
     Attributes:
-        limit: [m] a lower bound beyond this needs not be better.
-        wanted: [m] points farther apart than this are not wanted; at most `limit`.
+        limit: [m] the search stops once its lower bound exceeds this.
+        wanted: [m] points with a greater distance are not returned; at most `limit`.
         face_a, face_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
-        apart: True if it is known that neither body is inside the other.
+        not_nested: True if neither body is known to be inside the other.
         touches: True if the bodies were in contact just before; it changes the work, not the answer.
-        effort: node pairs after which the search is cut short; what it has found is then a distance that occurs,
-            but perhaps not the least, and nothing is proven. `TO_THE_END` if that is not wanted.
+        effort: the search ends after this many node pairs. Its distance then occurs, but may not be the least,
+            and nothing is proven. `TO_THE_END` to search everything.
     """
 
     limit: float
     wanted: float
     face_a: int
     face_b: int
-    apart: bool
+    not_nested: bool
     effort: int
     touches: bool
 
 
 class PairDistance(NamedTuple):
-    """What is known of a body pair.
+    """The answer about a body pair.
 
     Attributes:
-        hit: the nearest points in the world, if nearer than the distance wanted; else faces of 2**62.
+        hit: the nearest points in the world; faces of 2**62 if they are farther than the distance wanted.
         lower_bound: [m] proven.
-        error: [m] a bound on how far the distance of `hit` is from the truth.
-        face_a, face_b: where to begin the next time: the nearest faces met, within the limit or not.
+        error: [m] a bound on the error of the distance of `hit`.
+        face_a, face_b: the nearest faces met, within the limit or not: the next search begins there.
     """
 
     hit: Hit
@@ -87,13 +87,13 @@ class PairDistance(NamedTuple):
 
 @inline
 def _in_world(frames, x):
-    """A point seen from the origin of a, in the world."""
+    """A point in the world, given from the origin of a."""
     t = frames.a.t
     return rounded(plus3(x, Wide3(wide(t.x), wide(t.y), wide(t.z))))
 
 
 @inline
-def _contact(bodies, found, tally):
+def _face_contact(bodies, found, tally):
     face_a, face_b = found.face_a, found.face_b
     common = common_point(parts(bodies, face_a, face_b), found.meeting)
     p, q = _in_world(bodies.frames, common.p), _in_world(bodies.frames, common.q)
@@ -101,8 +101,8 @@ def _contact(bodies, found, tally):
 
 
 @inline
-def _touch(frames, found, radii, tally):
-    """The contact of a ball with a face that it reaches, the first found; or of two balls."""
+def _ball_contact(frames, found, radii, tally):
+    """The contact of a ball with the first face found within its radius, or of two balls."""
     hit = found.hit
     _, _, x, _ = less_balls(wide(np.sqrt(hit.gap_sq)), 0.0, hit.p, hit.q, radii)
     x = move(frames.a, x)
@@ -111,12 +111,12 @@ def _touch(frames, found, radii, tally):
 
 
 @inline
-def _of_centres(question, radii):
-    """The question as one about the points of clouds instead of the balls about them."""
+def _question_of_centres(question, radii):
+    """The same question about the points of clouds instead of their balls."""
     wider = radii.both
     return PairQuestion(
         question.limit + wider, question.wanted + wider, question.face_a, question.face_b,
-        question.apart, question.effort, question.touches,
+        question.not_nested, question.effort, question.touches,
     )  # fmt: skip
 
 
@@ -128,15 +128,15 @@ NOTHING_MEASURED = PairDistance(
 
 
 @inline(force=True)
-def _afresh(a, root_a, b, root_b, m):
-    """What a search begins with that knows nothing: the bodies' centres."""
+def _from_centres(a, root_a, b, root_b, m):
+    """The start of a search that knows nothing: the bodies' centres."""
     p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
     return FacePairState(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
 
 
 @inline(force=True)
-def _begin(a, root_a, b, root_b, m, margin, question):
-    """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
+def _first_faces(a, root_a, b, root_b, m, margin, question):
+    """The start of a search: the faces that were nearest, measured, or the bodies' centres."""
     if question.face_a >= 0:
         near = nearest_of_faces(
             a, question.face_a, b, question.face_b, m, margin, nothing_yet(np.inf)
@@ -146,12 +146,12 @@ def _begin(a, root_a, b, root_b, m, margin, question):
         p = row(a.vertices, a.face_vertices[a.face_starts[question.face_a]])
         q = row(b.vertices, b.face_vertices[b.face_starts[question.face_b]])
         return FacePairState(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
-    return _afresh(a, root_a, b, root_b, m)
+    return _from_centres(a, root_a, b, root_b, m)
 
 
 @inline
 def _seek_planes(roots, best, limit, slack, front, scratch):
-    """Planes that separate the bodies, where it may take less to seek them than to go on from the front."""
+    """Planes that separate the bodies, if seeking them may cost less than visiting the front."""
     fronts, pair = front.fronts, front.pair
     if not is_worth_separating(fronts, pair):
         return NOT_SEPARATED
@@ -162,23 +162,23 @@ def _seek_planes(roots, best, limit, slack, front, scratch):
 
 
 @inline
-def _is_within(found, radii):
-    """True if what a descent has found are centres that the balls about them reach."""
+def _balls_overlap(found, radii):
+    """True if the nearest centres are closer than the radii of their balls."""
     refined = found.refined
     return radii.both > 0.0 and refined.face_a != 2**62 and refined.length.hi <= radii.both
 
 
 @inline
-def _of_planes(planes, question, slack, radii, tally):
-    """What planes say that are farther apart than the limit."""
+def _distance_by_planes(planes, question, slack, radii, tally):
+    """The answer where planes separate the bodies by more than the limit."""
     nothing = nothing_yet(question.wanted * question.wanted)
     lower_bound = max(0.0, planes.lower_bound - slack - 2.0 * margin_of(slack) - radii.both)
     return PairDistance(nothing, lower_bound, 0.0, planes.face_a, planes.face_b, tally)
 
 
 @inline
-def _of_descent(found, question, frames, slack, radii, tally):
-    """What a descent has come to that has found no contact."""
+def _distance_by_descent(found, question, frames, slack, radii, tally):
+    """The answer of a descent without contact."""
     lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack) - radii.both)
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
@@ -204,13 +204,12 @@ def search(
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
-        bodies: their numbers in their surfaces.
-        question: what is wanted and known, a `PairQuestion`.
-        front: a `PairFront`; of clouds it holds how far their points are, as all does before the answer.
+        bodies: a `PosedPair` of bodies.
+        front: a `PairFront`. Its bounds are of the points of clouds, before radii are subtracted.
     """
     a, b = bodies.surface_a, bodies.surface_b
     radii = radii_of(a, bodies.a, b, bodies.b)
-    question = _of_centres(question, radii)
+    question = _question_of_centres(question, radii)
     frames, fronts, pair = bodies.frames, front.fronts, front.pair
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = rounding_slack(a, roots.a, b, roots.b, frames)
@@ -220,17 +219,17 @@ def search(
         over = overlap(roots, slack, radii.both, scratch)
         n_nodes, n_faces = over.n_nodes, over.n_faces
         if over.face_a != NO_FACE:
-            forget(fronts, pair)
+            forget_front(fronts, pair)
             tally = Tally(n_nodes, n_faces, 0)
             if radii.both > 0.0:
-                return _touch(frames, over, radii, tally)
-            return _contact(bodies, over, tally)
-    first = _begin(a, roots.a, b, roots.b, frames.m, margin, question)
+                return _ball_contact(frames, over, radii, tally)
+            return _face_contact(bodies, over, tally)
+    first = _first_faces(a, roots.a, b, roots.b, frames.m, margin, question)
     limit = question.limit + margin
     planes = _seek_planes(roots, first.best, limit, slack, front, scratch)
     n_nodes += planes.n_nodes
     if planes.lower_bound > limit:
-        return _of_planes(planes, question, slack, radii, Tally(n_nodes, 0, 0))
+        return _distance_by_planes(planes, question, slack, radii, Tally(n_nodes, 0, 0))
     limits = SearchLimits(limit, question.wanted, slack, question.effort, first)
     best = first.best
     for _ in range(2):
@@ -239,29 +238,29 @@ def search(
         n_exact += found.tally.exact_decisions
         if planes.n_waiting == 0:
             break
-        is_all = planes.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
-        note_separating_planes(fronts, pair, is_all, HULLS_NEARER)
-        if is_all:
+        is_proven = planes.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
+        note_separating_planes(fronts, pair, is_proven, HULLS_NEARER)
+        if is_proven:
             break
         best, planes = found.hit, NOT_SEPARATED  # the hulls are nearer than the bodies
-    if found.meeting.found or _is_within(found, radii):
-        # which of several is the answer must not depend on where the search began
+    if found.meeting.found or _balls_overlap(found, radii):
+        # the contact returned must not depend on where the search began
         over = overlap(roots, slack, radii.both, scratch)
         n_nodes, n_faces = n_nodes + over.n_nodes, n_faces + over.n_faces
         tally = Tally(n_nodes, n_faces, n_exact)
         if radii.both > 0.0 and over.face_a != NO_FACE:
-            forget(fronts, pair)
-            return _touch(frames, over, radii, tally)
+            forget_front(fronts, pair)
+            return _ball_contact(frames, over, radii, tally)
         if found.meeting.found:
             if not over.meeting.found:
                 best = found.hit
                 over = Overlap(found.meeting, best, best.face_a, best.face_b, 0, 0)
-            return _contact(bodies, over, tally)
+            return _face_contact(bodies, over, tally)
     tally = Tally(n_nodes, n_faces, n_exact)
-    if not (question.apart or planes.n_waiting > 0):
+    if not (question.not_nested or planes.n_waiting > 0):
         inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch)
         if inside:
-            forget(fronts, pair)  # a contact must not depend on where the search begins
+            forget_front(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
             return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
-    return _of_descent(found, question, frames, slack, radii, tally)
+    return _distance_by_descent(found, question, frames, slack, radii, tally)

@@ -1,8 +1,7 @@
-"""Steps at which two bodies on a path may overlap, by the boxes about them: of most pairs, none.
+"""Steps at which two bodies on a path may overlap, by their bounding boxes: for most pairs none.
 
-Boxes that are beside each other along an axis of either stay so until they have moved and turned as far against
-each other, so that most steps are passed over. Not for: bounds of the distance (`motion.sweep`), and what is
-inside what (`doubt`).
+Boxes with a gap along an axis of either stay separate until their relative motion has used up the gap. So most
+steps are skipped. Not for: bounds of the distance (`motion.sweep`), and which body is inside another (`doubt`).
 """
 
 from typing import NamedTuple
@@ -24,17 +23,17 @@ from clearance.kernels.arithmetic.vec3 import (
     sub,
 )
 
-ROOM = 1e-4
-"""[-] Of the coordinates, by which boxes must be beside each other: rotations may be off orthonormal by 1e-6."""
+ROUNDING = 1e-4
+"""[-] Least gap that counts, as a share of the coordinates: rotations may be off orthonormal by 1e-6."""
 
 
 class CarriedBoxes(NamedTuple):
-    """The boxes of bodies, and what carries each.
+    """The boxes of bodies, and the links that carry them.
 
     Attributes:
         bounds: (b, 2, 3) [m] of each body, in its own frame.
-        links: (b,) that each is fixed to, at the link's own pose, or -1 for one that stands.
-        standing: (b, 4, 4) [m] poses of those that stand.
+        links: (b,) the link that carries each, at the link's own pose, or -1 for a standing body.
+        standing: (b, 4, 4) [m] poses of standing bodies.
     """
 
     bounds: Floats3
@@ -57,8 +56,8 @@ class BoxGap(NamedTuple):
     """Two boxes at a step, each seen from the other.
 
     Attributes:
-        of_a, of_b: [m] how far they are apart along the axes of either; negative if not at all.
-        between: [m] their middles. half_a, half_b: [m] half of their diagonals.
+        of_a, of_b: [m] their greatest gap along the axes of either; negative where they overlap.
+        between: [m] distance of their middles. half_a, half_b: [m] half of their diagonals.
     """
 
     of_a: float
@@ -81,8 +80,8 @@ def _half(bounds):
 
 
 @inline(force=True)
-def _apart(m, middle, half, middle_of_other, half_of_other):
-    """[m] how far a box, seen by `m`, is from another along the axes of the latter."""
+def _separation(m, middle, half, middle_of_other, half_of_other):
+    """[m] the greatest gap along the axes of a box to another one, `m` from the frame of the other."""
     away = sub(move(m, middle_of_other), middle)
     x = abs(m.xx) * half_of_other.x + abs(m.xy) * half_of_other.y + abs(m.xz) * half_of_other.z
     y = abs(m.yx) * half_of_other.x + abs(m.yy) * half_of_other.y + abs(m.yz) * half_of_other.z
@@ -92,28 +91,28 @@ def _apart(m, middle, half, middle_of_other, half_of_other):
 
 
 @inline(force=True)
-def _beside(bounds_a, bounds_b, frame_a, frame_b):
+def _gap_between(bounds_a, bounds_b, frame_a, frame_b):
     half_a, half_b = _half(bounds_a), _half(bounds_b)
     middle_a, middle_b = add(row(bounds_a, 0), half_a), add(row(bounds_b, 0), half_b)
-    room = ROOM * (
+    rounding = ROUNDING * (
         size(frame_a.t) + size(frame_b.t) + size(middle_a) + size(middle_b)
         + size(half_a) + size(half_b)
     )  # fmt: skip
     return BoxGap(
-        _apart(relative(frame_a, frame_b), middle_a, half_a, middle_b, half_b) - room,
-        _apart(relative(frame_b, frame_a), middle_b, half_b, middle_a, half_a) - room,
-        np.sqrt(gap_sq(move(frame_a, middle_a), move(frame_b, middle_b))) + room,
+        _separation(relative(frame_a, frame_b), middle_a, half_a, middle_b, half_b) - rounding,
+        _separation(relative(frame_b, frame_a), middle_b, half_b, middle_a, half_a) - rounding,
+        np.sqrt(gap_sq(move(frame_a, middle_a), move(frame_b, middle_b))) + rounding,
         np.sqrt(dot(half_a, half_a)),
         np.sqrt(dot(half_b, half_b)),
     )
 
 
 @inline(force=True)
-def _stay_beside(found, moved, turned_a, turned_b):
-    """True if two boxes are still beside each other along the axes of the same box as they were.
+def _stay_separate(found, moved, turned_a, turned_b):
+    """True if two boxes still have a gap along the axes of the same box as before.
 
-    A point of one box moves against the frame of the other by what both have moved, by its own turn about its
-    middle, and by the turn of the other about that one's middle.
+    A point of one box moves in the frame of the other by three parts: the motion of both middles, the turn of its
+    own box about its middle, and the turn of the other box about the other middle.
 
     Args:
         moved: [m] both middles since. turned_a, turned_b: [-] since.
@@ -125,10 +124,10 @@ def _stay_beside(found, moved, turned_a, turned_b):
 
 
 @inline(force=True)
-def _are_beside(found, displacements, a, b, here, step):
-    """True if two boxes that were found so `here` are still beside each other at a later step."""
+def _are_separate(found, displacements, a, b, here, step):
+    """True if two boxes that have a gap `here` still have one at a later step."""
     middles, turns = displacements.middles, displacements.turns
-    return _stay_beside(
+    return _stay_separate(
         found,
         middles[a, step] - middles[a, here] + middles[b, step] - middles[b, here],
         turns[a, step] - turns[a, here],
@@ -137,20 +136,20 @@ def _are_beside(found, displacements, a, b, here, step):
 
 
 @inline
-def _next_look(found, displacements, a, b, here, n_steps):
-    """The first step after `here` at which boxes may no longer be beside each other, or `n_steps`.
+def _next_visit(found, displacements, a, b, here, n_steps):
+    """The first step after `here` at which boxes may have no gap any more, or `n_steps`.
 
-    What they have moved only grows, and rounding keeps the order: once they may not be, they may not be later.
+    Bisection is right: the accumulated motion only grows, also in rounded numbers.
     """
-    if n_steps - here > 1 and _are_beside(found, displacements, a, b, here, n_steps - 1):
+    if n_steps - here > 1 and _are_separate(found, displacements, a, b, here, n_steps - 1):
         return n_steps
     low, high = here, here + 1
-    while high < n_steps and _are_beside(found, displacements, a, b, here, high):
+    while high < n_steps and _are_separate(found, displacements, a, b, here, high):
         low, high = high, high + 2 * (high - here)
     high = min(high, n_steps)
     while high - low > 1:
         middle = (low + high) // 2
-        if _are_beside(found, displacements, a, b, here, middle):
+        if _are_separate(found, displacements, a, b, here, middle):
             low = middle
         else:
             high = middle
@@ -159,7 +158,7 @@ def _next_look(found, displacements, a, b, here, n_steps):
 
 @inline(force=True)
 def _turned(before, after):
-    """[-] the norm of the change of a rotation: no point turns by more than that many times its distance."""
+    """[-] the norm of the change of a rotation. A point moves by at most this times its distance."""
     return np.sqrt(
         (after.xx - before.xx) ** 2 + (after.xy - before.xy) ** 2 + (after.xz - before.xz) ** 2
         + (after.yx - before.yx) ** 2 + (after.yy - before.yy) ** 2 + (after.yz - before.yz) ** 2
@@ -191,7 +190,7 @@ def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans:
     Args:
         boxes: a `CarriedBoxes`. pairs: (p, 2) of its bodies.
         poses: (n, links, 4, 4) [m] of the links at each of n steps.
-        spans: (p, 2) where they are written.
+        spans: (p, 2), overwritten.
     """
     n_steps, n_bodies = len(poses), len(boxes.links)
     displacements = BoxDisplacements(np.zeros((n_bodies, n_steps)), np.zeros((n_bodies, n_steps)))
@@ -201,7 +200,7 @@ def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans:
         spans[pair, 0] = spans[pair, 1] = 0
         step = 0
         while step < n_steps:
-            found = _beside(
+            found = _gap_between(
                 boxes.bounds[a],
                 boxes.bounds[b],
                 _pose(boxes, a, poses, step),
@@ -211,4 +210,4 @@ def steps_together(boxes: CarriedBoxes, pairs: Integers2, poses: Floats4, spans:
                 if spans[pair, 1] == 0:
                     spans[pair, 0] = step
                 spans[pair, 1] = step + 1
-            step = _next_look(found, displacements, a, b, step, n_steps)
+            step = _next_visit(found, displacements, a, b, step, n_steps)

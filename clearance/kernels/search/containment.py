@@ -257,7 +257,7 @@ def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch):
     """The same of all probes of a cloud, those in nodes that reach into the other body's box."""
     m = inverse(frames.m) if is_a else frames.m  # from the cloud to the other body
     slack = rounding_slack(one, one.roots[body_one], two, two.roots[body_two], frames)
-    waiting, n_waiting = scratch.left, 1
+    waiting, n_waiting = scratch.entries, 1
     waiting[0, 0] = one.roots[body_one]
     box = box_of(two, two.roots[body_two])
     while n_waiting > 0:

@@ -1,9 +1,9 @@
 """Nearest-first descent of two trees: the one search behind distance, certificate and tolerances.
 
 Each node pair gets a lower bound on the distance of its faces under a displacement (`displacement`). A pair whose
-bound is above the cut-off distance is passed over, any other is opened. Two leaves go to the search; its type says
-what it makes of two faces: the exact minimum (`nearest`), or a proven bound (`proof`). A descent goes on from the
-front that the last one of the same pair has left, if there is one (`front`).
+bound exceeds the cut-off distance is skipped; any other is opened. Two leaves go to the search. Its type defines
+the step at two faces: the exact minimum (`nearest`), or a proven bound (`proof`). A descent begins at the front of
+the last descent of the same pair, if there is one (`front`).
 """
 
 import math
@@ -22,7 +22,7 @@ from clearance.kernels.arithmetic.lanes import (
 )
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import is_leaf
-from clearance.kernels.search.front import OF_B, carried_down, leave
+from clearance.kernels.search.front import LENGTH, OF_B, START, add_entry, carried_down
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     bounds_of_group,
@@ -30,54 +30,54 @@ from clearance.kernels.search.node_pairs import (
     pair_in_group,
     turned_away,
 )
-from clearance.kernels.search.scratch import require_room, swap, wait
+from clearance.kernels.search.scratch import require_capacity, swap, wait
 
 
 class NodeQueue(NamedTuple):
     """Node pairs that wait, in `Scratch`, when a descent begins.
 
     Attributes:
-        n_kept: entries of the front that stay in it. n_waiting: node pairs. n_bounded: those bounded for it.
-        lower_bound: [m] of all that does not wait.
+        n_retained: entries that stay in the front. n_waiting: node pairs. n_bounded: node pairs bounded so far.
+        lower_bound: [m] of all node pairs that do not wait.
     """
 
-    n_kept: int
+    n_retained: int
     n_waiting: int
     n_bounded: int
     lower_bound: float
 
 
 class Descent(NamedTuple):
-    """What a descent comes to.
+    """The result of a descent.
 
     Attributes:
-        search: what the search has found. lower_bound: [m] of the node pairs that were passed over.
-        is_complete: False if the search was over while node pairs waited; the bound is then of some only.
-        n_nodes: node pairs bounded. n_left: new entries for the front, in `Scratch`.
+        search: in its last state. lower_bound: [m] of the node pairs that were skipped.
+        is_complete: False if the search ended while node pairs waited; the bound then covers only some.
+        n_nodes: node pairs bounded. n_fresh: new entries for the front, in `Scratch`.
     """
 
     search: Any
     lower_bound: float
     is_complete: bool
     n_nodes: int
-    n_left: int
+    n_fresh: int
 
 
 @by_type
 def cut_of(search, goal, n_opened):
-    """[m] the cut-off distance after so many node pairs were opened: what is farther is passed over."""
+    """[m] the cut-off distance after so many openings: node pairs with a greater bound are skipped."""
     raise TypeError
 
 
 @by_type
 def is_over(search, goal, n_nodes):
-    """True if nothing else is to be visited, after so many node pairs were bounded."""
+    """True if the search ends here, after so many node pairs were bounded."""
     raise TypeError
 
 
 @by_type
 def with_faces(search, faces, bound, cut, displacement, goal, n_waiting, scratch):
-    """The search after two faces, `bound` [m] apart at least, while so many node pairs wait.
+    """The search after two faces with a lower bound [m], while so many node pairs wait.
 
     Args:
         faces: a `PosedPair` of faces.
@@ -86,11 +86,11 @@ def with_faces(search, faces, bound, cut, displacement, goal, n_waiting, scratch
 
 
 class _Group(NamedTuple):
-    """What has become of the marked nodes of a group.
+    """The marked nodes of a group after a visit.
 
     Attributes:
         n_waiting: node pairs that wait now. marks: of the nodes that stay in the front.
-        of_marked: [m] a bound on those. beyond: [m] a bound on those beyond the cut-off distance.
+        of_marked: [m] a bound on these. beyond: [m] a bound on the nodes beyond the cut-off distance.
     """
 
     n_waiting: int
@@ -101,10 +101,10 @@ class _Group(NamedTuple):
 
 @inline(force=True)
 def _wait_for_near(roots, views, nodes, marks, displacement, cut, scratch, n_waiting):
-    """Lets the marked nodes of a group wait that may hold nearest points with a node of the other body.
+    """Queues the marked nodes of a group that may hold nearest points with a node of the other body.
 
-    Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. What is turned
-    away stays too.
+    Leaves stay marked, so that a group stays in one entry; a queued leaf has ~a for a. Nodes that are turned away
+    stay marked too.
 
     Many arguments: it is inlined into the inner loop, whose locals they are.
     """
@@ -115,7 +115,7 @@ def _wait_for_near(roots, views, nodes, marks, displacement, cut, scratch, n_wai
     away = turned_away(a, b, views, nodes, within, bounds, displacement)
     of_marked = min(beyond, least_of(bounds, away))
     within ^= away
-    require_room(n_waiting)
+    require_capacity(n_waiting)
     first = n_waiting
     while within:
         i = first_of(within)
@@ -133,13 +133,13 @@ def _wait_for_near(roots, views, nodes, marks, displacement, cut, scratch, n_wai
 
 @inline
 def from_front(roots, views, displacement, cut, front, scratch):
-    """Splits the front of a pair: what is still beyond the cut-off distance [m] stays in it, the rest waits."""
+    """Splits the front of a pair: entries beyond the cut-off distance [m] stay in it, the rest waits."""
     fronts, moved = front.fronts, front.moved
     entries = fronts.entries
-    start = fronts.spans[front.pair, 0]
-    n_kept, n_waiting, n_nodes, nearest = 0, 0, 0, 0
+    start = fronts.spans[front.pair, START]
+    n_retained, n_waiting, n_nodes, nearest = 0, 0, 0, 0
     lower_bound = math.inf
-    for i in range(start, start + fronts.spans[front.pair, 1]):
+    for i in range(start, start + fronts.spans[front.pair, LENGTH]):
         group, other, marks = (
             np.int64(entries[i, 0]),
             np.int64(entries[i, 1]),
@@ -164,33 +164,33 @@ def from_front(roots, views, displacement, cut, front, scratch):
             carried = carried_down(found.of_marked, moved)
         else:
             lower_bound = min(lower_bound, carried - moved)
-        to = start + n_kept
+        to = start + n_retained
         entries[to, 0], entries[to, 1], entries[to, 2] = group, other, marks
         fronts.lower_bounds[to] = carried
-        n_kept += 1
+        n_retained += 1
     if n_waiting > 0:  # nearest last
         swap(scratch, nearest, n_waiting - 1)
-    return NodeQueue(n_kept, n_waiting, n_nodes, lower_bound)
+    return NodeQueue(n_retained, n_waiting, n_nodes, lower_bound)
 
 
 @inline
 def put_roots(roots, bound, scratch):
-    """Lets the roots wait, [m] `bound` apart at least."""
+    """Queues the roots with a lower bound [m]."""
     scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
     scratch.bounds[0] = bound
 
 
 @inline
 def descend(roots, displacement, search, goal, queue, moved, scratch):
-    """All face pairs of two bodies that a search needs, near node pairs first.
+    """Visits all face pairs of two bodies that a search needs, near node pairs first.
 
     Args:
-        roots: of the bodies' trees. displacement: see `displacement`. search: what it begins with; its `views` say
-            in which direction the bodies are seen. goal: what it aims at. queue: what waits.
-        moved: [m] what both bodies have moved in all, for the front.
+        roots: of the bodies' trees. displacement: see `displacement`. search: its initial state; its `views` give
+            the direction along which boxes are bounded. goal: of the search. queue: a `NodeQueue`.
+        moved: [m] the total motion of both bodies, for the front.
     """
     a, b = roots.surface_a, roots.surface_b
-    n_waiting, n_nodes, n_left, n_opened = queue.n_waiting, queue.n_bounded, 0, 0
+    n_waiting, n_nodes, n_fresh, n_opened = queue.n_waiting, queue.n_bounded, 0, 0
     lower_bound = queue.lower_bound
     while n_waiting > 0 and not is_over(search, goal, n_nodes):
         cut = cut_of(search, goal, n_opened)
@@ -207,7 +207,7 @@ def descend(roots, displacement, search, goal, queue, moved, scratch):
         if not is_in_front and (are_leaves or bound > cut):
             one = NodeGroup(False, node_a // WIDTH, node_b)
             marks = 1 << node_a % WIDTH
-            n_left = leave(scratch, n_left, one, marks, carried_down(bound, moved))
+            n_fresh = add_entry(scratch, n_fresh, one, marks, carried_down(bound, moved))
         if bound > cut:
             lower_bound = min(lower_bound, bound)
         elif are_leaves:
@@ -223,6 +223,6 @@ def descend(roots, displacement, search, goal, queue, moved, scratch):
             )
             n_waiting, lower_bound = found.n_waiting, min(lower_bound, found.beyond)
             if found.marks > 0:
-                kept = carried_down(found.of_marked, moved)
-                n_left = leave(scratch, n_left, nodes, found.marks, kept)
-    return Descent(search, lower_bound, n_waiting == 0, n_nodes, n_left)
+                carried = carried_down(found.of_marked, moved)
+                n_fresh = add_entry(scratch, n_fresh, nodes, found.marks, carried)
+    return Descent(search, lower_bound, n_waiting == 0, n_nodes, n_fresh)

@@ -1,8 +1,8 @@
-"""How far two bodies may move about the poses in which a search sees them; a search knows nothing else of motion.
+"""How far two bodies may move about their poses in a search. The search knows nothing else about motion.
 
-Three types say it: `Still`, the `Twist` of an interval (`motion`), the `ErrorRows` of a machine (`budget`). Each
-has a `slack` [m], by which rounding can raise a bound, and its own version of the functions below. A body is named
-by its side, 0 or 1. Boxes and points are in its frame; a box may stand for four in lanes.
+Three types describe it: `Still`, the `Twist` of an interval (`motion`), the `ErrorRows` of a machine (`budget`).
+Each has a `slack` [m], the most that rounding can raise a bound, and its own version of the functions below. A
+body is named by its side, 0 or 1. Boxes and points are in its frame; a box may stand for four in lanes.
 """
 
 from typing import NamedTuple
@@ -13,26 +13,26 @@ from clearance.kernels.mesh.normal_cones import marks_turned_away, while_moving
 
 
 class Still(NamedTuple):
-    """Both bodies stand."""
+    """Neither body moves."""
 
     slack: float
 
 
 @by_type
 def movement_of_box(displacement, box, side):
-    """[m] how far any point of a box moves at most."""
+    """[m] the greatest motion of any point of a box."""
     raise TypeError
 
 
 @by_type
 def movement_of_box_along(displacement, box, side, u):
-    """[m] how far any point of a box moves along the direction of the search at most, either way."""
+    """[m] the greatest motion of any point of a box along the direction of the search, in either sense."""
     raise TypeError
 
 
 @by_type
 def still_turned_away(displacement, cones, d, marks, bounds):
-    """Bits of those marked nodes of a group that hold no nearest points at any instant: see `normal_cones`.
+    """Bits of the marked nodes of a group that hold no nearest points at any instant: see `normal_cones`.
 
     Args:
         cones, d: of the group and a node of the other body. bounds: [m] on their distances.
@@ -42,46 +42,46 @@ def still_turned_away(displacement, cones, d, marks, bounds):
 
 @by_type
 def prepare_along(displacement, direction):
-    """Works out what all points share along a `SeparatingDirection`; the functions below use the last one."""
+    """Precomputes the displacement along a `SeparatingDirection`; the functions below use the last one."""
     raise TypeError
 
 
 @by_type
 def movement_of_point_along(displacement, x, side, u):
-    """[m] how far a point, or four in lanes, moves along the direction that was prepared at most, either way."""
+    """[m] the greatest motion of a point, or four in lanes, along the prepared direction, in either sense."""
     raise TypeError
 
 
 @by_type
 def errors_of_point_along(displacement, x, side, u):
-    """[m] the same at one instant: what errors do without motion."""
+    """[m] the same at one instant: by errors alone, without motion."""
     raise TypeError
 
 
 @by_type
 def movement_of_point(displacement, x, side):
-    """[m] how far a point moves at most."""
+    """[m] the greatest motion of a point."""
     raise TypeError
 
 
 @by_type
 def direction_of_search(displacement, direction):
-    """The direction along which a search bounds boxes, best where nearest points differ along the prepared one."""
+    """The direction along which a search bounds boxes, made from the prepared one."""
     raise TypeError
 
 
 @by_type
 def movement_of_point_in_search(displacement, x, side, u):
-    """[m] how far four points in lanes move along the direction of the search at most."""
+    """[m] the greatest motion of four points in lanes along the direction of the search."""
     raise TypeError
 
 
 @by_type
 def is_nearly_still(displacement, motion, little):
-    """True where motion moves so little [m] that a shorter interval is of no help.
+    """True where the motion is so small that a shorter interval does not help.
 
     Args:
-        motion: [m] what it moves the nearest points, beside errors. little: [m] the limit.
+        motion: [m] of the nearest points, without errors. little: [m] the limit.
     """
     raise TypeError
 
@@ -98,8 +98,8 @@ def _(still: Still, box, side, u):
 
 @still_turned_away.register
 def _(still: Still, cones, d, marks, bounds):
-    apart = marks & ~marks_within(bounds, 0.0)
-    return apart & marks_turned_away(cones, d) if apart else 0
+    separate = marks & ~marks_within(bounds, 0.0)
+    return separate & marks_turned_away(cones, d) if separate else 0
 
 
 MOST_TURNED = 0.25
@@ -107,17 +107,17 @@ MOST_TURNED = 0.25
 
 
 class Turn(NamedTuple):
-    """[rad] by how much the normals of either body turn at most; [m] how far any two points come together."""
+    """[rad] the greatest turn of a normal of either body; [m] the most by which two points come nearer."""
 
     angle: float
     cosine: float
     sine: float
-    way: float
+    movement: float
 
 
 @inline(force=True)
 def turned_away_while(turn, cones, d, marks):
-    """The same of bodies that do not touch at first, or where nothing is asked after they have."""
+    """The same for bodies that do not touch at first, or whose contact ends the search."""
     if marks == 0 or turn.angle >= MOST_TURNED:
         return 0
-    return marks & marks_turned_away(while_moving(cones, turn.cosine, turn.sine, turn.way), d)
+    return marks & marks_turned_away(while_moving(cones, turn.cosine, turn.sine, turn.movement), d)

@@ -1,11 +1,11 @@
-"""BVTT fronts: where the last search of each body pair ended, node pairs left with how far apart they are.
+"""BVTT fronts: the node pairs at which the last search of each body pair ended, with lower bounds.
 
-A search that goes on from its front instead of the roots retests only what the motion since then could have
-brought near (front tracking: Ehmann & Lin 2001, Li & Chen 1998; the bounds carried with it are ours). All
-fronts lie in one pool of fixed size; where it is full they are dropped and built anew.
+A search from its front instead of the roots tests only node pairs that the motion since could have brought near.
+Source: front tracking, Ehmann & Lin 2001, Li & Chen 1998; the carried bounds are ours. All fronts lie in one pool
+of fixed size. When it is full they are dropped and built again.
 
-An entry is a group of nodes of one body against a node of the other, `(group, other, marks)`: bit k of the marks
-says that node k of the group is meant, `OF_B` that the group is of b.
+An entry is a group of nodes of one body against a node of the other, `(group, other, marks)`. Bit k of the marks
+means node k of the group; `OF_B` means that the group is of b.
 """
 
 import math
@@ -18,32 +18,36 @@ from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH
 
 POOL = 1 << 17
-"""Entries that are kept in all (20 bytes each), whatever the number of pairs and steps."""
+"""Capacity in entries (20 bytes each), for all pairs and steps together."""
 
 LONGEST = 4096
-"""Entries that the front of one body pair may have; a longer one is not kept."""
+"""Most entries of the front of one body pair; a longer one is dropped."""
 
 OF_B = 1 << WIDTH
 """The mark of a group of b."""
 
 GROWN, ANYHOW = 1.2, 16
-"""A front that has grown to so many times its first length, and so many entries, is built anew from the roots."""
+"""A front is built again from the roots once it exceeds 1.2 times its first length plus 16 entries."""
 
 LONG = 32
-"""Entries of a front that take as long as it takes to seek two planes (`separating_planes`)."""
+"""A front of this many entries costs as much as seeking two planes (`separating_planes`)."""
 
 HULLS_TOUCH, HULLS_NEARER = 15, 1
-"""Searches in which planes are not sought, after none were found or after the bodies were farther apart."""
+"""Searches without seeking planes, after none were found or after the hulls were nearer than the bodies."""
 
-MOST_LEFT_OUT = 255
-"""Searches at most in which planes are not sought after they were not found."""
+LONGEST_PAUSE = 255
+"""Most searches in a row without seeking planes."""
 
 
 @inline(force=True)
 def carried_down(bound, moved):
-    """[m] a bound of any sign, plus the way so far, less the rounding of either."""
+    """[m] a bound of any sign, plus the total motion so far, rounded down."""
     carried = bound + moved
     return carried - 2.0**-50 * (abs(bound) + moved) if abs(carried) < math.inf else carried
+
+
+START, LENGTH, CAPACITY, FIRST_LENGTH, PAUSE, LAST_PAUSE = range(6)
+"""Columns of `Fronts.spans`."""
 
 
 class Fronts(NamedTuple):
@@ -52,10 +56,10 @@ class Fronts(NamedTuple):
     Attributes:
         entries: (POOL, 3) as above.
         lower_bounds: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus both bodies'
-            displacements by then.
-        spans: (p, 6) of each pair: its first place in the pool, its length, its room, its first length; searches
-            until planes are sought again, and how many those were at the last time.
-        used: (1,) places of the pool that are given away.
+            total motion by then.
+        spans: (p, 6) of each pair, by columns: `START` in the pool, `LENGTH`, `CAPACITY`, `FIRST_LENGTH` when it
+            was last built from the roots, `PAUSE`: searches until planes are sought again, `LAST_PAUSE`.
+        used: (1,) places of the pool that are taken.
     """
 
     entries: Shorts2
@@ -68,7 +72,7 @@ class PairFront(NamedTuple):
     """The front of one pair.
 
     Attributes:
-        pair: its number in `fronts`. moved: [m] what both bodies have moved in all.
+        pair: its number in `fronts`. moved: [m] the total motion of both bodies.
     """
 
     fronts: Annotated[Fronts, LentTo]
@@ -78,7 +82,7 @@ class PairFront(NamedTuple):
 
 @inline
 def no_fronts(n_pairs, pool):
-    """Fronts of length 0; those of single queries have no pool."""
+    """Fronts of length 0, with a pool of some capacity."""
     return Fronts(
         np.empty((pool, 3), dtype=np.int32),
         np.empty(pool),
@@ -89,36 +93,36 @@ def no_fronts(n_pairs, pool):
 
 @inline
 def is_worth_separating(fronts, pair):
-    """True if it may take less to seek planes that separate the bodies of a pair than to go on from its front.
+    """True if seeking planes that separate the bodies may cost less than visiting the front of the pair.
 
-    Not if they were not found lately, which counts down.
+    Counts down the pause after a search that found none.
     """
-    if fronts.spans[pair, 1] < LONG:
+    if fronts.spans[pair, LENGTH] < LONG:
         return False
-    fronts.spans[pair, 4] -= 1
-    return fronts.spans[pair, 4] < 0
+    fronts.spans[pair, PAUSE] -= 1
+    return fronts.spans[pair, PAUSE] < 0
 
 
 @inline
 def note_separating_planes(fronts, pair, found, pause):
-    """Notes whether planes separate the bodies; if not, they are not sought for a while, each time a longer one.
+    """Notes whether planes separate the bodies. If not, the next pause is longer than the last one.
 
     Args:
-        pause: searches that it is longer by than twice the last one.
+        pause: searches to add to twice the last pause.
     """
     spans = fronts.spans
     if found:
-        spans[pair, 4], spans[pair, 5] = 0, 0
-    elif spans[pair, 4] < 0:
-        spans[pair, 5] = min(2 * spans[pair, 5] + pause, MOST_LEFT_OUT)
-        spans[pair, 4] = spans[pair, 5]
+        spans[pair, PAUSE], spans[pair, LAST_PAUSE] = 0, 0
+    elif spans[pair, PAUSE] < 0:
+        spans[pair, LAST_PAUSE] = min(2 * spans[pair, LAST_PAUSE] + pause, LONGEST_PAUSE)
+        spans[pair, PAUSE] = spans[pair, LAST_PAUSE]
 
 
 @inline
-def forget(fronts, pair):
-    """Lets the next search of a pair begin at the roots, as if it were the first."""
-    fronts.spans[pair, 1] = 0
-    fronts.spans[pair, 4], fronts.spans[pair, 5] = 0, 0
+def forget_front(fronts, pair):
+    """Makes the next search of a pair begin at the roots, as if it were the first."""
+    fronts.spans[pair, LENGTH] = 0
+    fronts.spans[pair, PAUSE], fronts.spans[pair, LAST_PAUSE] = 0, 0
 
 
 @inline(force=True)
@@ -129,53 +133,54 @@ def _copy(entries, lower_bounds, i, fronts, k):
 
 
 @inline
-def _has_room(fronts, pair, n_kept, length):
-    """Finds `length` places for a pair, moving the `n_kept` first of its front there; False if there are none."""
+def _reserve(fronts, pair, n_retained, length):
+    """Reserves `length` places for a pair and moves the `n_retained` first entries there; False if it cannot."""
     spans = fronts.spans
-    if length <= spans[pair, 2]:
+    if length <= spans[pair, CAPACITY]:
         return True
-    room = 2 * length + 16
+    capacity = 2 * length + 16
     pool = len(fronts.lower_bounds)
-    if room > pool:
+    if capacity > pool:
         return False
-    before = spans[pair, 0]
-    if fronts.used[0] + room > pool:
-        spans[:, 1] = 0
-        spans[:, 2] = 0
+    before = spans[pair, START]
+    if fronts.used[0] + capacity > pool:
+        spans[:, LENGTH] = 0
+        spans[:, CAPACITY] = 0
         fronts.used[0] = 0
     first = fronts.used[0]
-    for i in range(n_kept):  # upward: the new place may begin below the old one
+    for i in range(n_retained):  # upward: the new place may begin below the old one
         _copy(fronts.entries, fronts.lower_bounds, before + i, fronts, first + i)
-    fronts.used[0] = first + room
-    spans[pair, 0], spans[pair, 2] = first, room
+    fronts.used[0] = first + capacity
+    spans[pair, START], spans[pair, CAPACITY] = first, capacity
     return True
 
 
 @inline(force=True)
-def leave(scratch, n_left, nodes, marks, kept):
-    """Notes an entry for a front: a group's marked nodes against the node across. How many there are now.
+def add_entry(scratch, n_fresh, nodes, marks, bound):
+    """Writes a new entry for a front: a group's marked nodes against the other node. The number of entries.
 
     Args:
-        kept: [m] a bound on them, plus both bodies' displacements in all.
+        bound: [m] on them, plus both bodies' total motion.
     """
-    left = scratch.left
-    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
-    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
-    scratch.lower_bounds[n_left] = kept
-    return n_left + (n_left <= LONGEST)  # one too many says that not all are there
+    entries = scratch.entries
+    entries[n_fresh, 0], entries[n_fresh, 1] = nodes.group, nodes.other
+    entries[n_fresh, 2] = marks + OF_B if nodes.is_of_b else marks
+    scratch.lower_bounds[n_fresh] = bound
+    return n_fresh + (n_fresh <= LONGEST)  # one too many: not all were written
 
 
 @inline(force=True)
-def keep(fronts, pair, n_kept, entries, lower_bounds, n_fresh):
-    """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
-    length = n_kept + n_fresh
-    if length > LONGEST or not _has_room(fronts, pair, n_kept, length):
-        forget(fronts, pair)
+def update_front(fronts, pair, n_retained, entries, lower_bounds, n_fresh):
+    """Makes the front of a pair from the `n_retained` first of the old one and `n_fresh` new entries."""
+    length = n_retained + n_fresh
+    if length > LONGEST or not _reserve(fronts, pair, n_retained, length):
+        forget_front(fronts, pair)
         return
     spans = fronts.spans
-    at = spans[pair, 0] + n_kept
+    at = spans[pair, START] + n_retained
     for i in range(n_fresh):
         _copy(entries, lower_bounds, i, fronts, at + i)
-    if n_kept == 0:
-        spans[pair, 3] = length
-    spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + ANYHOW else length
+    if n_retained == 0:
+        spans[pair, FIRST_LENGTH] = length
+    is_grown = length > GROWN * spans[pair, FIRST_LENGTH] + ANYHOW
+    spans[pair, LENGTH] = 0 if is_grown else length

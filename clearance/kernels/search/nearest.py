@@ -1,9 +1,9 @@
-"""The exact nearest faces of two bodies that stand, or a proof that they are far.
+"""The exact nearest faces of two bodies without motion, or a proof that they are far.
 
-Two faces are measured in doubles. Those that can be the nearest wait, and are refined at the end. A pair of nodes
-or faces is passed over only if a lower bound exceeds the best distance by more than its own error. So every face
-pair that attains the minimum is refined, and the answer does not depend on the order. The first contact ends it.
-Not for: which faces are visited (`descent`).
+Two faces are measured in doubles. Candidates for the nearest wait, and are refined at the end. A pair of nodes or
+faces is skipped only if its lower bound exceeds the best distance by more than its own error. So every face pair
+that attains the minimum is refined, and the answer does not depend on the order. The first contact ends the
+search. Not for: which faces are visited (`descent`).
 """
 
 import math
@@ -33,7 +33,7 @@ from clearance.kernels.features.refine import (
     settle,
     shed,
 )
-from clearance.kernels.features.rounding_guard import sure_gap, told_apart
+from clearance.kernels.features.rounding_guard import is_beyond_rounding, sure_gap
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.descent import (
     NodeQueue,
@@ -45,7 +45,7 @@ from clearance.kernels.search.descent import (
     with_faces,
 )
 from clearance.kernels.search.displacement import Still
-from clearance.kernels.search.front import forget, keep
+from clearance.kernels.search.front import LENGTH, forget_front, update_front
 from clearance.kernels.search.node_pairs import Views, views_of
 from clearance.kernels.search.scratch import swap
 from clearance.kernels.search.warm_start import warm_start
@@ -55,11 +55,11 @@ class SearchLimits(NamedTuple):
     """How far a search goes.
 
     Attributes:
-        limit: [m] node pairs farther than this, or than the best, are not opened.
-        wanted: [m] face pairs farther apart are not refined.
+        limit: [m] node pairs with a greater bound than this, or than the best, are not opened.
+        wanted: [m] face pairs with a greater distance are not refined.
         slack: [m] of `rounding_slack`.
-        effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
-        first: the hit of two faces that are measured already, and what was seen of them.
+        effort: node pairs after which it stops with its best so far, and proves nothing.
+        first: two faces that are measured already.
     """
 
     limit: float
@@ -82,9 +82,9 @@ class NearestFaces(NamedTuple):
 
     Attributes:
         meeting: whether and where the bodies have a common point, in the faces of `hit`.
-        hit: the best pair of points in doubles, within the limit or not, no worse than what was given.
-        lower_bound: [m] a lower bound on the distance of the face pairs that were not refined.
-        refined: the answer in double-double, if there is one within the limit.
+        hit: the best pair of points in doubles, within the limit or not, no worse than the given one.
+        lower_bound: [m] on the distance of the face pairs that were not refined.
+        refined: the answer in double-double, if one lies within the limit.
     """
 
     meeting: Meeting
@@ -95,10 +95,10 @@ class NearestFaces(NamedTuple):
 
 
 class Best(NamedTuple):
-    """The best pair of points so far, and what follows from it.
+    """The best pair of points so far.
 
     Attributes:
-        gap: [m] theirs, or the limit if that is less. cut: [m] the cut-off distance.
+        gap: [m] their distance, or the limit if that is less. cut: [m] the cut-off distance.
     """
 
     hit: Hit
@@ -110,8 +110,8 @@ class RefineProgress(NamedTuple):
     """The face pairs that could be the minimum.
 
     Attributes:
-        n_waiting: so many wait. refined: the best of those that waited before.
-        hides: True if rounding may hide nearer points of one that waits than were seen.
+        n_waiting: number of those that wait. refined: the best of those refined so far.
+        hides: True if rounding may hide nearer points of a waiting pair.
     """
 
     n_waiting: int
@@ -120,11 +120,11 @@ class RefineProgress(NamedTuple):
 
 
 class NearestSearch(NamedTuple):
-    """What is known from the face pairs that were visited.
+    """The state of a search.
 
     Attributes:
-        views: the bodies seen in the direction from one of the best points to the other.
-        lower_bound: [m] of those that were passed over. n_measured: how many were measured.
+        views: of the bodies along the line through the best points.
+        lower_bound: [m] of the face pairs skipped. n_measured: face pairs measured.
     """
 
     best: Best
@@ -147,14 +147,14 @@ def _(search: NearestSearch, goal, n_nodes):
 
 @inline(force=True)
 def best_of(hit, limits):
-    """What follows from a pair of points."""
+    """A pair of points as `Best`."""
     gap = min(limits.limit, math.sqrt(hit.gap_sq))
     return Best(hit, gap, gap + margin_of(limits.slack))
 
 
 @inline(force=True)
 def _nearest_last(scratch, n_waiting):
-    """Puts the nearest of all node pairs that wait last."""
+    """Moves the nearest waiting node pair to the end."""
     bounds = scratch.bounds
     nearest = n_waiting - 1
     for k in range(n_waiting - 1):
@@ -165,7 +165,7 @@ def _nearest_last(scratch, n_waiting):
 
 @inline(force=True)
 def _settle_waiting(bodies, search, limits, least, scratch):
-    """The best after all face pairs that wait; no two are nearer than `least` [m] but for rounding."""
+    """The best after refining all waiting face pairs; none is nearer than `least` [m], rounding aside."""
     best, progress = search.best, search.progress
     refine_bounds = RefineBounds(search.views.a.direction, limits.slack, least)
     cutoff = FeatureCutoff(min(best.gap, limits.wanted), margin_of(limits.slack))
@@ -176,7 +176,7 @@ def _settle_waiting(bodies, search, limits, least, scratch):
 
 @inline(force=True)
 def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch):
-    """Lets a face pair wait to be refined; where too many wait, those are refined that can still win.
+    """Queues a face pair for refinement. Where too many wait, those that can still win are refined now.
 
     Many arguments: it is inlined into the inner loop, whose locals they are.
     """
@@ -209,11 +209,11 @@ def _(search: NearestSearch, faces, bound, cut, still, limits, n_waiting, scratc
     best, views, lower_bound, met = before, search.views, search.lower_bound, search.meeting
     progress, n_measured = search.progress, search.n_measured
     direction = views.a.direction
-    apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
-    if apart > before.cut:
-        lower_bound = min(lower_bound, apart)
+    separation = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+    if separation > before.cut:
+        lower_bound = min(lower_bound, separation)
     elif before.hit.gap_sq > limits.limit * limits.limit or may_own_nearest(
-        a, face_a, b, face_b, direction, apart, before.gap, margin
+        a, face_a, b, face_b, direction, separation, before.gap, margin
     ):
         n_measured += 1
         if face_a == limits.first.best.face_a and face_b == limits.first.best.face_b:
@@ -224,8 +224,8 @@ def _(search: NearestSearch, faces, bound, cut, still, limits, n_waiting, scratc
         if measured.best.gap_sq < before.hit.gap_sq:
             best, views = best_of(measured.best, limits), views_of(measured.best, m)
             direction = views.a.direction
-            apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
-        gap = sure_gap(a, face_a, b, face_b, m, margin, apart)
+            separation = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+        gap = sure_gap(a, face_a, b, face_b, m, margin, separation)
         if bound <= 0.0 and gap <= 0.0:
             met = meeting(faces, scratch.exact)
         if met.found:
@@ -234,20 +234,21 @@ def _(search: NearestSearch, faces, bound, cut, still, limits, n_waiting, scratc
             if n_waiting > 1 and best.gap < before.gap:
                 _nearest_last(scratch, n_waiting)
             least_sq = measured.seen.near_sq
-            is_told = told_apart(a, face_a, b, face_b, gap, margin)
-            if not is_told:  # nearer ones may be hidden
+            is_certain = is_beyond_rounding(a, face_a, b, face_b, gap, margin)
+            if not is_certain:  # rounding may hide nearer ones
                 least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
             reach = limit_of(a, face_a, b, face_b, before.gap, margin)
             may_win = least_sq < math.inf and least_sq <= reach * reach
             if may_win:
                 known = NearestSearch(best, views, progress, met, lower_bound, n_measured)
                 progress = _let_wait(a, b, faces, measured.seen, least_sq, known, limits, scratch)
-            if may_win and not is_told:
+            if may_win and not is_certain:
                 progress = RefineProgress(progress.n_waiting, progress.refined, True)
             elif least_sq < math.inf:
                 seen = math.sqrt(least_sq)
-                left = 2.0 * seen - limit_of(a, face_a, b, face_b, seen, margin)
-                lower_bound = min(lower_bound, left)
+                lower_bound = min(
+                    lower_bound, 2.0 * seen - limit_of(a, face_a, b, face_b, seen, margin)
+                )
             else:
                 lower_bound = min(lower_bound, math.sqrt(best.hit.gap_sq) + margin)
     return NearestSearch(best, views, progress, met, lower_bound, n_measured)
@@ -255,10 +256,10 @@ def _(search: NearestSearch, faces, bound, cut, still, limits, n_waiting, scratc
 
 @inline
 def _begin(roots, still, search, planes, front, scratch):
-    """What waits first: what the separating planes or the front have left, or the roots."""
+    """The first node pairs to visit: those of the separating planes or the front, or the roots."""
     if planes.n_waiting > 0:
         return NodeQueue(0, planes.n_waiting, 0, planes.beyond)
-    if front.fronts.spans[front.pair, 1] > 0:
+    if front.fronts.spans[front.pair, LENGTH] > 0:
         return from_front(roots, search.views, still, search.best.cut, front, scratch)
     a, b = roots.surface_a, roots.surface_b
     m = roots.frames.m
@@ -277,12 +278,11 @@ def nearest_faces(roots, hit, limits, planes, front, scratch):
 
     Args:
         roots: of the bodies' trees.
-        hit: where to start, or none; its points say in which direction the bodies are seen apart, also where they
-            are farther apart than the limit.
+        hit: the start, or none. Its points give the direction along which boxes are bounded, even beyond the
+            limit.
         limits: a `SearchLimits`.
-        planes: of `SeparatingPlanes`; if leaves wait already, only these are visited, and nothing else is nearer
-            than it says.
-        front: of `PairFront`, where the front of the pair is kept.
+        planes: of `SeparatingPlanes`. If leaves wait already, only these are visited; `beyond` bounds all others.
+        front: of `PairFront`, the front of the pair.
     """
     still, n_exact = Still(limits.slack), scratch.exact.count[0]
     nothing_waits = RefineProgress(0, NOTHING_REFINED, False)
@@ -297,11 +297,11 @@ def nearest_faces(roots, hit, limits, planes, front, scratch):
         refined = _settle_waiting(roots, search, limits, search.best.gap, scratch)
     if met.found or not found.is_complete:
         lower_bound = -math.inf
-        forget(front.fronts, front.pair)
+        forget_front(front.fronts, front.pair)
     elif planes.n_waiting == 0:
-        left, bounds = scratch.left, scratch.lower_bounds
-        keep(front.fronts, front.pair, queue.n_kept, left, bounds, found.n_left)
-    if search.progress.hides:  # they are no nearer than what is wanted, or refined
+        entries, bounds = scratch.entries, scratch.lower_bounds
+        update_front(front.fronts, front.pair, queue.n_retained, entries, bounds, found.n_fresh)
+    if search.progress.hides:  # hidden points are beyond the distance wanted, or refined
         lower_bound = min(lower_bound, min(search.best.gap, limits.wanted))
     tally = Tally(found.n_nodes, search.n_measured, scratch.exact.count[0] - n_exact)
     return NearestFaces(met, search.best.hit, lower_bound, refined, tally)

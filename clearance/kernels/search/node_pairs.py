@@ -1,4 +1,4 @@
-"""A group of nodes against a node of the other body: how far they are, and what is opened next."""
+"""A group of nodes against a node of the other body: lower bounds, and which node to open next."""
 
 from typing import NamedTuple
 
@@ -29,7 +29,7 @@ from clearance.kernels.search.displacement import (
 
 
 class NodeGroup(NamedTuple):
-    """Nodes of one body that lie in one group, and the node of the other body that they are looked at with.
+    """Nodes of one body that lie in one group, and the node of the other body that they are paired with.
 
     Attributes:
         is_of_b: True if the group is of b. group: its number. other: the node of the other body.
@@ -41,7 +41,7 @@ class NodeGroup(NamedTuple):
 
 
 class RelativeView(NamedTuple):
-    """How two bodies are seen from the frame of one of them.
+    """Two bodies from the frame of one of them.
 
     Attributes:
         m: the motion from the frame of the other to its own.
@@ -91,7 +91,7 @@ def _seen(a, b, views, nodes):
 def bounds_of_group(a, b, views, nodes, marks, displacement, cut):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
 
-    The cheap ones in direction if they exclude all that are marked.
+    Only the cheap bounds along the direction, if these exclude all marked nodes.
     """
     p, q, view = _seen(a, b, views, nodes)
     side = 1 if nodes.is_of_b else 0
@@ -141,14 +141,14 @@ def turned_away(a, b, views, nodes, marks, bounds, displacement):
 
 @inline(force=True)
 def _breadth(box):
-    """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
+    """Sum of the two smaller half sizes: splitting reduces it even where faces are long."""
     half = box.half
     return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
 
 
 @inline(force=True)
 def opened(a, node_a, b, node_b):
-    """What is looked at next of a node pair, not both leaves: (a group, how many nodes it has)."""
+    """The children to visit next for a node pair that is not two leaves: (a group, how many nodes it has)."""
     if is_leaf(a, node_a) or (
         not is_leaf(b, node_b) and _breadth(box_of(a, node_a)) < _breadth(box_of(b, node_b))
     ):

@@ -1,10 +1,9 @@
 """The contact of two bodies that overlap: the first two faces found to meet, whatever was asked before.
 
-Nodes that are apart are left, so nothing is measured; of those that overlap the deepest in one another come first.
-A ball meets a face where its centre comes within the radius, by more than rounding: a search for the nearest
-centre would go on among all that are in the body.
-Which contact is found depends on the bodies and their poses alone, so that a row in contact is the same wherever a
-sweep starts. Not for: bodies that are apart (`descent`), of which it says nothing.
+Separate nodes are skipped and nothing is measured. Nodes with the deepest overlap come first. A ball meets a face
+where its centre comes within the radius, by more than rounding. A search for the nearest centre would visit all
+centres inside the body. The contact found depends on the bodies and their poses alone, so a row in contact is the
+same wherever a sweep starts. Not for: separate bodies (`descent`).
 """
 
 from typing import NamedTuple
@@ -20,14 +19,14 @@ from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting
 from clearance.kernels.features.posed_pair import PosedPair, parts
 from clearance.kernels.mesh.surface import is_leaf
 from clearance.kernels.search.node_pairs import boxes_of_group, opened, pair_in_group
-from clearance.kernels.search.scratch import Scratch, require_room, wait
+from clearance.kernels.search.scratch import Scratch, require_capacity, wait
 
 
 class Overlap(NamedTuple):
-    """Two faces that meet, if any do (else -1), and the work of finding them.
+    """Two faces that meet, or -1, and the work of finding them.
 
     Attributes:
-        meeting: of faces. hit: of a ball and what it reaches, or of two balls, in the frame of a.
+        meeting: of faces. hit: of a ball and a face within its radius, or of two balls, in the frame of a.
     """
 
     meeting: Meeting
@@ -44,12 +43,12 @@ NO_OVERLAP = Overlap(NO_MEETING, NO_HIT, -1, -1, 0, 0)
 
 @kernel
 def overlap(roots: PosedPair, slack: float, reach: float, scratch: Scratch) -> Overlap:
-    """The first two faces found to have a point in common, exactly; all that can are looked at.
+    """The first two faces found to have a point in common, decided exactly; all candidates are visited.
 
     Args:
         roots: of the bodies' trees.
-        slack: [m] of `rounding_slack`, by which nodes may seem to be apart.
-        reach: [m] of the balls of both bodies together; 0 where neither is a cloud.
+        slack: [m] of `rounding_slack`: the greatest gap that rounding can feign.
+        reach: [m] the sum of the radii of both bodies; 0 where neither is a cloud.
     """
     a, b = roots.surface_a, roots.surface_b
     m = roots.frames.m
@@ -82,7 +81,7 @@ def overlap(roots: PosedPair, slack: float, reach: float, scratch: Scratch) -> O
         p, q = boxes_of_group(a, b, nodes)
         bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
         marks = ((1 << count) - 1) & marks_within(bounds, reach)
-        require_room(n_waiting)
+        require_capacity(n_waiting)
         first = n_waiting
         while marks:
             k = first_of(marks)

@@ -1,8 +1,8 @@
-"""One body pair at many poses: what a search has found is held, and the next one goes on from there.
+"""One body pair at many poses: each search begins with the results of the one before.
 
-The pair, its room to search in and what it knows are written down once, and a call from Python hands over the
-address; two surfaces handed over array by array cost more than most searches: 50 µs against 0.8 µs
-on a busy machine. Not for: many pairs at once (`sweep`).
+The pair, its scratch and its state are written once, and a call from Python passes one address. Passing two
+surfaces array by array costs more than most searches: 50 µs against 0.8 µs on a busy machine. Not for: many pairs
+at once (`sweep`).
 """
 
 from typing import Annotated, NamedTuple
@@ -21,34 +21,34 @@ from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, search
 from clearance.kernels.search.carried import Carried, carry_faces, nothing_carried
-from clearance.kernels.search.front import LONGEST, PairFront, carried_down, forget
+from clearance.kernels.search.front import LONGEST, PairFront, carried_down, forget_front
 from clearance.kernels.search.scratch import Scratch
 
-ROOM = 2 * LONGEST + 16
-"""Node pairs that the front of the pair has room for: as many as the longest front asks for."""
+FRONT_CAPACITY = 2 * LONGEST + 16
+"""Capacity of the front of the pair, in node pairs: enough for the longest front."""
 
 ROUNDED_UP = 1.0 + 2.0**-51
-"""Makes a sum of two lengths no less than the true one, however many are added one after another."""
+"""Rounds a sum of two lengths up, however many are added one after another."""
 
 SURELY = 1e-7
-"""[-] A matrix that is off orthonormal by less is a rotation; of one that is off by more this is not said."""
+"""[-] A matrix that is off orthonormal by less is a rotation; any other is left for the caller to check."""
 
 FAR = 1.0
-"""Bodies that move farther than this share of the smaller one's breadth are searched from the roots again."""
+"""After a motion of more than this share of the smaller breadth, the search begins at the roots."""
 
 POSES_ARE_RIGID, AFRESH = 1, 2
-"""How `nearest_at_poses` is asked; numbers, since each argument that Python hands over takes time."""
+"""Options of `nearest_at_poses` in one number, since each argument from Python takes time."""
 
 
-class HeldPair(NamedTuple):
-    """A body pair and what is known of it.
+class TrackedPair(NamedTuple):
+    """A body pair and the results of its last search.
 
     Attributes:
         a, b: their surfaces, one body each.
         scratch: arrays for the search.
         poses: (2, 4, 4) of both bodies at the last search [m].
-        carried: of one pair; what both bodies have moved stands at the first, the second has moved nothing.
-        stride: [m] how far they may move at once before a search from the roots is better.
+        carried: of one pair; `moved` of the first body is the motion of both, that of the second is 0.
+        stride: [m] after a greater motion between two poses a search from the roots is better.
     """
 
     a: Surface
@@ -66,13 +66,13 @@ def _breadth(surface):
     return 2.0 * max(half.x, max(half.y, half.z))
 
 
-def hold_pair(a: Surface, b: Surface, room: int, scratch: Scratch):
-    """A pair of surfaces of which nothing is known yet, with room for a front of so many node pairs."""
-    held = HeldPair(
-        a, b, scratch, np.zeros((2, 4, 4)), nothing_carried(2, 1, room),
+def track_pair(a: Surface, b: Surface, capacity: int, scratch: Scratch):
+    """A pair of surfaces without results yet, and the capacity of its front in node pairs."""
+    tracked = TrackedPair(
+        a, b, scratch, np.zeros((2, 4, 4)), nothing_carried(2, 1, capacity),
         FAR * min(_breadth(a), _breadth(b)),
     )  # fmt: skip
-    return Written(held, HeldPair)
+    return Written(tracked, TrackedPair)
 
 
 @inline
@@ -94,7 +94,7 @@ def _is_surely_rigid(pose):
 
 
 class PairState(NamedTuple):
-    """What is known of a pair: the fields of `HeldPair` that change from question to question."""
+    """The fields of `TrackedPair` that change from question to question."""
 
     poses: Floats3
     carried: Annotated[Carried, LentTo]
@@ -103,37 +103,37 @@ class PairState(NamedTuple):
 
 @inline
 def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
-    """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses.
+    """[m] an upper bound on the total motion of the points of both bodies, up to these poses.
 
-    Infinite where they may have come to touch, or where little of what is known can be of use: from a front, the
-    first contact can take a hundred times the search that it takes from the roots, and then that one as well.
+    Infinite where the bodies may touch, or have moved too far for the front to help. From a front, finding the
+    first contact can take a hundred times as long as from the roots.
     """
-    way = displacement(a, a.roots[0], state.poses[0], pose_a)
-    way += displacement(b, b.roots[0], state.poses[1], pose_b)
+    displaced = displacement(a, a.roots[0], state.poses[0], pose_a)
+    displaced += displacement(b, b.roots[0], state.poses[1], pose_b)
     carried = state.carried
-    if not way <= state.stride:
+    if not displaced <= state.stride:
         return np.inf
-    way += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
-    moved = (carried.moved[0] + way) * ROUNDED_UP
+    displaced += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
+    moved = (carried.moved[0] + displaced) * ROUNDED_UP
     return moved if carried.lower_bounds[0] > moved else np.inf
 
 
 @inline
 def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b):
-    """The nearest points of a pair, as `search` gives them.
+    """The answer of `search` for a pair.
 
-    Many arguments: what belongs together is in tuples already.
+    Many arguments: they are grouped in tuples already.
     """
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
     carried = state.carried
-    carried.lower_bounds[0] = -np.inf  # until the search has come to its end
+    carried.lower_bounds[0] = -np.inf  # until the search has ended
     face_a, face_b = carried.faces[0, 0], carried.faces[0, 1]
     question = PairQuestion(np.inf, np.inf, face_a, face_b, True, TO_THE_END, False)
     if moved == np.inf:
         moved = 0.0
         question = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
-        forget(carried.fronts, 0)
+        forget_front(carried.fronts, 0)
     bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
     measured = search(bodies, question, PairFront(carried.fronts, 0, moved), scratch)
     carried.moved[0] = moved
@@ -147,7 +147,7 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b):
 
 @kernel
 def nearest_at_poses(
-    held: HeldPair,
+    tracked: TrackedPair,
     poses_a: Floats3,
     poses_b: Floats3,
     how: int,
@@ -155,15 +155,14 @@ def nearest_at_poses(
     points: Floats3,
     counts: Integers2,
 ) -> int:
-    """Fills a row for each pose and returns -1, or nothing and the first row with a pose that is in doubt.
+    """Fills a row for each pose and returns -1, or fills none and returns the first row with a doubtful pose.
 
     Args:
-        poses_a, poses_b: (n, 4, 4) `world_from_body` [m]; (1, 4, 4) for a body that stands.
-        how: `POSES_ARE_RIGID` if none is to be doubted, `AFRESH` if nothing is to be taken from what was asked
-            before, their sum or 0.
+        poses_a, poses_b: (n, 4, 4) `world_from_body` [m]; (1, 4, 4) for a standing body.
+        how: `POSES_ARE_RIGID` to skip the check of the poses, `AFRESH` to ignore earlier results, their sum or 0.
         numbers: (n, 2) [m] distance, error bound.
         points: (n, 2, 3) [m] witness points in the world.
-        counts: (n, 5) faces of a and b, then nodes, faces and exact decisions that it took.
+        counts: (n, 5) faces of a and b, then the number of nodes, faces and exact decisions.
     """
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(0 if how & POSES_ARE_RIGID else len(numbers)):
@@ -171,8 +170,10 @@ def nearest_at_poses(
             _is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])
         ):
             return i
-    state = PairState(held.poses, held.carried, held.stride)
-    _nearest(held.a, held.b, state, held.scratch, poses_a, poses_b, how, numbers, points, counts)
+    state = PairState(tracked.poses, tracked.carried, tracked.stride)
+    _nearest(
+        tracked.a, tracked.b, state, tracked.scratch, poses_a, poses_b, how, numbers, points, counts
+    )
     return -1
 
 
@@ -180,7 +181,7 @@ def nearest_at_poses(
 def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts):
     """Fills a row for each pose.
 
-    Many arguments: what belongs together is in tuples already.
+    Many arguments: they are grouped in tuples already.
     """
     lent_a, lent_b = lend(a), lend(b)
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1

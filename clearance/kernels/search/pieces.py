@@ -1,7 +1,7 @@
-"""Two faces cut into smaller and smaller pieces, so that each moves alike under a displacement.
+"""Two faces cut into smaller and smaller pieces, so that all points of a piece move nearly alike.
 
-A large face, as of a table, is turned far by a small angle at its far corner, and there nothing is near. Pieces
-are triangles; each pair is bounded along the direction of its own nearest points and by its distance as a whole.
+A small turn moves the far corner of a large face, as of a table, by much, though nothing is near it. Pieces are
+triangles. Each pair is bounded along the direction of its own nearest points, and by the bound on the whole faces.
 Not for: which faces (`proof`).
 """
 
@@ -21,26 +21,26 @@ from clearance.kernels.search.displacement import (
 )
 
 MOST_PIECES = 600
-"""Pairs of pieces that are looked at of two faces; what is left then is bounded as it is."""
+"""Most pairs of pieces to visit for two faces; the remaining ones keep their bounds."""
 
 MOST_WAITING = 1200
 
 MOST_FANS = 400
-"""Pairs of triangles that two faces may begin as; rounder ones are left whole."""
+"""Most pairs of triangles to begin with; faces with more are not cut."""
 
 TRIED = 6
-"""Times that the nearest points of two triangles are brought nearer by turns; any direction is sound."""
+"""Alternating projections to find near points of two triangles; any direction is sound."""
 
 
 class TrianglePairs(NamedTuple):
-    """Pairs of triangles that wait: (n, 18) corners, of a in its frame, then of b in its own [m]; bounds (n,)."""
+    """Waiting pairs of triangles: (n, 18) corners, of a in its frame, then of b in its own [m]; bounds (n,)."""
 
     corners: Floats2
     bounds: Floats
 
 
 class PieceBound(NamedTuple):
-    """What pieces come to: [m] a lower bound on all, and the least that occurs at a pair of points seen."""
+    """The result for all pieces: [m] a lower bound, and the least distance that occurs at the points seen."""
 
     lower_bound: float
     least: float
@@ -54,7 +54,7 @@ class _Triangle(NamedTuple):
 
 @inline
 def new_pieces():
-    """Room for pieces."""
+    """Memory for pieces."""
     return TrianglePairs(np.empty((MOST_WAITING, 18)), np.empty(MOST_WAITING))
 
 
@@ -155,7 +155,7 @@ def _middle(a, b):
 
 
 class _PieceBounds(NamedTuple):
-    """A pair of pieces: [m] a lower bound, what occurs at near points, and how unlike each is moved."""
+    """A pair of pieces: [m] a lower bound, the distance at near points, and how much the motion of each varies."""
 
     bound: float
     value: float
@@ -214,7 +214,7 @@ def _begin(faces, pieces):
 
 @inline
 def _fan(surface, first, end, i):
-    """A triangle of the fan of a face; of a point thrice that point, of a segment its ends."""
+    """A triangle of the fan of a face; a point three times, or the ends of a segment."""
     last = end - 1
     return _Triangle(
         row(surface.vertices, surface.face_vertices[first]),
@@ -225,27 +225,27 @@ def _fan(surface, first, end, i):
 
 @inline
 def bound_of_pieces(faces, displacement, whole, target, near, pieces):
-    """What two faces come to in pieces, at most until each stays above the target.
+    """A bound on two faces by pieces, cut until each piece stays above the target.
 
     Args:
         faces: a `PosedPair` of faces. whole: [m] a bound on both. pieces: `TrianglePairs`, overwritten.
-        target: [m] what is above it needs no cutting; it falls with what is seen, to `near` [m] below that.
+        target: [m] pieces above it are not cut. It falls to `near` [m] below the least distance seen.
     """
     n = _begin(faces, pieces)
     least = math.inf
     if n == 0:
         return PieceBound(whole, least)
     lower_bound = math.inf
-    looked = 0
+    n_visited = 0
     while n > 0:
         n -= 1
         p, q = _read(pieces.corners[n], 0), _read(pieces.corners[n], 9)
         seen = _bounded(p, q, faces.frames.m, displacement)
-        looked += 1
+        n_visited += 1
         least = min(least, seen.value)
         target = min(target, least - near)
         bound = max(whole, max(pieces.bounds[n], seen.bound))
-        if bound >= target or looked + n >= MOST_PIECES or n + 2 > MOST_WAITING:
+        if bound >= target or n_visited + n >= MOST_PIECES or n + 2 > MOST_WAITING:
             lower_bound = min(lower_bound, bound)
             continue
         size_a, size_b = _longest_sq(p), _longest_sq(q)

@@ -26,7 +26,7 @@ from clearance.kernels.mesh.face_planes import plane_of, unit
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 
 UNDERFLOWN = 2.0**-400
-"""Distance at our scale below which squares underflow: 10^-180 of the polygons' size."""
+"""Distance in scaled coordinates below which squares underflow: 10^-180 of the polygons' size."""
 
 LEAST = 2.0**-1074
 """[m] The least double: half of it is lost when a tiny answer is scaled back."""
@@ -218,4 +218,4 @@ def nearest_polygons(ps: Floats3, qs: Floats3, answers: PolygonPairAnswers):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`; all arrays contiguous and writable."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
     nearest_each(ps, qs, lend(a_p), lend(b_q), new_exact_scratch(), answers)
-    a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here
+    a_p.blunt[0] = b_q.blunt[0] = 0.0  # so both surfaces exist until here

@@ -1,8 +1,8 @@
 """A proven lower bound on the distance of two bodies that move, or that have errors: under a displacement.
 
-A node pair is done if its bound is above the target: the least distance that occurs, less an allowed gap.
-Two faces are bounded along the direction of their nearest points. Where that is far below what occurs, they are
-cut into pieces. Not for: which bodies and moments are asked, and halving intervals.
+A node pair is done once its bound exceeds the target: the least distance that occurs, less an allowed gap. Two
+faces are bounded along the direction of their nearest points. Where the bound is far below the distance that
+occurs, they are cut into pieces. Not for: choosing bodies and moments, and halving intervals.
 """
 
 import math
@@ -12,8 +12,8 @@ from clearance.compile.decorators import inline
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, move_back, row
 from clearance.kernels.features.bounds import (
-    direction_beside,
     direction_between,
+    direction_outward,
     lower_bound_faces_along_direction,
     margin_of,
 )
@@ -38,16 +38,16 @@ from clearance.kernels.search.displacement import (
     movement_of_point_in_search,
     prepare_along,
 )
-from clearance.kernels.search.front import forget, keep
+from clearance.kernels.search.front import LENGTH, forget_front, update_front
 from clearance.kernels.search.node_pairs import Views, views_along
 from clearance.kernels.search.pieces import bound_of_pieces
 
 FINEST_GAP = 1e-3
-"""The share of the asked gap beyond which a limit that is touched is left undecided."""
+"""Least share of the allowed gap: a limit nearer than that to the least distance stays undecided."""
 
 STILL = 0.25
-"""Where motion moves less than this share of the gap and the target is missed, errors or rounding are to blame:
-halving cannot help, and the bound stands as it is."""
+"""If the motion is less than this share of the gap and the target is missed, errors or rounding are the cause.
+Halving cannot help then, and the bound stays as it is."""
 
 CHAIN_SLACK = 8.0
 """Rounding slacks of a body pair that cover poses computed along a chain of links as well."""
@@ -56,46 +56,47 @@ FINEST = 1e-9
 """[m] No face pair is cut for less."""
 
 AS_NEAR = 0.9
-"""Faces that are seen to be farther apart than this share of the nearest so far are not the nearest ones."""
+"""Faces with a greater bound than this share of the nearest distance so far are not the nearest ones."""
 
 FIRST_FACES = 3
-"""Face pairs that a search measures, whatever is seen beside them: what occurs is below."""
+"""A search measures this many face pairs without trying another direction first."""
 
 FACES = 8
-"""As many groups of nodes take as long as two faces."""
+"""Two faces cost as much as this many groups of nodes."""
 
 GOING_ON, GIVEN_UP, IN_CONTACT = range(3)
 
 
-class Goal(NamedTuple):
-    """What is to be proven of a pair.
+class ProofGoal(NamedTuple):
+    """The bound to prove for a pair.
 
     Attributes:
-        target: [m] what stays above it is done. least: [m] the least that is known to occur.
-        gap: [m] how far the bound over an interval may stay below what occurs, 0 at a step. fail: [m] the limit.
-        thin: [m] balls and surfaces about both bodies: the search is of what they are about.
-        is_step: True where all stands: then the bound is never given up.
-        ends_in_contact: True where bodies that meet leave nothing to prove.
-        exact_visits: at a step, as many visits are made before what is `refined` below what occurs is enough.
-        refined: that share of what errors take there.
+        target: [m] a node pair with a greater bound is done. least: [m] the least distance known to occur.
+        gap: [m] allowed between the bound over an interval and the distance that occurs; 0 at a step.
+        fail: [m] the limit.
+        skin: [m] radii of balls and surface errors of both bodies; the search ignores them, the result does not.
+        is_step: True for a moment without motion: then the search is never given up.
+        ends_in_contact: True if the proof ends where bodies meet.
+        exact_visits: at a step, after this many visits a bound is enough that is low by `refined`.
+        refined: that share of the loss by errors at the nearest points.
     """
 
     target: float
     least: float
     gap: float
     fail: float
-    thin: float
+    skin: float
     is_step: bool
     ends_in_contact: bool
     exact_visits: int
     refined: float
 
 
-class Start(NamedTuple):
-    """Where a search begins (frame of a): nearest points that are known, or two that differ along a direction.
+class ProofStart(NamedTuple):
+    """Where a search begins (frame of a): known nearest points, or any two points along a direction.
 
     Attributes:
-        gap: [m] no less than their distance where they are known to be the nearest of two faces, else infinite.
+        gap: [m] an upper bound on their distance if they are nearest points of two faces, else infinite.
     """
 
     p: Vec3
@@ -106,13 +107,13 @@ class Start(NamedTuple):
 
 
 class ProofSearch(NamedTuple):
-    """What a search has come to, without what is about the bodies.
+    """The state of a search, without the skin of the bodies.
 
     Attributes:
         views: along `direction_of_search`. u: the direction of the nearest points seen (frame of a).
-        nearest: [m] the distance of those. face_a, face_b: they are on these, or -1.
-        lower_bound: [m] of the faces visited. target, least: [m] as in `Goal`. enough: [m] at a step, what is
-            a share of what errors take below what occurs.
+        nearest: [m] the distance of these points. face_a, face_b: their faces, or -1.
+        lower_bound: [m] of the faces visited. target, least: [m] as in `ProofGoal`. enough: [m] at a step, the
+            bound that is enough after many visits.
         n_faces: face pairs measured. n_cut: those cut into pieces. state: `GOING_ON`, `GIVEN_UP`, `IN_CONTACT`.
     """
 
@@ -131,14 +132,14 @@ class ProofSearch(NamedTuple):
 
 
 class Proof(NamedTuple):
-    """What is proven of a pair.
+    """The result of a proof.
 
     Attributes:
-        lower_bound: [m] proven, if the search was completed. least: [m] the least seen to occur, or as asked.
-        enough: [m] at a step, what is as good as that.
-        is_complete: False where the target cannot be proven without a shorter interval. in_contact: True where
-            bodies meet and nothing is left to prove.
-        u: the direction of the nearest points seen (frame of a). face_a, face_b: they are on these, or -1.
+        lower_bound: [m] proven, if the search was completed. least: [m] the least distance seen, or the given one.
+        enough: [m] at a step, a bound as good as that.
+        is_complete: False if only a shorter interval can prove the target. in_contact: True if bodies meet, which
+            ends the proof.
+        u: the direction of the nearest points seen (frame of a). face_a, face_b: their faces, or -1.
         n_nodes, n_faces, n_cut: node pairs bounded, face pairs measured and cut.
     """
 
@@ -157,7 +158,7 @@ class Proof(NamedTuple):
 
 @inline
 def allowed_gap(least, gap, fail):
-    """[m] how far below the least distance seen a bound may stay: less where that leaves `fail` undecided."""
+    """[m] the gap allowed between the least distance seen and a bound; less where `fail` would stay undecided."""
     if least < fail:
         return gap
     return max(min(gap, 0.5 * (least - fail)), gap * FINEST_GAP)
@@ -176,21 +177,21 @@ def _(search: ProofSearch, goal, n_nodes):
 
 
 @inline(force=True)
-def _near_by(taken, goal):
-    """[m] how far below what occurs a bound at a step may stay, where errors take so much."""
-    return max(FINEST, goal.refined * taken)
+def _near_by(loss, goal):
+    """[m] the gap allowed at a step, for a loss by errors."""
+    return max(FINEST, goal.refined * loss)
 
 
 @inline(force=True)
-def _with_value(search, value, taken, goal):
-    """A search that has seen what occurs [m], of which errors take so much; that moves the target."""
+def _with_value(search, value, loss, goal):
+    """A search after it has seen a distance that occurs [m], with its loss by errors; that lowers the target."""
     target, least, enough, state = search.target, search.least, search.enough, search.state
     if goal.is_step:
-        enough = min(enough, value - _near_by(taken, goal))
+        enough = min(enough, value - _near_by(loss, goal))
     elif value < least:
-        target = min(target, value - allowed_gap(value - goal.thin, goal.gap, goal.fail))
+        target = min(target, value - allowed_gap(value - goal.skin, goal.gap, goal.fail))
     least = min(least, value)
-    if goal.ends_in_contact and goal.thin > 0.0 and least <= goal.thin:
+    if goal.ends_in_contact and goal.skin > 0.0 and least <= goal.skin:
         state = IN_CONTACT
     return ProofSearch(
         search.views, search.u, search.nearest, search.face_a, search.face_b, search.lower_bound,
@@ -200,7 +201,7 @@ def _with_value(search, value, taken, goal):
 
 @inline(force=True)
 def _with_bound(search, bound, state, n_faces, n_cut, goal):
-    """A search that has bounded two faces [m]; at a step that moves the target."""
+    """A search after it has bounded two faces [m]; at a step that lowers the target."""
     target = min(search.target, bound) if goal.is_step else search.target
     return ProofSearch(
         search.views, search.u, search.nearest, search.face_a, search.face_b,
@@ -211,7 +212,7 @@ def _with_bound(search, bound, state, n_faces, n_cut, goal):
 
 @inline(force=True)
 def _towards(search, direction, length, faces, displacement):
-    """A search that sees along the prepared direction of nearer points than before."""
+    """A search after it has found nearer points, along the prepared direction."""
     views = views_along(direction_of_search(displacement, direction), faces.frames.m)
     return ProofSearch(
         views, direction.u, length, faces.a, faces.b, search.lower_bound, search.target,
@@ -220,10 +221,10 @@ def _towards(search, direction, length, faces, displacement):
 
 
 class _Faces(NamedTuple):
-    """Two faces whole: [m] a bound under the displacement, and one on their distance, along one direction."""
+    """Bounds on two whole faces along one direction [m]: under the displacement, and without it."""
 
     bound: float
-    apart: float
+    separation: float
 
 
 @inline(force=True)
@@ -278,44 +279,44 @@ def _movement_of_face(surface, face, side, displacement):
 
 @inline
 def _movement_of_both(faces, displacement):
-    """[m] how far two faces come together at most."""
+    """[m] the most by which two faces come nearer."""
     moved = _movement_of_face(faces.surface_a, faces.a, 0, displacement)
     return moved + _movement_of_face(faces.surface_b, faces.b, 1, displacement)
 
 
 class _Effect(NamedTuple):
-    """Two points: [m] what errors take of their distance, and what motion takes beside them."""
+    """The loss at two points [m]: by errors, and by motion alone."""
 
-    taken: float
+    loss: float
     motion: float
 
 
 @inline
 def _effect_at(p, q, direction, m, displacement, goal):
-    """What is taken at two points (frame of a), along the prepared direction."""
+    """The loss at two points (frame of a), along the prepared direction."""
     u, v, q = direction.u, direction.v, move_back(m, q)
     whole = movement_of_point_along(displacement, p, 0, u)
     whole += movement_of_point_along(displacement, q, 1, v)
     if goal.is_step:
         return _Effect(whole, 0.0)
-    taken = errors_of_point_along(displacement, p, 0, u)
-    taken += errors_of_point_along(displacement, q, 1, v)
-    return _Effect(taken, max(0.0, whole - taken))
+    loss = errors_of_point_along(displacement, p, 0, u)
+    loss += errors_of_point_along(displacement, q, 1, v)
+    return _Effect(loss, max(0.0, whole - loss))
 
 
 @inline
-def _beside(search, faces, known, displacement):
-    """([m] a bound on two faces along a direction in which they are probably apart, True if they may be nearest).
+def _bound_outward(search, faces, known, displacement):
+    """([m] a bound on two faces along the outward direction, True if they may be the nearest).
 
     Args:
         known: [m] a bound on them.
     """
     a, b = faces.surface_a, faces.surface_b
-    direction = direction_beside(a, faces.a, b, faces.b, faces.frames.m, search.views.b.m)
-    apart = lower_bound_faces_along_direction(a, faces.a, b, faces.b, direction)
-    apart -= displacement.slack
-    is_near = apart < AS_NEAR * search.nearest
-    if apart <= known:  # a displacement only takes of it
+    direction = direction_outward(a, faces.a, b, faces.b, faces.frames.m, search.views.b.m)
+    separation = lower_bound_faces_along_direction(a, faces.a, b, faces.b, direction)
+    separation -= displacement.slack
+    is_near = separation < AS_NEAR * search.nearest
+    if separation <= known:  # a displacement only lowers it
         return known, is_near
     prepare_along(displacement, direction)
     return max(known, _along(faces, direction, displacement).bound), is_near
@@ -326,7 +327,7 @@ def _(search: ProofSearch, faces, bound, cut, displacement, goal, n_waiting, scr
     bound = max(bound, _in_search(faces, search.views.a.direction, displacement))
     is_near = False
     if bound <= cut and search.n_faces >= FIRST_FACES:
-        bound, is_near = _beside(search, faces, bound, displacement)
+        bound, is_near = _bound_outward(search, faces, bound, displacement)
     if bound > cut and not is_near:
         return _with_bound(search, bound, GOING_ON, 0, 0, goal)
     return _measured(search, faces, bound, displacement, goal, scratch)
@@ -343,7 +344,7 @@ def _meet(faces, margin, scratch):
 
 @inline
 def _measured(search, faces, bound, displacement, goal, scratch):
-    """The search after two faces that are measured."""
+    """The search after it has measured two faces."""
     a, b, m = faces.surface_a, faces.surface_b, faces.frames.m
     margin = margin_of(displacement.slack)
     near = nearest_of_faces(a, faces.a, b, faces.b, m, margin, nothing_yet(math.inf)).best
@@ -351,26 +352,26 @@ def _measured(search, faces, bound, displacement, goal, scratch):
     prepare_along(displacement, direction)
     whole = _along(faces, direction, displacement)
     length = math.sqrt(near.gap_sq)
-    if whole.apart <= 0.0 and goal.ends_in_contact and _meet(faces, margin, scratch):
+    if whole.separation <= 0.0 and goal.ends_in_contact and _meet(faces, margin, scratch):
         search = _towards(search, direction, length, faces, displacement)
         return _with_bound(search, 0.0, IN_CONTACT, 1, 0, goal)
-    if whole.apart <= 0.0 and not goal.ends_in_contact:  # they may touch
+    if whole.separation <= 0.0 and not goal.ends_in_contact:  # they may touch
         moved = _movement_of_both(faces, displacement)
         search = _with_value(search, -moved, moved, goal)
         return _with_bound(search, max(bound, -moved), GOING_ON, 1, 0, goal)
     bound = max(bound, whole.bound)
     point = _effect_at(near.p, near.q, direction, m, displacement, goal)
-    value = length + margin - point.taken
+    value = length + margin - point.loss
     if length < search.nearest:
         search = _towards(search, direction, length, faces, displacement)
-    search = _with_value(search, value, point.taken, goal)
+    search = _with_value(search, value, point.loss, goal)
     if bound < search.target:
-        bound = max(bound, whole.apart - _movement_of_both(faces, displacement))
-    wanted, allowed = search.target, _near_by(point.taken, goal)
+        bound = max(bound, whole.separation - _movement_of_both(faces, displacement))
+    wanted, allowed = search.target, _near_by(point.loss, goal)
     if goal.is_step:
         wanted = min(wanted, search.enough)
     else:
-        allowed = allowed_gap(search.least - goal.thin, goal.gap, goal.fail)
+        allowed = allowed_gap(search.least - goal.skin, goal.gap, goal.fail)
     state, n_cut = GOING_ON, 0
     if bound < wanted:
         still = goal.is_step or is_nearly_still(displacement, point.motion, STILL * allowed)
@@ -378,7 +379,7 @@ def _measured(search, faces, bound, displacement, goal, scratch):
             n_cut = 1
             cut = bound_of_pieces(faces, displacement, bound, wanted, allowed, scratch.pieces)
             bound = max(bound, cut.lower_bound)
-            search = _with_value(search, cut.least + margin, point.taken, goal)
+            search = _with_value(search, cut.least + margin, point.loss, goal)
         if bound < search.target and not still:
             state = GIVEN_UP
     return _with_bound(search, bound, state, 1, n_cut, goal)
@@ -386,59 +387,59 @@ def _measured(search, faces, bound, displacement, goal, scratch):
 
 @inline
 def _begin(start, m, displacement, goal):
-    """A search that has seen nothing but its start."""
+    """A search at its start."""
     direction = direction_between(start.p, start.q, m)
     prepare_along(displacement, direction)
     views = views_along(direction_of_search(displacement, direction), m)
     search = ProofSearch(
-        views, direction.u, start.gap, start.face_a, start.face_b, math.inf, goal.target + goal.thin,
-        goal.least + goal.thin, math.inf, 0, 0, GOING_ON,
+        views, direction.u, start.gap, start.face_a, start.face_b, math.inf, goal.target + goal.skin,
+        goal.least + goal.skin, math.inf, 0, 0, GOING_ON,
     )  # fmt: skip
     if start.gap == math.inf:
         return search
-    taken = _effect_at(start.p, start.q, direction, m, displacement, goal).taken
-    return _with_value(search, start.gap - taken, taken, goal)
+    loss = _effect_at(start.p, start.q, direction, m, displacement, goal).loss
+    return _with_value(search, start.gap - loss, loss, goal)
 
 
 @inline(force=True)
-def _without(length, thin):
-    """[m] a bound without what is about the bodies, and without the rounding of that."""
-    return length - thin - 2.0**-50 * (abs(length) + thin) if thin > 0.0 else length
+def _without_skin(length, skin):
+    """[m] a bound less the skin of the bodies, rounded down."""
+    return length - skin - 2.0**-50 * (abs(length) + skin) if skin > 0.0 else length
 
 
 @inline
 def prove(roots, displacement, start, goal, front, scratch):
-    """A lower bound on the distance of two bodies under a displacement, within what the goal allows.
+    """A lower bound on the distance of two bodies under a displacement, as close as the goal asks.
 
-    It is given up where that cannot be proven and a shorter interval would help.
+    The proof is given up where only a shorter interval can complete it.
 
     Args:
         roots: of the bodies' trees, of surfaces in which every face owns all its features, so that a face pair is
-            seen whole. start: a `Start`. goal: a `Goal`.
-        front: a `PairFront`; it is not gone on from, and not kept, where `moved` is infinite.
+            measured completely. start: a `ProofStart`. goal: a `ProofGoal`.
+        front: a `PairFront`; it is neither read nor updated where `moved` is infinite.
     """
     search = _begin(start, roots.frames.m, displacement, goal)
     fronts, pair, moved = front.fronts, front.pair, front.moved
     put_roots(roots, -math.inf, scratch)
     queue = NodeQueue(0, 1, 0, math.inf)
-    if moved < math.inf and fronts.spans[pair, 1] > 0:
+    if moved < math.inf and fronts.spans[pair, LENGTH] > 0:
         cut = cut_of(search, goal, 0)
         queue = from_front(roots, search.views, displacement, cut, front, scratch)
     found = descend(roots, displacement, search, goal, queue, moved, scratch)
     search = found.search
-    lower_bound = _without(min(found.lower_bound, search.lower_bound), goal.thin)
-    least = search.least - goal.thin if search.least < goal.least + goal.thin else goal.least
+    lower_bound = _without_skin(min(found.lower_bound, search.lower_bound), goal.skin)
+    least = search.least - goal.skin if search.least < goal.least + goal.skin else goal.least
     if search.state == IN_CONTACT:
         lower_bound, least = 0.0, 0.0
     if search.state == GIVEN_UP:
         lower_bound = -math.inf
     if moved < math.inf and search.state != GOING_ON:
-        forget(fronts, pair)
+        forget_front(fronts, pair)
     elif moved < math.inf:
-        left, bounds = scratch.left, scratch.lower_bounds
-        keep(fronts, pair, queue.n_kept, left, bounds, found.n_left)
+        entries, bounds = scratch.entries, scratch.lower_bounds
+        update_front(fronts, pair, queue.n_retained, entries, bounds, found.n_fresh)
     return Proof(
-        lower_bound, least, search.enough - goal.thin, search.state != GIVEN_UP,
+        lower_bound, least, search.enough - goal.skin, search.state != GIVEN_UP,
         search.state == IN_CONTACT, search.u, search.face_a, search.face_b, found.n_nodes,
         search.n_faces, search.n_cut,
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""Scratch of one search at a time, and how node pairs wait in it."""
+"""Scratch memory of one search at a time, and its queue of node pairs."""
 
 from typing import NamedTuple
 
@@ -13,16 +13,16 @@ from clearance.kernels.search.front import LONGEST
 from clearance.kernels.search.pieces import TrianglePairs, new_pieces
 
 STACK_DEPTH = WIDTH * LONGEST + 4096
-"""Node pairs that can wait: all of a front, and three for each opening, so three times the depths of both trees;
-those of a million faces split at the mean are below 100 deep, and `descend` checks."""
+"""Capacity of the queue: all node pairs of a front, and three for each opening: three times the depths of both
+trees. Trees of a million faces split at the mean are below 100 deep, and `descend` checks."""
 
 
 class Scratch(NamedTuple):
-    """Arrays for what waits, for pieces of faces and for exact arithmetic, reused between queries."""
+    """Arrays for queues, pieces of faces and exact arithmetic, reused between queries."""
 
     nodes: Shorts2  # (STACK_DEPTH, 2) int32
     bounds: Floats  # (STACK_DEPTH,)
-    left: Shorts2  # (LONGEST + 2, 3) int32, entries of a front that were left
+    entries: Shorts2  # (LONGEST + 2, 3) int32, new entries of a front; also lists of nodes
     lower_bounds: Floats  # (LONGEST + 2,)
     waiting: RefineQueue
     exact: ExactScratch
@@ -45,14 +45,14 @@ def new_scratch():
 
 @inline(force=True)
 def copy(scratch, i, k):
-    """Lets what waits at place `i` wait at place `k` too."""
+    """Copies the waiting node pair at place `i` to place `k`."""
     scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[i, 0], scratch.nodes[i, 1]
     scratch.bounds[k] = scratch.bounds[i]
 
 
 @inline(force=True)
 def swap(scratch, i, k):
-    """Lets what waits at two places change them."""
+    """Swaps the waiting node pairs at two places."""
     nodes, bounds = scratch.nodes, scratch.bounds
     nodes[i, 0], nodes[k, 0] = nodes[k, 0], nodes[i, 0]
     nodes[i, 1], nodes[k, 1] = nodes[k, 1], nodes[i, 1]
@@ -60,15 +60,15 @@ def swap(scratch, i, k):
 
 
 @inline(force=True)
-def require_room(n_waiting):
-    """Asserts that there is room for a group of node pairs beside those that wait."""
+def require_capacity(n_waiting):
+    """Asserts that a group of node pairs more can wait."""
     if n_waiting + WIDTH > STACK_DEPTH:
-        raise AssertionError("no room for what waits")
+        raise AssertionError("too many node pairs wait")
 
 
 @inline(force=True)
 def wait(scratch, n_waiting, node_a, node_b, bound, first):
-    """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
+    """Queues a node pair among those from place `first` on, the nearest last; how many wait."""
     k = n_waiting
     while k > first and scratch.bounds[k - 1] < bound:
         copy(scratch, k - 1, k)

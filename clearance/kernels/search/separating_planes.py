@@ -1,13 +1,13 @@
-"""Separating planes of two bodies: a proof of how far apart they are where their convex hulls are as far apart.
+"""Separating planes of two bodies: a proof of their distance, where their convex hulls are as far from each other.
 
-Along a unit vector u no points of the bodies are nearer than the least height of b less the greatest of a. Each
-is found in one tree by itself, not in pairs of nodes. Where the planes are as far apart as the nearest points of
-the faces that touch them, nothing else is as near. The direction is that of the nearest points of the hulls: GJK,
-from the points that were nearest before. Not for: bodies that are farther apart than their hulls (`descent`).
+Along a unit vector u, no points of the bodies are nearer than the least height of b less the greatest of a. Each
+is found in one tree by itself, not in pairs of nodes. If the planes are as far from each other as the nearest
+points of the faces that touch them, nothing else is as near. The direction is that of the nearest points of the
+hulls: GJK, from the points that were nearest before. Not for: bodies whose hulls are nearer (`descent`).
 
-Faces that touch the planes are left out only where they look elsewhere (`support`). Let d be the distance and f
-that of the planes. The nearest points are seen along w with u . w >= f / d, so |u - w|^2 <= 2 (d - f) / d. That is
-less than `TILT`^2, since d - f is less than the room that is left, and the room less than `TILTED` of d.
+Faces that touch the planes are skipped only where they are turned away (`support`). Let d be the distance and f
+that of the planes. The nearest points lie along w with u . w >= f / d, so |u - w|^2 <= 2 (d - f) / d. This is less
+than `TILT`^2, since d - f is less than the tolerance, and the tolerance less than `TILTED` of d.
 
 Source: Gilbert, Johnson, Keerthi, A fast procedure for computing the distance between complex objects, 1988.
 """
@@ -27,29 +27,29 @@ from clearance.kernels.search.scratch import Scratch
 from clearance.kernels.search.support import TILT, SupportPoint, high_corner, top_of
 
 TURNS = 24
-"""Directions that are tried at most."""
+"""Most directions to try."""
 
 TOUCHING, TOUCHING_PAIRS = 24, 144
-"""Faces of each body that may touch the planes, and pairs of them; more take longer than to search."""
+"""Most faces of each body that touch the planes, and most pairs of them; with more a descent is quicker."""
 
 LESS = 0.5
-"""Share of the distance of the points that were nearest. Where hulls come nearer than that, the bodies are most
-likely farther apart than their hulls."""
+"""Share of the distance of the points that were nearest. Hulls nearer than that are most likely nearer than the
+bodies."""
 
 CLOSE = 2.0**-30
-"""Share of the distance by which faces may stay behind the planes and are looked at all the same."""
+"""Faces behind the planes by up to this share of the distance still count as touching."""
 
 TILTED = 0.25 * TILT * TILT
-"""Share of the distance that the room behind the planes must be less than."""
+"""Greatest tolerance behind the planes, as a share of the distance."""
 
 
 class SeparatingPlanes(NamedTuple):
-    """What two planes say.
+    """The result of seeking planes.
 
     Attributes:
-        lower_bound: [m] proven: no points are nearer; -inf if nothing is said.
-        beyond: [m] proven: no points of other faces than those that wait are nearer.
-        n_waiting: pairs of leaves that wait. n_nodes: nodes that were bounded.
+        lower_bound: [m] proven for the bodies; -inf if no planes were found.
+        beyond: [m] proven for all faces that do not wait.
+        n_waiting: pairs of leaves that wait. n_nodes: nodes bounded.
         face_a, face_b: faces that touch the planes.
     """
 
@@ -66,7 +66,7 @@ NOT_SEPARATED = SeparatingPlanes(-math.inf, -math.inf, 0, 0, -1, -1)
 
 @inline(force=True)
 def _nearest_on_edge(p, q):
-    """(the point of an edge nearest to the origin, True for each end that it is of)."""
+    """(the point of an edge nearest to the origin, True for each end that supports it)."""
     inside, x = foot_inside(Vec3(0.0, 0.0, 0.0), p, q)
     if inside:
         return x, True, True
@@ -77,7 +77,7 @@ def _nearest_on_edge(p, q):
 
 @inline(force=True)
 def _nearest_on_triangle(a, b, c):
-    """(the point of a triangle nearest to the origin, True for each corner that it is of): Ericson 2005, 5.1.5."""
+    """(the point of a triangle nearest to the origin, True for each supporting corner): Ericson 2005, 5.1.5."""
     ab, ac = sub(b, a), sub(c, a)
     n = cross(ab, ac)
     size = dot(n, n)
@@ -100,8 +100,8 @@ def _nearest_on_triangle(a, b, c):
 
 
 @inline(force=True)
-def _kept(p, q, r, of_p, of_q, of_r):
-    """Those of three points that are kept, in front: (how many, three points)."""
+def _remaining(p, q, r, of_p, of_q, of_r):
+    """The supporting ones of three points first: (how many, three points)."""
     if not of_q:
         q = r
     if not of_p:
@@ -111,9 +111,10 @@ def _kept(p, q, r, of_p, of_q, of_r):
 
 @inline(force=True)
 def _nearest_with(n, p, q, r, w):
-    """The point nearest to the origin of a simplex of `n` points, 1 to 3, and a new one; the points that it is of.
+    """The point nearest to the origin of a simplex of `n` points, 1 to 3, and a new one, with its supporting
+    points.
 
-    Of four points it is that of the three triangles with the new one. Returns (it, how many, three points).
+    With four points the nearest of the three triangles at the new one. Returns (it, how many, three points).
     """
     if n == 1:
         q = p
@@ -126,19 +127,19 @@ def _nearest_with(n, p, q, r, w):
         other, of_0, of_1, of_2 = _nearest_on_triangle(q, r, w)
         if dot(other, other) < dot(near, near):
             near, of_p, of_q, of_w, first, second = other, of_0, of_1, of_2, q, r
-    n, p, q, r = _kept(first, second, w, of_p, of_q, of_w)
+    n, p, q, r = _remaining(first, second, w, of_p, of_q, of_w)
     return near, n, p, q, r
 
 
 @inline(force=True)
 def _let_wait(n_a, n_b, lower_bound, scratch):
-    """Lets each pair of the leaves in both columns of `scratch.left` wait; how many they are."""
+    """Queues all pairs of the leaves in both columns of `scratch.entries`; how many they are."""
     n_waiting = 0
     for i in range(n_a):
         for k in range(n_b):
             scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = (
-                ~np.int64(scratch.left[i, 0]),
-                np.int64(scratch.left[k, 1]),
+                ~np.int64(scratch.entries[i, 0]),
+                np.int64(scratch.entries[k, 1]),
             )
             scratch.bounds[n_waiting] = lower_bound
             n_waiting += 1
@@ -160,11 +161,11 @@ class HullSimplex(NamedTuple):
 
 
 class Extremes(NamedTuple):
-    """What lies highest in both bodies along a direction, towards one another.
+    """The extremes of both bodies along a direction, towards one another.
 
     Attributes:
-        top_a, top_b: the highest corners. n_a, n_b: leaves that are as high but for the room, if asked for.
-        n_nodes: that were bounded.
+        top_a, top_b: the highest corners. n_a, n_b: leaves that are as high within the tolerance, if asked for.
+        n_nodes: nodes bounded.
     """
 
     top_a: SupportPoint
@@ -175,13 +176,15 @@ class Extremes(NamedTuple):
 
 
 @inline(force=True)
-def _extremes(a, b, roots, direction, face_a, face_b, room, scratch):
-    """The extremes of two bodies, and in `scratch.left` the leaves within `room` [m] unless that is negative."""
+def _extremes(a, b, roots, direction, face_a, face_b, tolerance, scratch):
+    """The extremes of two bodies; in `scratch.entries` the leaves within a tolerance [m] of 0 or more."""
     v = Vec3(-direction.v.x, -direction.v.y, -direction.v.z)
     n_a, n_b = 0, 0
-    if room >= 0.0:
-        top_a, n_a, nodes_a = top_of(a, roots.a, direction.u, face_a, room, TOUCHING, 0, scratch)
-        top_b, n_b, nodes_b = top_of(b, roots.b, v, face_b, room, TOUCHING, 1, scratch)
+    if tolerance >= 0.0:
+        top_a, n_a, nodes_a = top_of(
+            a, roots.a, direction.u, face_a, tolerance, TOUCHING, 0, scratch
+        )
+        top_b, n_b, nodes_b = top_of(b, roots.b, v, face_b, tolerance, TOUCHING, 1, scratch)
     else:
         top_a, nodes_a = high_corner(a, roots.a, direction.u, face_a)
         top_b, nodes_b = high_corner(b, roots.b, v, face_b)
@@ -190,7 +193,7 @@ def _extremes(a, b, roots, direction, face_a, face_b, room, scratch):
 
 @inline(force=True)
 def _with_corners(simplex, a, b, corner_a, corner_b, m):
-    """The simplex with the difference of two corners, less what its nearest point is not of."""
+    """The simplex with the difference of two corners added, reduced to its supporting points."""
     x = row(a.vertices, a.face_vertices[corner_a])
     w = sub(x, move(m, row(b.vertices, b.face_vertices[corner_b])))
     if simplex.n == 0:
@@ -205,11 +208,11 @@ def separate(
 ) -> SeparatingPlanes:
     """Seeks planes that separate the bodies by the distance of their nearest points, or by more than a limit [m].
 
-    Pairs of leaves that touch the planes wait, as those do that a front has.
+    Pairs of leaves that touch the planes wait, like those of a front.
 
     Args:
         roots: of the bodies' trees.
-        best: a hit, whose points say where to begin.
+        best: a hit; the first direction is along its points.
         slack: [m] of `rounding_slack`.
     """
     a, b = roots.surface_a, roots.surface_b
@@ -224,12 +227,12 @@ def separate(
     is_proof = simplex.n > 0
     for _ in range(TURNS):
         length = math.sqrt(dot(simplex.near, simplex.near))
-        room = 16.0 * margin + CLOSE * length
-        if not room < TILTED * length or length < LESS * expected:
+        tolerance = 16.0 * margin + CLOSE * length
+        if not tolerance < TILTED * length or length < LESS * expected:
             break
         direction = direction_between(simplex.near, origin, m)
         seen = _extremes(
-            a, b, roots, direction, face_a, face_b, room if is_proof else -1.0, scratch
+            a, b, roots, direction, face_a, face_b, tolerance if is_proof else -1.0, scratch
         )
         n_nodes += seen.n_nodes
         face_a, face_b = seen.top_a.face, seen.top_b.face
@@ -237,7 +240,7 @@ def separate(
             break
         lower_bound = direction.offset - seen.top_b.height - seen.top_a.height - slack
         is_as_far = (
-            simplex.n > 0 and lower_bound > 0.0 and lower_bound + room > length + 2.0 * margin
+            simplex.n > 0 and lower_bound > 0.0 and lower_bound + tolerance > length + 2.0 * margin
         )
         if not is_proof and (lower_bound > limit or is_as_far):
             is_proof = True
@@ -249,7 +252,7 @@ def separate(
                 break
             n_waiting = _let_wait(seen.n_a, seen.n_b, lower_bound, scratch)
             return SeparatingPlanes(
-                lower_bound, lower_bound + room, n_waiting, n_nodes, face_a, face_b
+                lower_bound, lower_bound + tolerance, n_waiting, n_nodes, face_a, face_b
             )
         nearer = _with_corners(simplex, a, b, seen.top_a.corner, seen.top_b.corner, m)
         if simplex.n == 0:

@@ -1,8 +1,8 @@
-"""How far a body reaches along a direction, and which of its faces do: ways down one tree.
+"""The farthest point of a body along a direction, and the faces near it: descents of one tree.
 
-A node whose faces look elsewhere holds nothing that is farthest along u: u or -u would be among the directions of
-its normal cone, for the reasons in `normal_cones`, since beyond the farthest point there is nothing, as there is
-nothing between nearest points. Not for: two trees at once (`descent`).
+A node that is turned away from u holds no farthest point along u. Otherwise u or -u would be among the directions
+of its normal cone, by the proof in `normal_cones`: nothing lies beyond a farthest point, as nothing lies between
+nearest points. Not for: two trees at once (`descent`).
 """
 
 import math
@@ -19,10 +19,10 @@ from clearance.kernels.mesh.surface import group_of, is_leaf
 from clearance.kernels.search.scratch import wait
 
 TILT = 2.0**-9
-"""[rad] Of all directions within this of the one that is asked for, what is farthest is found."""
+"""[rad] The farthest point is found for all directions within this of the given one."""
 
 UNLIKE_ANY = 2.0**-19
-"""Makes `NO_CONE`, which a node without a cone has for a sine, more than any cosine; others lose 2^-19."""
+"""Makes `NO_CONE`, the sine of a node without a cone, exceed any cosine; others lose 2^-19."""
 
 
 class SupportPoint(NamedTuple):
@@ -57,14 +57,14 @@ def _top_known(surface, face, u):
 
 @inline(force=True)
 def _heights(surface, group, u):
-    """[m] how far the boxes of a group reach along `u` at most, in lanes."""
+    """[m] the greatest heights of the boxes of a group along `u`, in lanes."""
     boxes = group_of(surface, group)
     return dot(u, boxes.centre) + box_reach(boxes, u)
 
 
 @inline(force=True)
 def _turned_away(surface, group, u):
-    """Bits of the nodes of a group that hold nothing which is farthest along a direction within `TILT` of `u`."""
+    """Bits of the nodes of a group that hold no farthest point along any direction within `TILT` of `u`."""
     cones, first = surface.cones, CONE_ROWS * group
     axis = Vec3(lanes_at(cones, first), lanes_at(cones, first + 1), lanes_at(cones, first + 2))
     cosine = lanes_at(cones, first + 3) - lanes_at(cones, first + 4) * UNLIKE_ANY
@@ -73,7 +73,7 @@ def _turned_away(surface, group, u):
 
 @inline(force=True)
 def _open(surface, node, u, least, scratch, n_waiting):
-    """Lets the children of a node wait that may reach so far [m], the highest last: (waiting, children)."""
+    """Queues the children of a node that may reach a height [m], the highest last: (waiting, children)."""
     group, count = np.int64(surface.children[node, 0]), np.int64(surface.children[node, 1])
     depths = 0.0 - _heights(surface, group, u)
     near = marks_within(depths, -least) & ((1 << count) - 1) & ~_turned_away(surface, group, u)
@@ -86,15 +86,15 @@ def _open(surface, node, u, least, scratch, n_waiting):
 
 
 @inline(force=True)
-def top_of(surface, root, u, face, room, most, column, scratch):
-    """The `SupportPoint` of a body along a unit vector `u` of its frame, and the leaves that come near it.
+def top_of(surface, root, u, face, tolerance, most, column, scratch):
+    """The `SupportPoint` of a body along a unit vector `u` of its frame, and the leaves near it.
 
     Args:
         face: where to begin, or -1.
-        room: [m] how far below the top leaves are near; more than rounding.
-        most: of these are written at most, into a column of `scratch.left`; if there are more, it says one more.
+        tolerance: [m] how far below the top a leaf is still near; more than rounding.
+        most: leaves to write into a column of `scratch.entries`; one more is counted where there are more.
 
-    Returns: (the `SupportPoint`, how many leaves, nodes that it took). Some of the leaves may be lower.
+    Returns: (the `SupportPoint`, how many leaves, nodes visited). Some of the leaves may be lower.
     """
     top = _top_known(surface, face, u)
     scratch.nodes[0, 0], scratch.bounds[0] = root, -math.inf
@@ -102,28 +102,28 @@ def top_of(surface, root, u, face, room, most, column, scratch):
     while n_waiting > 0:
         n_waiting -= 1
         node = np.int64(scratch.nodes[n_waiting, 0])
-        if -scratch.bounds[n_waiting] < top.height - room:
+        if -scratch.bounds[n_waiting] < top.height - tolerance:
             continue
         if not is_leaf(surface, node):
-            n_waiting, count = _open(surface, node, u, top.height - room, scratch, n_waiting)
+            n_waiting, count = _open(surface, node, u, top.height - tolerance, scratch, n_waiting)
             n_nodes += count
             continue
         found = _top_of_face(surface, np.int64(surface.children[node, 0]), u)
-        if found.height < top.height - room:
+        if found.height < top.height - tolerance:
             continue
         if found.height > top.height:
-            if found.height - room > top.height:
+            if found.height - tolerance > top.height:
                 n_found = 0
             top = found
         if n_found <= most:
-            scratch.left[n_found, column] = node
+            scratch.entries[n_found, column] = node
             n_found += 1
     return top, n_found, n_nodes
 
 
 @inline(force=True)
 def high_corner(surface, root, u, face):
-    """A corner that is high along `u`, perhaps not the `SupportPoint`; the nodes on the one way down to it."""
+    """A corner that is high along `u`, perhaps not the `SupportPoint`; the nodes on the one path down to it."""
     top = _top_known(surface, face, u)
     node, n_nodes = np.int64(root), 1
     while not is_leaf(surface, node):

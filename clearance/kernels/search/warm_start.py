@@ -1,4 +1,4 @@
-"""Warm start: where a search that knows nothing yet looks first, pairs of faces that are probably near."""
+"""Warm start: the first visits of a search without earlier results, to face pairs that are probably near."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from clearance.kernels.search.node_pairs import between_centres, opened, pair_in
 from clearance.kernels.search.scratch import copy, wait
 
 WARM_STARTS = 5
-"""Node pairs that a search which knows nothing yet follows down to faces before it begins at the roots."""
+"""Node pairs to follow down to faces before the search begins at the roots."""
 
 
 @inline(force=True)
@@ -26,11 +26,11 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
 
 @inline
 def warm_start(a, b, roots, views, scratch):
-    """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
+    """Queues a few pairs of leaves above the pair of roots: those with the nearest centres, level by level.
 
-    They wait as what the front has, since they are met again from the roots. Their bound is the distance of the
-    centres, which may be too much; a pair that is passed over for it is met there too.
-    Returns (waiting, node pairs seen).
+    They wait like entries of a front, since the descent from the roots meets them again. Their bound is the
+    distance of the centres, which may be too great; a pair skipped for it is met again as well.
+    Returns (waiting, node pairs bounded).
     """
     nodes, bounds = scratch.nodes, scratch.bounds
     n_nodes = 0

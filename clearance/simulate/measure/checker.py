@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite, at
-from clearance.kernels.motion.held_scene import Scene
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
+from clearance.kernels.motion.tracked_scene import Scene
 from clearance.record.measurement import SWEEP_COUNTERS
 from clearance.record.names import pair_names
 from clearance.simulate.measure.asked_positions import AskedPositions

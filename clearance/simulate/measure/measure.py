@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.kernels.motion.sweep import sweep
-from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
+from clearance.kernels.motion.sweep_goal import FirstPass, SweepGoal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.sweep_state import NOT_LESS
 from clearance.record.measurement import SWEEP_COUNTERS, Minima
@@ -74,19 +74,19 @@ class _Sweep:
     ) -> KeptRows:
         """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
         rows = self._rows(name, len(steps))
-        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting), rows=rows)
+        self._run(name, steps, SweepGoal(np.full(self.n_pairs, within), False, lasting), rows=rows)
         return rows
 
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
         every = self.resources.rows.array(f"{name}.every", (len(steps), self.n_pairs))
-        goal = Goal(np.full(self.n_pairs, np.inf), True, False)
+        goal = SweepGoal(np.full(self.n_pairs, np.inf), True, False)
         return rows, every, self._run(name, steps, goal, rows=rows, every=every)
 
     def least_rows(self, name: str, steps: Steps, within: np.ndarray) -> Minima:
         """The least of every pair by itself, within (p,) [m]."""
-        return self._run(name, steps, Goal(within, True, True))
+        return self._run(name, steps, SweepGoal(within, True, True))
 
     def _rows(self, name: str, n_rows: int) -> KeptRows:
         array = self.resources.rows.array
@@ -100,7 +100,7 @@ class _Sweep:
     def sweep_steps(
         self,
         steps: Steps,
-        goal: Goal,
+        goal: SweepGoal,
         rows: StepRows,
         found: PairRows,
         known: np.ndarray | None = None,
@@ -115,7 +115,7 @@ class _Sweep:
         numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
         counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
-        first = FirstLook(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
+        first = FirstPass(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
         sweep(
             layout.surface,
             layout.world,
@@ -136,7 +136,7 @@ class _Sweep:
         self,
         name: str,
         steps: Steps,
-        goal: Goal,
+        goal: SweepGoal,
         *,
         rows: KeptRows | None = None,
         every: np.ndarray | None = None,
@@ -222,8 +222,8 @@ def nearest_at(what: PairsInMotion, positions: np.ndarray) -> StepRows:
         layout.surface,
         layout.world,
         SweptSteps(np.ascontiguousarray(positions), np.arange(n_rows), _NO_STEPS),
-        Goal(np.full(n_pairs, np.inf), False, False),
-        FirstLook(_NO_STEPS, FIRST_EFFORT),
+        SweepGoal(np.full(n_pairs, np.inf), False, False),
+        FirstPass(_NO_STEPS, FIRST_EFFORT),
         SweepRows(rows, _no_pair_rows(n_pairs, 0)),
         counts,
     )
@@ -255,7 +255,7 @@ def pairs_within(
         nearest: what is known of the steps, and is not measured again.
     """
     work = _Sweep(what, Resources(jobs=1))
-    goal = Goal(np.full(work.n_pairs, within * NOT_LESS), True, False)
+    goal = SweepGoal(np.full(work.n_pairs, within * NOT_LESS), True, False)
     rows, pairs, distances = [_NO_STEPS], [_NO_STEPS], [np.empty(0)]
     for span in parts(len(steps), sparse=True):
         every = np.full((span.stop - span.start, work.n_pairs), np.inf)
