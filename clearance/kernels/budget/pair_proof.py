@@ -13,9 +13,9 @@ from clearance.kernels.budget.error_rows import error_rows_of
 from clearance.kernels.budget.sweep_state import (
     BudgetScene,
     fill_body,
-    pose_of,
 )
 from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.motion.world import pose_of
 from clearance.kernels.search.carried import front_of, no_front
 from clearance.kernels.search.proof import Proof, ProofGoal, ProofStart, prove
 
@@ -45,8 +45,9 @@ def prove_pair(
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     fill_body(lent, body_a, part.half, part.number)
     fill_body(lent, body_b, part.half, part.number)
-    pose = pose_of(world, body_a, state)
-    frames = frames_of(pose, pose_of(world, body_b, state))
+    poses = state.middle.state.poses
+    pose = pose_of(world, body_a, poses)
+    frames = frames_of(pose, pose_of(world, body_b, poses))
     root_a, root_b = surface.roots[world.solids[body_a]], surface.roots[world.solids[body_b]]
     roots = PosedPair(surface, root_a, surface, root_b, frames)
     carried = state.carried

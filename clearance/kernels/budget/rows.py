@@ -44,7 +44,7 @@ from clearance.kernels.budget.reach import Ball, from_axis, reach_of_ball, resid
 from clearance.kernels.features.bounds import LEAN
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_path import OUTWARD
-from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
+from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, world_axis
 
 
 class _Chain(NamedTuple):
@@ -182,17 +182,6 @@ def _joint_origin(links, poses, i):
 
 
 @inline
-def _world_axis(links, poses, i):
-    a = links.axes[i]
-    p = poses[i]
-    return Vec3(
-        p[0, 0] * a[0] + p[0, 1] * a[1] + p[0, 2] * a[2],
-        p[1, 0] * a[0] + p[1, 1] * a[1] + p[1, 2] * a[2],
-        p[2, 0] * a[0] + p[2, 1] * a[1] + p[2, 2] * a[2],
-    )
-
-
-@inline
 def fill_rows(surface, world, body, errors, motion, poses, found):
     """Writes the rows of a body that a link carries, with the links at `poses` (links, 4, 4) [m]."""
     links, link = world.links, world.frames[body]
@@ -215,7 +204,7 @@ def fill_rows(surface, world, body, errors, motion, poses, found):
                 velocity, spin = nothing, nothing
             clock, moves, share = errors.owner[i], True, _share_of_clock(errors, motion, i)
             still = joint + share * (size - joint)
-            axis = turn_back(pose, _world_axis(links, poses, i))
+            axis = turn_back(pose, world_axis(links, poses, i))
             at = poses[i]
             origin = move_back(pose, Vec3(at[0, 3], at[1, 3], at[2, 3]))
             if links.kinds[i] == TURNING:

@@ -15,12 +15,19 @@ from clearance.kernels.arithmetic.vec3 import (
     gap_sq,
     move,
     move_back,
-    rigid,
     row,
     turn_back,
 )
 from clearance.kernels.budget.error_rows import SeenErrors
-from clearance.kernels.budget.errors import REACH, RESIDUAL, Errors, JointMotion, new_body_rows
+from clearance.kernels.budget.errors import (
+    REACH,
+    RESIDUAL,
+    REST,
+    REST_AT_REST,
+    Errors,
+    JointMotion,
+    new_body_rows,
+)
 from clearance.kernels.budget.levers import (
     UNMOVED,
     Levers,
@@ -44,7 +51,8 @@ from clearance.kernels.motion.body_boxes import (
 from clearance.kernels.motion.halving import DEPTH
 from clearance.kernels.motion.joint_motion_bound import orientation_rounding
 from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.world import World
+from clearance.kernels.motion.kinematics import copy_pose
+from clearance.kernels.motion.world import World, pose_of
 from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.carried import NO_FACE, Carried
 from clearance.kernels.search.front import POOL, Fronts, no_fronts
@@ -174,13 +182,6 @@ def begin_anew(world, state):
     state.carried.fronts.used[0] = 0
 
 
-@inline(force=True)
-def pose_of(world, body, state):
-    """The pose of a body."""
-    frame = world.frames[body]
-    return rigid(state.middle.state.poses[frame] if frame >= 0 else world.standing[body])
-
-
 @inline
 def fill_body(lent, body, half, number):
     """Writes the rows of a body about the middle, once for each number of a part."""
@@ -205,8 +206,8 @@ def fill_body(lent, body, half, number):
     if len(path.balls.links) > 0:
         box = box_of(surface, surface.roots[world.solids[body]])
         rounding = orientation_rounding(box, world.links, frame, path.balls, middle)
-        for k in range(1, 4):  # both rests and the reach
-            found.sums[body, k] += rounding
+        for column in (REST, REST_AT_REST, REACH):
+            found.sums[body, column] += rounding
         if found.sums[body, RESIDUAL] >= 0.0:
             found.sums[body, RESIDUAL] += rounding
 
@@ -218,7 +219,7 @@ def _place_body(surface, world, body, number, state):
         return
     state.placed[body] = number
     root = surface.roots[world.solids[body]]
-    place_box(surface, root, body, pose_of(world, body, state), state.boxes)
+    place_box(surface, root, body, pose_of(world, body, state.middle.state.poses), state.boxes)
 
 
 @inline(force=True)
@@ -266,7 +267,7 @@ def bound_by_boxes(lent, pair, half, number, enough):
 def start_at(lent, pair, points):
     """A start at the nearest points of a pair, (2, 3) [m] at the poses of the links."""
     asked = lent
-    pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state)
+    pose = pose_of(asked.world, asked.world.pairs[pair, 0], asked.state.middle.state.poses)
     p, q = row(points, 0), row(points, 1)
     return ProofStart(move_back(pose, p), move_back(pose, q), math.sqrt(gap_sq(p, q)), -1, -1)
 
@@ -278,7 +279,8 @@ def start_before(lent, pair):
     surface, world, state = asked.surface, asked.world, asked.state
     seen = row(state.directions, pair)
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    pose_a, pose_b = pose_of(world, body_a, state), pose_of(world, body_b, state)
+    poses = state.middle.state.poses
+    pose_a, pose_b = pose_of(world, body_a, poses), pose_of(world, body_b, poses)
     here = Vec3(0.0, 0.0, 0.0)
     if seen.x != 0.0 or seen.y != 0.0 or seen.z != 0.0:
         return ProofStart(here, turn_back(pose_a, seen), math.inf, -1, -1)
@@ -338,9 +340,7 @@ def go_on_to_step(lent, before, step):
         state.n_moves[body] += 1
     for link in range(len(poses)):
         if state.middle.marks[link, WANTED]:
-            for i in range(3):
-                for k in range(4):
-                    state.poses[link, i, k] = poses[link, i, k]
+            copy_pose(poses[link], state.poses[link])
 
 
 @inline(force=True)

@@ -27,7 +27,7 @@ from clearance.kernels.motion.interval_middle import (
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
 from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.kinematics import place_by_link
+from clearance.kernels.motion.kinematics import copy_pose, place_by_link
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 
@@ -126,19 +126,12 @@ def _halve(tree, n_leaves):
 
 
 @inline
-def _put(pose, out):
-    for i in range(4):
-        for k in range(4):
-            out[i, k] = pose[i, k]
-
-
-@inline
 def _fill_leaf(surface, world, bodies, leaf, middle, tree):
     """Writes the poses and boxes of the bodies in the middle of a leaf."""
     for column in range(len(bodies)):
         body = bodies[column]
         row = leaf * len(bodies) + column
-        _put(middle.poses[world.frames[body]], tree.poses[row])
+        copy_pose(middle.poses[world.frames[body]], tree.poses[row])
         root = surface.roots[world.solids[body]]
         place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
 

@@ -18,7 +18,6 @@ from clearance.compile.declared import Floats, Integers
 from clearance.compile.decorators import inline, kernel
 from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import Surface, box_of
 from clearance.kernels.motion.halving import DEPTH, prove_interval, prove_part
@@ -41,7 +40,7 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.kinematics import BALL
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.twist import CertificateGoal, prove_while_moving
-from clearance.kernels.motion.world import World
+from clearance.kernels.motion.world import World, pose_of
 from clearance.kernels.search.carried import (
     Carried,
     carried_bound,
@@ -140,13 +139,6 @@ def _go_on(surface, world, path, step, state):
             state.carried.moved[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)
 
 
-@inline
-def _pose_of(world, body, middle):
-    """The pose of a body in `middle`."""
-    frame = world.frames[body]
-    return rigid(middle.poses[frame] if frame >= 0 else world.standing[body])
-
-
 class MovingPair(NamedTuple):
     """A pair in the interval after a step.
 
@@ -185,8 +177,8 @@ def _(asked: MovingPair, low, high, n_parts, least, gap):
         _motion_of(asked, body_b, is_whole),
         world.frames[body_b] >= 0,
     )
-    middle = state.whole if is_whole else state.part
-    frames = frames_of(_pose_of(world, body_a, middle), _pose_of(world, body_b, middle))
+    poses = (state.whole if is_whole else state.part).poses
+    frames = frames_of(pose_of(world, body_a, poses), pose_of(world, body_b, poses))
     bodies = PosedPair(surface, world.solids[body_a], surface, world.solids[body_b], frames)
     faces, front = state.carried.faces[asked.pair], no_front(state.carried)
     aim = CertificateGoal(gap, asked.aim.fail, asked.aim.most_parts)

@@ -27,7 +27,7 @@ from clearance.kernels.arithmetic.vec3 import (
 from clearance.kernels.features.bounds import LEAN, box_reach
 from clearance.kernels.mesh.surface import box_of, corner_of
 from clearance.kernels.motion.joint_path import BALL_ROUNDING
-from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
+from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING, world_axis
 
 
 class MotionBound(NamedTuple):
@@ -79,17 +79,6 @@ def _farthest_from_axis(surface, root, pose, origin, axis):
 
 
 @inline
-def _world_axis(links, poses, link):
-    pose = poses[link]
-    x, y, z = links.axes[link, 0], links.axes[link, 1], links.axes[link, 2]
-    return Vec3(
-        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
-        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
-        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z,
-    )
-
-
-@inline
 def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_body):
     """The motion bound of a body that is fixed to `link`.
 
@@ -114,7 +103,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
         size = abs(swing[i]) + bend[i]
         if size > 0.0 and links.kinds[i] == TURNING:
             shallower = max(0.0, shallower - size)
-            axis = _world_axis(links, poses, i)
+            axis = world_axis(links, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
             arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
             rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
@@ -124,7 +113,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
         elif size > 0.0 and links.kinds[i] == SLIDING:
             rest += size * shallower + bend[i]
             moved += size
-            velocity = along(velocity, swing[i], _world_axis(links, poses, i))
+            velocity = along(velocity, swing[i], world_axis(links, poses, i))
         i = links.parents[i]
     at_origin = add(velocity, cross(spin, world_from_body.t))
     return MotionBound(

@@ -82,6 +82,26 @@ def orient(pose, quaternion, out):
     _write(_oriented(rigid(pose), quaternion, 0), out)
 
 
+@inline
+def world_axis(links, poses, link):
+    """The axis of the joint above a link in the world, with the links at `poses` (links, 4, 4)."""
+    pose = poses[link]
+    x, y, z = links.axes[link, 0], links.axes[link, 1], links.axes[link, 2]
+    return Vec3(
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z,
+    )
+
+
+@inline(force=True)
+def copy_pose(pose, out):
+    """Copies a (4, 4) pose."""
+    for i in range(4):
+        for k in range(4):
+            out[i, k] = pose[i, k]
+
+
 @inline(force=True)
 def _write(m, out):
     """Writes a motion as a (4, 4) pose."""

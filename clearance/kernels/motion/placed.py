@@ -10,7 +10,7 @@ import numpy as np
 from clearance.compile.declared import Floats3, Integers
 from clearance.compile.decorators import inline
 from clearance.kernels.features.bounds import displacement
-from clearance.kernels.motion.kinematics import NO_PARENT, place_links
+from clearance.kernels.motion.kinematics import NO_PARENT, copy_pose, place_links
 
 GROWTH = 1.0 + 1e-9
 """Covers the rounding of a sum of up to four million displacements."""
@@ -61,13 +61,6 @@ def _has_moved(before, after):
     return False
 
 
-@inline(force=True)
-def _put(pose, placed, body):
-    for i in range(4):
-        for k in range(4):
-            placed.poses[body, i, k] = pose[i, k]
-
-
 @inline
 def put_all(world, positions, placed):
     """Places every body with the joints at `positions` (columns,); this is visit 0."""
@@ -76,7 +69,8 @@ def put_all(world, positions, placed):
     place_links(world.links, positions, placed.links, placed.wanted, 0)
     for body in range(len(world.frames)):
         frame = world.frames[body]
-        _put(placed.links[frame] if frame >= 0 else world.standing[body], placed, body)
+        pose = placed.links[frame] if frame >= 0 else world.standing[body]
+        copy_pose(pose, placed.poses[body])
 
 
 @inline(force=True)
@@ -97,4 +91,4 @@ def bring(surface, world, bodies, positions, visit, placed, moved):
             moved[body] += (
                 displacement(surface, surface.roots[world.solids[body]], before, after) * GROWTH
             )
-            _put(after, placed, body)
+            copy_pose(after, before)

@@ -35,6 +35,13 @@ class World(NamedTuple):
 
 
 @inline(force=True)
+def pose_of(world, body, poses):
+    """The pose of a body as `RigidMotion`, with the links at `poses` (links, 4, 4)."""
+    frame = world.frames[body]
+    return rigid(poses[frame] if frame >= 0 else world.standing[body])
+
+
+@inline(force=True)
 def pair_frames(world, pair, poses):
     """The frames of both bodies of a pair, of `poses` (bodies, 4, 4)."""
     return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
