@@ -12,12 +12,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.load.robot.srdf import load_srdf
 from clearance.load.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot, SelfClearance

@@ -13,17 +13,17 @@ from typing import Any
 
 import inputs  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from clearance.simulate.measure.certify import certify_motion
-from clearance.simulate.measure.measure import measure
-from clearance.simulate.measure.sections import SectionPlan, section_plan
 from inputs import Solid
 from peers import Fcl, available, silenced
 
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNING
 from clearance.record.certificate import Certificate
 from clearance.record.measurement import Measurement
+from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
+from clearance.simulate.measure.sections import SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, joined_positions, link_poses_at
 from clearance.world.kinematics import values_by_link

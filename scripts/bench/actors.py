@@ -26,7 +26,6 @@ import numpy as np
 from actor_cases import CASES, PANDA, absent_robots, read, two_arms
 from actor_loops import Actors, certified_sections, loops_of, measured_sections, sections_of
 from against import rows_against
-from clearance.simulate.answers.audit.srdf import audit
 from clock import interleaved
 from peers import absent_peers, versions
 from rich.console import Console
@@ -36,6 +35,7 @@ from trajectory import steps_for
 
 import clearance as cl
 from clearance.record.audit import PairStatus
+from clearance.simulate.answers.audit.srdf import audit
 from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Clock

@@ -13,9 +13,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from clearance.simulate.measure.certify import certify_motion
-from clearance.simulate.measure.measure import measure
-from clearance.simulate.measure.sections import Section
 from clock import least_time
 from inputs import SCENES
 
@@ -25,6 +22,9 @@ from clearance.query.distance import distance
 from clearance.record.measurement import Measurement
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
+from clearance.simulate.measure.certify import certify_motion
+from clearance.simulate.measure.measure import measure
+from clearance.simulate.measure.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import (
     Budget,

@@ -32,8 +32,6 @@ from budget_samples import (
     slopes,
     surfaces_of,
 )
-from clearance.simulate.measure.measure import measure
-from clearance.simulate.measure.sections import Section
 from inputs import SCENES, SHARED
 
 import clearance as cl
@@ -42,6 +40,8 @@ from clearance.kernels.budget.sweep import BudgetRows
 from clearance.record.measurement import Measurement
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
+from clearance.simulate.measure.measure import measure
+from clearance.simulate.measure.sections import Section
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.budget import Budget
 from clearance.world.case import Case

@@ -20,8 +20,6 @@ from inputs import scene_of  # first: it sets the number of threads before numpy
 
 import numpy as np  # isort: skip
 
-from clearance.simulate.measure.certify import certify_motion
-from clearance.simulate.measure.measure import measure
 from clock import interleaved, timed
 from rich.console import Console
 from rich.table import Table
@@ -30,7 +28,9 @@ from rows import write_csv
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
+from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle

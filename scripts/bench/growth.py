@@ -20,7 +20,6 @@ from inputs import Scene, scene_from  # first: it sets the number of threads bef
 
 import numpy as np  # isort: skip
 
-from clearance.simulate.measure.measure import measure
 from clock import interleaved
 from rich.console import Console
 from rich.table import Table
@@ -30,6 +29,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
 from clearance.simulate.measure.layout import PairsInMotion, lay_out
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from tests.made_cases import arm_among_obstacles
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
-from clearance.simulate.measure.measure import measure
 from inputs import Scene
 from peers import Coal, CoalShapes, Fcl, FclShapes, Klampt, PairPeer, available, silenced
 
 from clearance.crosscheck.peer_run import greatest_displacements
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 
 SLACK = 0.02

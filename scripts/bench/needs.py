@@ -21,13 +21,13 @@ from rows import write_csv
 
 import numpy as np  # isort: skip
 
-from clearance.simulate.measure.certify import certify_motion
-from clearance.simulate.measure.measure import NEEDS, measure
 from clock import geometric_mean
 from loops import AllPairs
 from peers import Fcl, available
 
+from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import NEEDS, measure
 from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 

@@ -20,11 +20,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
-from clearance.simulate.measure.clocks.unsynchronised import (
-    UnsynchronisedAnswers,
-    least_unsynchronised,
-)
 from inputs import SHARED
 from rich.console import Console
 from rich.table import Table
@@ -34,6 +29,11 @@ from clearance.load.files.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot.formats import read_robot
 from clearance.load.robot.request import RobotRequest
+from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
+from clearance.simulate.measure.clocks.unsynchronised import (
+    UnsynchronisedAnswers,
+    least_unsynchronised,
+)
 from clearance.simulate.measure.resources import Resources
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses

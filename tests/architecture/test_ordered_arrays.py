@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.certify import path_of
 
 import clearance as cl
 from clearance.geometry.tree import join, surface_of
 from clearance.ordered import ascending, parents_first
 from clearance.planar.assembly import assembled
+from clearance.simulate.measure.certify import path_of
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import all_links, standing_link
 from clearance.world.motion import kinematic_motion

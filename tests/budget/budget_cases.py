@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
+from clearance.simulate.measure.measure import measure
 from clearance.world.body import Body, Obstacle
 from clearance.world.budget import (
     Budget,

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.budget.expected import deviations, expected_of_steps, witness_of
 from clearance.budget.sources import slopes, units_of
 from clearance.report.tolerances import least_expected
+from clearance.simulate.measure.measure import measure
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
 from tests.oracle.perturbed import Perturbed, Size, sizes

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
+from clearance.simulate.measure.measure import measure
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.mount import Mount

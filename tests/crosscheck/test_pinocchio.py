@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.load.robot.srdf import load_srdf
 from clearance.load.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.collision_matrix import NEVER

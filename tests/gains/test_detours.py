@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.point_motion import moves_apart
 
 import clearance as cl
 from clearance.gains.obstruction import NOT_MOVED
 from clearance.gains.search import FINE
+from clearance.simulate.answers.point_motion import moves_apart
 from clearance.world.pairs import OBSTACLE, BodyIndex, Pair
 from tests.gains.gantries import along_x, gantry, standing
 

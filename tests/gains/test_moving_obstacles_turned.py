@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.approaches import approaches
 
 import clearance as cl
 from clearance.gains.changed_files import case_files
 from clearance.gains.sentences import lines_of
 from clearance.gains.shift import obstacle_shift
 from clearance.gains.turn import ARM, Turn
+from clearance.simulate.answers.approaches import approaches
 from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, gantry

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.geometry.shapes import box
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
 from clearance.world.carry import Carry

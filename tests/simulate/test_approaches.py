@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.approaches import approaches
-from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
 
 import clearance as cl
+from clearance.simulate.answers.approaches import approaches
+from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
 from tests.cells import cell
 
 STEP = 1e-6

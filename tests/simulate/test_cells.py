@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.sections import section_plan
 
 import clearance as cl
 from clearance.record.rows import resumable as resumable_rows
+from clearance.simulate.measure.sections import section_plan
 from clearance.world.case import Limits
 from clearance.world.rules import Rule
 from clearance.world.timing import Window

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.contact import events as contact_events
-from clearance.simulate.answers.contact import work as contact_work
-from clearance.simulate.answers.contact.events import events_of, rated_places
 
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
+from clearance.simulate.answers.contact import events as contact_events
+from clearance.simulate.answers.contact import work as contact_work
+from clearance.simulate.answers.contact.events import events_of, rated_places
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import measure
 
 import clearance as cl
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.contact import contacts as contact
-from clearance.simulate.answers.contact import rows as contact_rows
-from clearance.simulate.answers.contact.contacts import find_contacts
 from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
 from clearance.record.names import pair_names
+from clearance.simulate.answers.contact import contacts as contact
+from clearance.simulate.answers.contact import rows as contact_rows
+from clearance.simulate.answers.contact.contacts import find_contacts
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import measured_pairs

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.contact.events import hull_depths
 
 import clearance as cl
+from clearance.simulate.answers.contact.events import hull_depths
 from clearance.world.rules import Rule
 from tests.made_cases import flying
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import yaml
-from clearance.simulate.answers.handling import handling_hints
-from clearance.simulate.answers.standing import always_in_contact, standing_hint
 
 import clearance as cl
 from clearance.report.summary import notes_of
+from clearance.simulate.answers.handling import handling_hints
+from clearance.simulate.answers.standing import always_in_contact, standing_hint
 from clearance.world.carry import Carry
 from clearance.world.mount import Mount
 from clearance.world.rules import Allowance

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.sections import section_plan
 
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.measure import inside
+from clearance.simulate.measure.sections import section_plan
 from clearance.world.notice import Severity
 from tests.examples import some_slow
 from tests.made_cases import WORST, at, ball, faces_of, flying

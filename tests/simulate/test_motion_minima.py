@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.pairs_alone import least_between, near_alone
 
 import clearance as cl
 from clearance.record.record import PairMinimum
 from clearance.report.pair_judge import PairJudge
 from clearance.simulate.answers import motion_minima as room
+from clearance.simulate.answers.pairs_alone import least_between, near_alone
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from tests.made_cases import at

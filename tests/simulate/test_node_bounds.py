@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import measure
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -38,6 +37,7 @@ from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.displacement import Still
 from clearance.kernels.search.node_pairs import NodeGroup, bounds_of_group, views_along
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.case import Limits
 from clearance.world.motion import kinematic_motion

@@ -5,8 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.audit.joint_box import BoxDistances, JointBox
-from clearance.simulate.answers.audit.pair import GAP, audit_pair
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,6 +13,8 @@ from clearance.geometry.shapes import box
 from clearance.query.distance import distance
 from clearance.query.pair_query import Query
 from clearance.record.audit import PairStatus
+from clearance.simulate.answers.audit.joint_box import BoxDistances, JointBox
+from clearance.simulate.answers.audit.pair import GAP, audit_pair
 from clearance.world.body import Body
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

@@ -6,10 +6,10 @@ import json
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.checker import Checker
 
 import clearance as cl
 from clearance.load.case.case_file import load_case
+from clearance.simulate.measure.checker import Checker
 from clearance.tolerance import CERTIFY_GAP, PATH_ERROR
 from clearance.world.cubic import positions_along
 from clearance.world.joint_positions import joint_courses

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.measure import NearestPairs, measure, pairs_within
-from clearance.simulate.measure.sections import section_plan
 
 import clearance as cl
 from clearance.record.rule_answer import NearRows
+from clearance.simulate.measure.measure import NearestPairs, measure, pairs_within
+from clearance.simulate.measure.sections import section_plan
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests.cells import cell

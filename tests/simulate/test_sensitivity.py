@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.approaches import approach_at
-from clearance.simulate.answers.sensitivity import n_joint_columns
 
 import clearance as cl
+from clearance.simulate.answers.approaches import approach_at
+from clearance.simulate.answers.sensitivity import n_joint_columns
 from clearance.world.robot import Joint, JointKind
 from tests.gains.gantries import along_x, gantry, slot, standing
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.standing import standing_contacts, standing_hint
 
 from clearance import check, load_case
 from clearance.report.summary import notes_of
+from clearance.simulate.answers.standing import standing_contacts, standing_hint
 from tests.load.making import CASE, write_case
 
 TABLES = CASE.replace(

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.stretches import joined_spans
 
 import clearance as cl
 from clearance.record.levels import LEVELS
 from clearance.simulate.answers import stretches
+from clearance.simulate.answers.stretches import joined_spans
 from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.measure.sections import section_plan
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.simulate.measure.sections import section_plan
 from clearance.world.carry import Carry
 from clearance.world.case import Clock
 from clearance.world.timing import Window

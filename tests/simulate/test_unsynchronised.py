@@ -4,19 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.errors import BadInput, BadTime
 from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.clocks.unsynchronised import (
     UnsynchronisedAnswers,
     least_unsynchronised,
 )
-from clearance.simulate.measure.measure import measure
-from hypothesis import given
-from hypothesis import strategies as st
-
-import clearance as cl
-from clearance.errors import BadInput, BadTime
 from clearance.simulate.measure.layout import PairsInMotion
+from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot

@@ -6,12 +6,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
-from clearance.simulate.answers.workspace.workspace import shared_workspace
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, Unavailable
 from clearance.geometry import boolean
+from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
+from clearance.simulate.answers.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.cubic import positions_along

@@ -6,8 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
-from clearance.simulate.answers.workspace.workspace import shared_workspace
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,6 +14,8 @@ from clearance.errors import BadInput
 from clearance.geometry import boolean
 from clearance.report.workspace import workspace_summary
 from clearance.report.workspace_picture import picture_of
+from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
+from clearance.simulate.answers.workspace.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot

@@ -5,11 +5,11 @@ import itertools
 import mujoco
 import numpy as np
 import pytest
-from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 
 import clearance as cl
 from clearance.load.robot.mjcf.filters import BITS, EXCLUDE, PARENT
 from clearance.profiles.swept_bodies import swept_bodies
+from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.self_pairs import RIGID, self_pairs
 from tests.load.making_mjcf import BALL, load_mjcf, mjcf
