@@ -100,7 +100,7 @@ def test_a_case_has_the_same_bytes_of_results_with_the_scene_that_is_made(name, 
     theirs = results(name)
     ours = results("made/scene.yaml", *([said] if said else []))
     assert same_bytes(theirs, ours)
-    assert np.isfinite(theirs.clearances).all()
+    assert np.isfinite(theirs.record.clearances).all()
     assert convert("made/scene.yaml", "again.yml") == 0  # ours to ours, into another folder
     assert same_bytes(ours, results("again.yml", *([said] if said else [])))
 

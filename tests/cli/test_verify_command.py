@@ -33,7 +33,7 @@ def home(cell, tmp_path):
 def test_the_receipt_of_a_run_is_proven(home, capsys):
     assert run(["verify", str(home / "out")]) == ExitCode.CLEAR
     told = capsys.readouterr().out
-    assert told.startswith("PROVEN: at least 34.884 mm (default) between all 1 pairs over 300 ")
+    assert told.startswith("PROVEN: at least 34.887 mm (default) between all 1 pairs over 300 ")
     assert (
         "; verdict clear; every byte of the report matches a fresh run; 3 inputs of ../scenes/"
         in told
