@@ -24,7 +24,7 @@ KERNELS = Path(cl.__file__).parent / "kernels"
 HALVED = {
     "search/containment.py:_is_probe": "Surface.probes",
     "clocks/unsynchronised_steps.py:_nearest_step": "JointPath.times",
-    "search/boxes_along_path.py:_next_look": "sums of what is not negative, made by the kernel",
+    "search/boxes_along_path.py:_next_visit": "sums of what is not negative, made by the kernel",
 }
 """The kernels that halve an array, and which; the tests below are of those that are made outside."""
 

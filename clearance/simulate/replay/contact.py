@@ -6,13 +6,16 @@ Not for: finding them (`contact.contacts`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.query.contact import Contact
 from clearance.record.contact import StepContact
 from clearance.record.replay import DrawnContact
 from clearance.simulate.answers.measured_run import MeasuredRun
+
+if TYPE_CHECKING:
+    from clearance.query.contact import Contact
 
 MOST_CONTACTS = 600
 """Most overlaps drawn: each is an object of its own in the viewer."""
