@@ -17,6 +17,7 @@ from clearance.simulate.measure import refine
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import Rule
+from tests.findings.gates import HALF, load_gates
 from tests.report.made import findings_of, verdict_of
 from tests.report.records import record
 
@@ -90,6 +91,12 @@ def test_a_rule_of_which_nothing_is_near_has_a_finding_without_bodies():
     told = {finding.rule: finding for finding in found}
     floor = told["floor"]
     assert floor.status == "clear" and floor.proven is not None and floor.proven >= 0.001
+
+
+def test_each_witness_point_is_on_the_body_that_it_is_of(tmp_path):
+    (one,) = cl.check(load_gates(tmp_path, {"gate": (0.0, 0.003)})).findings
+    assert (one.body_a, one.body_b) == ("box", "gate")
+    assert (one.point_a[1], one.point_b[1]) == pytest.approx((HALF, HALF + 0.003), abs=1e-12)
 
 
 def test_a_name_is_of_case_rule_bodies_and_occurrence_alone():

@@ -11,6 +11,7 @@ import pytest
 from clearance.errors import BadInput
 from clearance.load.case.waiver_file import load_waivers
 from clearance.run import Question, Run, answer
+from clearance.simulate.measure import refine
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 
@@ -106,6 +107,14 @@ def test_what_is_waived_keeps_its_name_and_says_what_is_proven(certify, tmp_path
 def test_at_the_samples_alone_the_sample_decides(tmp_path):
     run = checked(tmp_path, NEAR_A, waiver(at_least=0.00299999), certify=False)
     assert run.passed and "samples only" in run.verdict.text() and run.verdict.n_waivers == 1
+
+
+def test_a_level_that_is_seen_to_be_kept_and_not_proven_to_be_covers_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(refine, "MOST_QUERIES", -1)
+    run = checked(tmp_path, NEAR_A, waiver(at_least=0.00299))
+    (finding,) = run.findings
+    assert finding.proven < 0.00299 < finding.clearance and finding.waived is None
+    assert run.verdict.status == VIOLATED and "that is not proven" in run.verdict.reasons[-1]
 
 
 def test_what_is_near_beside_what_is_waived_is_near(tmp_path):

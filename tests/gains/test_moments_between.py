@@ -32,6 +32,13 @@ def test_a_shift_parts_what_meets_between_samples(kind, y, missing):
     assert abs(found.change[1]) == pytest.approx(missing, abs=5e-5)
 
 
+def test_a_margin_is_kept_between_samples_too():
+    """The block passes the post at 12 mm, which keeps the limit of 10 mm, and not 5 mm more."""
+    found = cl.gain(leaping(0.112), "base", margin=0.005)
+    assert found.kept and found.after.worst["clearance"] >= 0.015
+    assert abs(found.change[1]) == pytest.approx(0.003, abs=5e-5)
+
+
 @pytest.mark.parametrize("timing", [None, Timing(0.5, 0.8)])
 @pytest.mark.parametrize("rates", [False, True])
 def test_a_path_bends_around_what_it_meets_between_samples(rates, timing):

@@ -9,6 +9,7 @@ import numpy as np
 
 import clearance as cl
 from clearance.receipt.case_data import CaseData, case_data
+from clearance.receipt.fronts import EvidenceList
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.stage import Stage
@@ -63,3 +64,18 @@ def rewritten(folder, **changes):
     """Writes the receipt in a folder with something else in it, and the checksum that goes with that."""
     path = folder / FILE_NAME
     path.write_bytes(receipt_bytes(replace(read_receipt(path), **changes)))
+
+
+class Said:
+    """Evidence in the order in which it was found."""
+
+    def __init__(self, found: EvidenceList) -> None:
+        self._deeds, self._codes = found.all_deeds, found.all_codes
+
+    def deeds(self, n: int) -> np.ndarray:
+        own, self._deeds = self._deeds[:n], self._deeds[n:]
+        return own
+
+    def codes(self, n: int, most: int) -> np.ndarray:
+        own, self._codes[most] = self._codes[most][:n], self._codes[most][n:]
+        return own

@@ -149,12 +149,10 @@ def test_no_error_brings_bodies_nearer_than_balls_prove(seed):
         assert bounds[i] <= distance(*shapes) + ROUNDING
 
 
-def test_the_bound_of_a_single_turn_is_that_of_its_arc():
-    """A corner at 0.8, 0.05 m from the axis: by e along y it goes 0.8 sin e + 0.05 (cos e - 1)."""
-    e = 1e-3
+def taken_by(off: JointTolerance) -> float:
+    """[m] What an error at the joint of a bar takes along y; its corners are 0.8, 0.05, 0.05 m from the joint."""
     case = turning_arm(turn=1e-9, n_steps=2)
-    off = RobotTolerance({"turn": JointTolerance(e, 0.0, PlacementTolerance(0.002, 0.0))})
-    data = case_data(replace(case, tolerance=Budget({"arm": off})))
+    data = case_data(replace(case, tolerance=Budget({"arm": RobotTolerance({"turn": off})})))
     halves = np.array(
         [1, 2]
     )  # of the bar: six triangles each, whose corners are looked at one by one
@@ -162,5 +160,20 @@ def test_the_bound_of_a_single_turn_is_that_of_its_arc():
     items = Items(zero, halves, zero, zero, zero + 1, zero, zero)
     u = np.repeat([[0.0], [1.0], [0.0]], 2, axis=1)
     nominal, left = (by_directions(stage_of(data, i, FAR), items, u).min() for i in (0, 1))
+    return float(nominal - left)
+
+
+def test_the_bound_of_a_single_turn_is_that_of_its_arc():
+    """By e along y a corner goes 0.8 sin e + 0.05 (cos e - 1)."""
+    e = 1e-3
     exact = 0.8 * np.sin(e) + 0.05 * (np.cos(e) - 1.0) + 0.002
-    assert exact <= nominal - left <= exact + e * e
+    taken = taken_by(JointTolerance(e, 0.0, PlacementTolerance(0.002, 0.0)))
+    assert exact <= taken <= exact + e * e
+
+
+def test_the_bound_of_a_turn_about_any_axis_is_that_of_the_greatest_arc():
+    """A corner at p goes farthest along y in the plane of p and y: from the angle of p to that and e."""
+    e, size = 1e-3, np.sqrt(0.8**2 + 0.05**2 + 0.05**2)
+    exact = size * np.sin(np.arcsin(0.05 / size) + e) - 0.05
+    taken = taken_by(JointTolerance(0.0, 0.0, PlacementTolerance(0.0, e)))
+    assert exact <= taken <= exact + e * e

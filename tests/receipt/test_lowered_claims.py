@@ -8,30 +8,14 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.receipt.case_data import case_data
-from clearance.receipt.fronts import EvidenceList
 from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.motion_data import UNIT
 from clearance.receipt.proof.proving import failure_in
 from clearance.receipt.search import evidence_for
 from clearance.receipt.writing import claims_of
-from tests.receipt.receipts import turning_arm
+from tests.receipt.receipts import Said, turning_arm
 
 MILLIMETRE = round(1e-3 / UNIT)
-
-
-class Said:
-    """Evidence in the order in which it was found."""
-
-    def __init__(self, found: EvidenceList) -> None:
-        self._deeds, self._codes = found.all_deeds, found.all_codes
-
-    def deeds(self, n: int) -> np.ndarray:
-        own, self._deeds = self._deeds[:n], self._deeds[n:]
-        return own
-
-    def codes(self, n: int, most: int) -> np.ndarray:
-        own, self._codes[most] = self._codes[most][:n], self._codes[most][n:]
-        return own
 
 
 @pytest.fixture(scope="module")

@@ -11,11 +11,16 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.receipt import fronts
+from clearance.receipt.case_data import case_data
+from clearance.receipt.proof.halving import halves_of
 from clearance.receipt.proof.items import CUT_TIME
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
+from clearance.receipt.proof.proving import failure_in
 from clearance.receipt.receipt_file import FILE_NAME, read_receipt
+from clearance.receipt.search import evidence_for
 from clearance.report.withdrawn import withdraw_report
-from tests.receipt.receipts import everything_moves, rewritten, saved, turning_arm
+from tests.receipt.receipts import Said, everything_moves, rewritten, saved, turning_arm
 
 ROOT = Path(__file__).parents[2]
 
@@ -148,21 +153,21 @@ def test_intervals_in_which_bodies_touch_are_told(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_body_inside_another_is_not_proven_apart(tmp_path):
+def test_a_body_inside_another_is_not_proven_apart(tmp_path, monkeypatch):
     case = turning_arm()
     inside = cl.Obstacle(cl.Body("hall", cl.box((9.0, 9.0, 9.0))))
     saved(replace(case, obstacles=case.obstacles[1:]), tmp_path)
     held = replace(case, obstacles=(inside,))
     with pytest.raises(BadInput):
         cl.verify(tmp_path, held)
-    from clearance.receipt.case_data import case_data
-    from clearance.receipt.proof.halving import halves_of
-    from clearance.receipt.search import evidence_for
-
     data = case_data(held)
-    claims = np.full((1, data.n_intervals), round(0.1 / UNIT))
+    halves, claims = halves_of(data.shapes), np.full((1, data.n_intervals), round(0.1 / UNIT))
     with pytest.raises(BadInput, match="not proven outside each other"):
-        evidence_for(data.stretches, data.shapes, halves_of(data.shapes), claims)
+        evidence_for(data.stretches, data.shapes, halves, claims)
+    monkeypatch.setattr(fronts, "one_inside", lambda stage: None)  # who forges it does not ask
+    forged = Said(evidence_for(data.stretches, data.shapes, halves, claims))
+    found = failure_in(data.stretches, data.shapes, halves, claims, forged)
+    assert found is not None and found.reason == "not proven outside each other"
 
 
 @pytest.mark.slow

@@ -33,6 +33,14 @@ def test_both_shortfalls_and_the_padding_are_subtracted():
     assert run.record.certificate.lower_bound.min() <= 1.5625
 
 
+@pytest.mark.parametrize("need", ["limit", "minimum"])
+def test_they_are_taken_off_the_bounds_of_steps_that_are_not_measured_too(need):
+    case = case_of(0.125, 0.25, padding={"tip": 0.0625})
+    steps = cl.check(case, need=need, certify=False).steps
+    assert steps["clearance"].to_pylist()[0] is None
+    assert (steps["lower_bound"].to_numpy() <= [2.5625, 1.5625]).all()
+
+
 def test_what_a_shortfall_brings_to_nothing_is_violated_and_no_contact():
     run = cl.check(case_of(1.0, 1.5))
     assert run.summary["verdict"] == "violated"
