@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.kernels.curve.arc_fit import Leaves, box_tree, fit_leaves
-from clearance.kernels.curve.bezier import Pieces, control_box, points_on, rough_joints
+from clearance.kernels.curve.bezier import Joints, Pieces, control_box, points_on, rough_joints
 from clearance.kernels.hausdorff.segments import segment_boxes
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import BIARC, CLOSED, LAST_BITS, MEETING, TANGENT, UNIT_ROUNDOFF
@@ -96,7 +96,12 @@ class CurveFacts:
     @cached_property
     def is_end(self) -> np.ndarray:
         """(n, 2) whether each piece's start and end is an end of a contour or a corner."""
-        return rough_joints(self.pieces, self.contour, TANGENT, MEETING * self.size)
+        return rough_joints(self.pieces, self.joints)
+
+    @property
+    def joints(self) -> Joints:
+        """How the pieces follow one another, as an argument of kernels."""
+        return Joints(self.contour, TANGENT, MEETING * self.size)
 
     @property
     def is_closed(self) -> bool:

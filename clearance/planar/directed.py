@@ -13,6 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.kernels.curve.pair import CurveArrays
+from clearance.kernels.hausdorff.segments import Segments
 from clearance.planar.curve import Curve
 
 KINDS = ("end", "common_normal", "self_bisector")
@@ -86,7 +87,12 @@ def placed(a: Curve, b: Curve) -> tuple[np.ndarray, float]:
 
 def arrays_of(curve: Curve) -> CurveArrays:
     """The curve as an argument of kernels."""
-    return CurveArrays(curve.pieces, curve.leaves, curve.is_end)
+    return CurveArrays(curve.pieces, curve.leaves, curve.joints)
+
+
+def segments_of(curve: Curve) -> Segments:
+    """A polyline as an argument of kernels."""
+    return Segments(curve.pieces, curve.segment_boxes, curve.joints)
 
 
 def directed_of(

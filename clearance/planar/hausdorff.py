@@ -1,7 +1,7 @@
 """The exact Hausdorff distance between two planar curves, with a proven error and its witnesses.
 
-`hausdorff` measures, `within` only decides. The work is done in `kernels.hausdorff.both_directions`; here its
-numbers get names. Not for: profiles along a curve (`deviation`), the least distance (`minimum`).
+`hausdorff` measures, `within` only decides. The work is done in `kernels.hausdorff`, one direction at a time;
+here its numbers get names. Not for: profiles along a curve (`deviation`), the least distance (`minimum`).
 """
 
 from __future__ import annotations
@@ -12,12 +12,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
-from clearance.kernels.hausdorff.both_directions import both_directions
-from clearance.kernels.hausdorff.state import SearchGoal
+from clearance.kernels.hausdorff.directed_curve import directed_curve
+from clearance.kernels.hausdorff.polyline import directed_polyline
+from clearance.kernels.hausdorff.state import SEARCH_STATE, SearchGoal
 from clearance.planar.curve import Curve
-from clearance.planar.directed import DirectedDistance, SearchTally, arrays_of, directed_of, placed
+from clearance.planar.directed import (
+    DirectedDistance,
+    SearchTally,
+    arrays_of,
+    directed_of,
+    placed,
+    segments_of,
+)
 from clearance.planar.entries import checked_number
-from clearance.planar.polylines import solve_polylines
 from clearance.planar.steady import steady
 from clearance.tolerance import LAST_BITS, SHARPER, TIE
 
@@ -181,10 +188,19 @@ def _budget(a: Curve, b: Curve) -> float:
 
 
 def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal) -> tuple[np.ndarray, np.ndarray]:
-    """Both directed searches: (2,) SEARCH_STATE and witnesses (2, 5)."""
-    if a.is_polyline and b.is_polyline:
-        return solve_polylines(a, b, shift, aim)
-    return both_directions(arrays_of(a), arrays_of(b), shift[0], shift[1], aim)
+    """Both directed searches: (2,) SEARCH_STATE and witnesses (2, 5); no more once one is beyond the limit.
+
+    Polylines are searched straight from their segments, which takes a tenth of the time.
+    """
+    states, points = np.zeros(2, SEARCH_STATE), np.empty((2, 5))
+    straight = a.is_polyline and b.is_polyline
+    search, arrays = (directed_polyline, segments_of) if straight else (directed_curve, arrays_of)
+    for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
+        search(arrays(one), arrays(two), step[0], step[1], aim, states[k : k + 1], points[k])
+        if states["lower"][k] > aim.limit:
+            states["lower"] = states["lower"][k]
+            break
+    return states, points
 
 
 def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[DirectedDistance, DirectedDistance]:

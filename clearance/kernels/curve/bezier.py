@@ -236,29 +236,42 @@ def piece_spans(rows: Floats2, first: Integers) -> tuple[Floats2, Floats2]:
     return low, high
 
 
-@kernel
-def rough_joints(pieces: Pieces, contour: Integers, tangent: float, apart: float) -> Flags2:
-    """(n, 2) flags of the pieces' starts and ends that are ends of contours or corners.
+class Joints(NamedTuple):
+    """How the pieces of a curve follow one another.
 
-    A joint is smooth where the points are within `apart` and the sine between the tangents within `tangent`.
-    The last piece of a contour joins its first.
+    Attributes:
+        contour: (n,) the contour of each piece; the last piece of a contour joins its first.
+        tangent, apart: a joint is smooth where the points are within `apart` and the sine between the tangents
+            within `tangent`.
     """
-    n = contour.shape[0]
-    flags = np.ones((n, 2), np.bool_)
-    head = 0
-    for i in range(n):
-        if i > 0 and contour[i] != contour[i - 1]:
-            head = i
-        before = i - 1
-        if i == head:
-            before = i
-            while before + 1 < n and contour[before + 1] == contour[i]:
-                before += 1
-        a, b = jet(pieces, before, 1.0), jet(pieces, i, 0.0)
-        speeds = hypotenuse(a.dx, a.dy) * hypotenuse(b.dx, b.dy)
-        meets = hypotenuse(a.x - b.x, a.y - b.y) <= apart
-        smooth = abs(a.dx * b.dy - a.dy * b.dx) <= tangent * speeds
-        if meets and smooth and a.dx * b.dx + a.dy * b.dy > 0.0:
-            flags[i, 0] = False
-            flags[before, 1] = False
+
+    contour: Integers
+    tangent: float
+    apart: float
+
+
+@inline
+def is_rough(pieces, joints, i, side):
+    """Whether piece `i` has at its start (side 0) or end (1) an end of its contour or a corner."""
+    contour, step = joints.contour, 2 * side - 1
+    other = i + step
+    if not (0 <= other < contour.shape[0] and contour[other] == contour[i]):
+        other = i  # the other end of the contour
+        while 0 <= other - step < contour.shape[0] and contour[other - step] == contour[i]:
+            other -= step
+    before, after = (i, other) if side == 1 else (other, i)
+    a, b = jet(pieces, before, 1.0), jet(pieces, after, 0.0)
+    speeds = hypotenuse(a.dx, a.dy) * hypotenuse(b.dx, b.dy)
+    meets = hypotenuse(a.x - b.x, a.y - b.y) <= joints.apart
+    smooth = abs(a.dx * b.dy - a.dy * b.dx) <= joints.tangent * speeds
+    return not (meets and smooth and a.dx * b.dx + a.dy * b.dy > 0.0)
+
+
+@kernel
+def rough_joints(pieces: Pieces, joints: Joints) -> Flags2:
+    """(n, 2) flags of the pieces' starts and ends that are ends of contours or corners."""
+    flags = np.empty((joints.contour.shape[0], 2), np.bool_)
+    for i in range(flags.shape[0]):
+        for side in range(2):
+            flags[i, side] = is_rough(pieces, joints, i, side)
     return flags

@@ -16,14 +16,14 @@ from clearance.compile.decorators import inline
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.bezier import hypotenuse, jet
-from clearance.kernels.curve.boxes import box_gap_sq
+from clearance.kernels.curve.boxes import cut_sq, nearest_in, with_bucket
 
 
 class DistanceMap(NamedTuple):
     """Depth and nearest arc of each pixel along a curve, and where each of its leaves enters the list.
 
     `first` (n_leaves + 1,) points into `depth` and `arc`; `deepest` is the index of the greatest depth,
-    reached on leaf `deepest_leaf` at the local parameter `deepest_at`.
+    reached on leaf `deepest_leaf`.
     """
 
     depth: Floats
@@ -31,7 +31,29 @@ class DistanceMap(NamedTuple):
     first: Integers
     deepest: int
     deepest_leaf: int
-    deepest_at: float
+
+
+class _NearestArc(NamedTuple):
+    """The nearest arc so far, and how near is enough."""
+
+    distance: float
+    which: int
+    enough: float
+
+
+@cut_sq.register
+def _(best: _NearestArc):
+    return best.distance * best.distance if best.distance > best.enough else -1.0
+
+
+@with_bucket.register
+def _(best: _NearestArc, arcs, bucket, x, y):
+    distance, which = best.distance, best.which
+    for k in range(bucket * BUCKET, min(arcs.shape[0], (bucket + 1) * BUCKET)):
+        there = arc_distance(arcs[k], x, y)
+        if there < distance:
+            distance, which = there, k
+    return _NearestArc(distance, which, best.enough)
 
 
 @inline
@@ -40,29 +62,9 @@ def nearest_arc(leaves, x, y, hint, enough, stack):
 
     Any arc no farther than `enough` ends the search.
     """
-    arcs, boxes = leaves.arcs, leaves.boxes
-    n_arcs, size = arcs.shape[0], boxes.shape[0] // 2
-    best, which = arc_distance(arcs[hint], x, y), hint
-    stack[0, 0], stack[0, 1] = 1.0, 0.0
-    top = 1
-    while top > 0 and best > enough:
-        top -= 1
-        node = int(stack[top, 0])
-        if stack[top, 1] >= best * best:
-            continue
-        if node >= size:
-            first = (node - size) * BUCKET
-            for k in range(first, min(n_arcs, first + BUCKET)):
-                distance = arc_distance(arcs[k], x, y)
-                if distance < best:
-                    best, which = distance, k
-            continue
-        a, b = box_gap_sq(boxes, 2 * node, x, y), box_gap_sq(boxes, 2 * node + 1, x, y)
-        nearer = 2 * node if a <= b else 2 * node + 1
-        stack[top, 0], stack[top, 1] = 4 * node + 1 - nearer, max(a, b)
-        stack[top + 1, 0], stack[top + 1, 1] = nearer, min(a, b)
-        top += 2
-    return best, which
+    first = _NearestArc(arc_distance(leaves.arcs[hint], x, y), hint, enough)
+    found = nearest_in(leaves.boxes, x, y, first, leaves.arcs, stack)
+    return found.distance, found.which
 
 
 @inline
@@ -82,7 +84,7 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
     depth, arc = np.empty(most), np.empty(most, np.int64)
     first = np.empty(n_arcs + 1, np.int64)
     used, hint, column, line = 0, other.arcs.shape[0] // 2, -(2**62), -(2**62)
-    deepest, deepest_leaf, deepest_at = 0, 0, 0.0
+    deepest, deepest_leaf = 0, 0
     for k in range(n_arcs):
         row = arcs[k]
         steps = _samples(row, pixel)
@@ -100,12 +102,12 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
                 )
                 arc[used] = hint
                 if used == 0 or depth[used] > depth[deepest]:
-                    deepest, deepest_leaf, deepest_at = used, k, t
+                    deepest, deepest_leaf = used, k
                 used += 1
             if j == 0:
                 first[k] = used - 1
     first[n_arcs] = used - 1
-    return DistanceMap(depth[:used], arc[:used], first, deepest, deepest_leaf, deepest_at)
+    return DistanceMap(depth[:used], arc[:used], first, deepest, deepest_leaf)
 
 
 @inline

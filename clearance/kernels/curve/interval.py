@@ -7,24 +7,30 @@ or just one, in a cell. Rounding is not enclosed: a cell is only cut while it is
 import numpy as np
 
 from clearance.compile.decorators import inline
-from clearance.kernels.curve.bezier import Pieces, cut
+from clearance.kernels.curve.bezier import CHOOSE, Pieces, cut
+
+ORDERS = 3  # of derivatives
 
 
 @inline
-def derived(pieces):
-    """The homogeneous derivative of every piece as pieces of one degree less; constants stay constants."""
+def with_derivatives(pieces):
+    """The pieces, then the homogeneous derivatives of all, then the second and the third ones.
+
+    A derivative has one degree less; constants stay constants.
+    """
     n_pieces = pieces.first.shape[0] - 1
-    first = np.zeros(n_pieces + 1, np.int64)
-    for i in range(n_pieces):
-        first[i + 1] = first[i] + max(1, pieces.first[i + 1] - pieces.first[i] - 1)
-    control = np.zeros((first[n_pieces], 3))
-    for i in range(n_pieces):
-        start = pieces.first[i]
-        n = pieces.first[i + 1] - start - 1
+    first = np.zeros((ORDERS + 1) * n_pieces + 1, np.int64)
+    for i in range(first.shape[0] - 1):
+        order, own = i // n_pieces, i % n_pieces
+        size = pieces.first[own + 1] - pieces.first[own]
+        first[i + 1] = first[i] + max(1, size - order)
+    control = np.zeros((first[first.shape[0] - 1], 3))
+    control[: pieces.control.shape[0]] = pieces.control
+    for i in range(n_pieces, first.shape[0] - 1):
+        before, n = first[i - n_pieces], first[i - n_pieces + 1] - first[i - n_pieces] - 1
         for k in range(n):
             for c in range(3):
-                step = pieces.control[start + k + 1, c] - pieces.control[start + k, c]
-                control[first[i] + k, c] = n * step
+                control[first[i] + k, c] = n * (control[before + k + 1, c] - control[before + k, c])
     return Pieces(control, first, pieces.rational)
 
 
@@ -44,66 +50,30 @@ def dot(a, b):
 
 
 @inline
-def _box(points, n, column):
-    low = high = points[0, column]
-    for k in range(1, n + 1):
-        low, high = min(low, points[k, column]), max(high, points[k, column])
-    return low, high
-
-
-@inline
-def _put_boxes(out, row, points, n):
-    """Writes the range of x and that of y."""
-    out[row, 0], out[row, 1] = _box(points, n, 0)
-    out[row, 2], out[row, 3] = _box(points, n, 1)
-
-
-@inline
-def enclose(pieces, derivatives, i, t0, t1, points, out):
+def enclose(pieces, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
 
-    `derivatives` are the pieces `derived` once, twice and three times. A rational derivative
-    follows from Leibniz' rule for (point times weight), in interval arithmetic.
+    `pieces` are `with_derivatives`. A rational derivative follows from Leibniz' rule for (point times weight),
+    in interval arithmetic; columns 4 and 5 of `out` are those of the weights.
     """
-    one, two, three = derivatives
-    n = cut(pieces, i, t0, t1, points)
-    rational = pieces.rational[i]
-    w0, w1 = _box(points, n, 2)
-    for k in range(n + 1):
-        points[k, 0] /= points[k, 2]
-        points[k, 1] /= points[k, 2]
-    _put_boxes(out, 0, points, n)
-    n = cut(one, i, t0, t1, points)
-    d0, d1 = _box(points, n, 2)
-    _put_boxes(out, 1, points, n)
-    n = cut(two, i, t0, t1, points)
-    e0, e1 = _box(points, n, 2)
-    _put_boxes(out, 2, points, n)
-    n = cut(three, i, t0, t1, points)
-    f0, f1 = _box(points, n, 2)
-    _put_boxes(out, 3, points, n)
-    if not rational:
+    n_pieces = pieces.rational.shape[0]
+    for order in range(ORDERS + 1):
+        n = cut(pieces, order * n_pieces + i, t0, t1, points)
+        for column in range(3):
+            weighs = order == 0 and column < 2
+            low = high = points[0, column] / (points[0, 2] if weighs else 1.0)
+            for k in range(1, n + 1):
+                value = points[k, column] / (points[k, 2] if weighs else 1.0)
+                low, high = min(low, value), max(high, value)
+            out[order, 2 * column], out[order, 2 * column + 1] = low, high
+    if not pieces.rational[i]:
         return
-    for c in range(0, 4, 2):
-        _less(out, 1, c, 0, d0, d1, 1.0)
-        _over(out, 1, c, w0, w1)
-        _less(out, 2, c, 1, d0, d1, 2.0)
-        _less(out, 2, c, 0, e0, e1, 1.0)
-        _over(out, 2, c, w0, w1)
-        _less(out, 3, c, 2, d0, d1, 3.0)
-        _less(out, 3, c, 1, e0, e1, 3.0)
-        _less(out, 3, c, 0, f0, f1, 1.0)
-        _over(out, 3, c, w0, w1)
-
-
-@inline
-def _less(out, order, c, other, w0, w1, factor):
-    low, high = times(out[other, c], out[other, c + 1], w0, w1)
-    out[order, c] -= factor * high
-    out[order, c + 1] -= factor * low
-
-
-@inline
-def _over(out, order, c, w0, w1):
-    low, high = times(out[order, c], out[order, c + 1], 1.0 / w1, 1.0 / w0)
-    out[order, c], out[order, c + 1] = low, high
+    w0, w1 = out[0, 4], out[0, 5]
+    for order in range(1, ORDERS + 1):
+        for c in range(0, 4, 2):
+            low, high = out[order, c], out[order, c + 1]
+            for k in range(1, order + 1):
+                less = times(out[order - k, c], out[order - k, c + 1], out[k, 4], out[k, 5])
+                low -= CHOOSE[order, k] * less[1]
+                high -= CHOOSE[order, k] * less[0]
+            out[order, c], out[order, c + 1] = times(low, high, 1.0 / w1, 1.0 / w0)

@@ -17,7 +17,7 @@ from clearance.kernels.curve.arc import EPS, ROUNDOFF, S0, S1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET, Leaves
 from clearance.kernels.curve.bernstein import cubic_square
 from clearance.kernels.curve.bezier import CHOOSE, Pieces, cut, hypotenuse, jet
-from clearance.kernels.curve.boxes import box_gap_sq
+from clearance.kernels.curve.boxes import cut_sq, nearest_in, with_bucket
 from clearance.kernels.curve.scratch import MAP
 
 DEEPEST = 60
@@ -308,6 +308,38 @@ def _newton_defect_sq(here, x, y, t, a, b, rise, points, n):
     return 2.0 * (height / rise) * (height / least**3)
 
 
+class _NearestFoot(NamedTuple):
+    """The nearest point so far: as `Foot`, and the leaf that was tried first."""
+
+    distance: float
+    lower: float
+    leaf: int
+    local: float
+    hint: int
+
+
+@cut_sq.register
+def _(best: _NearestFoot):
+    return best.distance * best.distance
+
+
+@with_bucket.register
+def _(best: _NearestFoot, arrays, bucket, x, y):
+    pieces, leaves, work = arrays
+    distance, lower, leaf, local, hint = best
+    for k in range(bucket * BUCKET, min(leaves.arcs.shape[0], (bucket + 1) * BUCKET)):
+        row = leaves.arcs[k]
+        if k == hint or arc_distance(row, x, y) - row[EPS] >= distance:
+            continue
+        there, below, s = closest_on(
+            pieces, leaves.piece[k], row[S0], row[S1], x, y, distance, work
+        )
+        lower = min(lower, below)
+        if there < distance:
+            distance, leaf, local = there, k, s
+    return _NearestFoot(distance, lower, leaf, local, hint)
+
+
 @kernel
 def nearest(
     pieces: Pieces, leaves: Leaves, x: float, y: float, hint: int, bound: float, work: Floats3
@@ -317,40 +349,12 @@ def nearest(
     Exactness: `lower` is proven up to the rounding of the evaluation; ties go to the first found.
     `work` is (6, k, 3), the last of it the stack of the tree.
     """
-    arcs, boxes = leaves.arcs, leaves.boxes
-    n_arcs = arcs.shape[0]
-    size = boxes.shape[0] // 2
-    row = arcs[hint]
-    best, lower, where = closest_on(pieces, leaves.piece[hint], row[S0], row[S1], x, y, bound, work)
-    leaf = hint
-    if best > bound:
-        best = bound
-    stack = work[MAP]  # no map is made meanwhile
-    stack[0, 0], stack[0, 1] = 1.0, 0.0
-    top = 1
-    while top > 0:
-        top -= 1
-        node = int(stack[top, 0])
-        if stack[top, 1] >= best * best:
-            continue
-        if node < size:
-            a = box_gap_sq(boxes, 2 * node, x, y)
-            b = box_gap_sq(boxes, 2 * node + 1, x, y)
-            near_first = a <= b
-            stack[top, 0] = 2 * node + 1 if near_first else 2 * node
-            stack[top, 1] = max(a, b)
-            stack[top + 1, 0] = 2 * node if near_first else 2 * node + 1
-            stack[top + 1, 1] = min(a, b)
-            top += 2
-            continue
-        for k in range((node - size) * BUCKET, min(n_arcs, (node - size + 1) * BUCKET)):
-            row = arcs[k]
-            if k == hint or arc_distance(row, x, y) - row[EPS] >= best:
-                continue
-            distance, below, s = closest_on(
-                pieces, leaves.piece[k], row[S0], row[S1], x, y, best, work
-            )
-            lower = min(lower, below)
-            if distance < best:
-                best, leaf, where = distance, k, s
-    return Foot(best, min(lower, best), leaf, leaves.piece[leaf], where)
+    row = leaves.arcs[hint]
+    there, lower, local = closest_on(
+        pieces, leaves.piece[hint], row[S0], row[S1], x, y, bound, work
+    )
+    best = _NearestFoot(min(there, bound), lower, hint, local, hint)
+    # the stack is where no map is made meanwhile
+    best = nearest_in(leaves.boxes, x, y, best, (pieces, leaves, work), work[MAP])
+    lower = min(best.lower, best.distance)
+    return Foot(best.distance, lower, best.leaf, leaves.piece[best.leaf], best.local)

@@ -5,17 +5,17 @@ Not for: what the search knows of them (`hausdorff.state`).
 
 from typing import Annotated, NamedTuple
 
-from clearance.compile.declared import Flags2, LentTo
+from clearance.compile.declared import LentTo
 from clearance.kernels.curve.arc_fit import Leaves
-from clearance.kernels.curve.bezier import Pieces
+from clearance.kernels.curve.bezier import Joints, Pieces
 
 
 class CurveArrays(NamedTuple):
-    """One curve: its pieces, its arcs with their tree, and (n, 2) which ends of pieces are not smooth."""
+    """One curve: its pieces, its arcs with their tree, and how the pieces follow one another."""
 
     pieces: Pieces
     leaves: Leaves
-    is_end: Flags2
+    joints: Joints
 
 
 class Curves(NamedTuple):

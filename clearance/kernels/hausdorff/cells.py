@@ -29,7 +29,7 @@ class CellTable(NamedTuple):
     Attributes:
         cells: (levels, MOST_CELLS, 4) piece, s0, s1, whether its normal is open; n_cells: (levels,).
         pairs: (levels, MOST_PAIRS, 2) cells whose bisector is open; n_pairs: (levels,).
-        boxes: (MOST_CELLS, 4, 4) of each new cell, `curve.interval.enclose`.
+        boxes: (MOST_CELLS, 4, 6) of each new cell, `curve.interval.enclose`.
         child: (MOST_CELLS, 2) the halves of each old cell, -1 where none may hold a foot.
         ranges: (MOST_CELLS, 2) the squared distances of each new cell.
     """
@@ -52,7 +52,7 @@ def new_table():
         np.zeros(levels, np.int64),
         np.empty((levels, MOST_PAIRS, 2), np.int64),
         np.zeros(levels, np.int64),
-        np.empty((MOST_CELLS, 4, 4)),
+        np.empty((MOST_CELLS, 4, 6)),
         np.empty((MOST_CELLS, 2), np.int64),
         np.empty((MOST_CELLS, 2)),
     )
@@ -113,7 +113,7 @@ def put_child_cells(systems, table, level, split, a_box, points, gap):
                 s0, s1 = (s0, middle) if half == 0 else (middle, s1)
             if n >= new.shape[0]:
                 return -1
-            enclose(curves.b, systems.db, int(old[k, PIECE]), s0, s1, points, boxes[n])
+            enclose(systems.b, int(old[k, PIECE]), s0, s1, points, boxes[n])
             gap_box(a_box[0], boxes[n, 0], curves, gap)
             if s0 != s1:
                 slopes = foot_slopes(gap, boxes[n])

@@ -12,10 +12,10 @@ import numpy as np
 
 from clearance.compile.declared import Flags, Floats2, Integers2
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle
+from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
 from clearance.kernels.curve.arc_fit import Leaves
 from clearance.kernels.curve.bezier import Pieces, hypotenuse, jet
-from clearance.kernels.hausdorff.trim import arc_covers, field
+from clearance.kernels.hausdorff.trim import arc_covers, field, put_control_points
 
 
 class Page(NamedTuple):
@@ -81,10 +81,7 @@ def paper_kept(
         epsilon = max(epsilon, lb.arcs[k, EPS])
     for k in range(la.arcs.shape[0]):
         row = la.arcs[k]
-        mx, my = arc_middle(row)
-        points[0, 0], points[0, 1] = row[X0] + shift_x, row[Y0] + shift_y
-        points[1, 0], points[1, 1] = mx + shift_x, my + shift_y
-        points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
+        put_control_points(row, shift_x, shift_y, points)
         for i in range(3):
             r, c = _pixel_of(points[i, 0], points[i, 1], page)
             candidates[i] = page.colour[r, c]

@@ -11,21 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.compile.declared import Floats
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.arc import Chord
+from clearance.kernels.curve.pair import Curves
 from clearance.kernels.hausdorff.bounds import keep_best
-from clearance.kernels.hausdorff.bracket import (
-    MOST_STEPS,
-    NARROWEST,
-    Bracket,
-    narrowed,
-    secant,
-)
+from clearance.kernels.hausdorff.bracket import Bracket, root_in, value_at
 from clearance.kernels.hausdorff.run import NearestRun, segment_run_bound
 from clearance.kernels.hausdorff.segments import (
     BUCKET,
     STACK,
-    OpenNodes,
     Segments,
     covering_segment,
     distance_to,
@@ -35,6 +30,7 @@ from clearance.kernels.hausdorff.segments import (
     point_at,
 )
 from clearance.kernels.hausdorff.state import SearchGoal, SearchStates
+from clearance.kernels.hausdorff.witness import write_witness
 
 SEEDS = 512  # midpoints of A that give a good lower bound first
 MOST_OPEN = 256  # parts of a segment that may be open at once
@@ -61,10 +57,10 @@ class Span(NamedTuple):
 
 
 class SegmentScratch(NamedTuple):
-    """Open spans as rows (MOST_OPEN, 6), and the scratch of `nearest_segment`."""
+    """Open spans as rows (MOST_OPEN, 6), and the stack of `nearest_segment`."""
 
     spans: np.ndarray
-    open_nodes: OpenNodes
+    stack: np.ndarray
 
 
 @inline
@@ -88,22 +84,32 @@ def _point(lines, i, t):
 
 
 @inline
-def _offer(lines, i, t, hint, open_nodes, state):
+def _offer(lines, i, t, hint, stack, state):
     """Raises the lower bound by the true distance of one point of A; returns that and the nearest segment."""
     x, y = _point(lines, i, t)
-    distance, k = nearest_segment(lines.other, x, y, hint, open_nodes)
+    distance, k = nearest_segment(lines.other, x, y, hint, stack)
     if distance > state.lower or state.piece_a < 0:
-        s = foot_on(lines.other.control, k, x, y)[1]
+        s = foot_on(lines.other.pieces.control, k, x, y)[1]
         keep_best(state, distance, distance, i, t, k, s)
     return distance, k
 
 
-@inline
-def _offs(lines, i, t, span):
-    """The distances of A's point at (i, t) to the segments nearest to the start and to the end of a span."""
+class _TwoSegments(NamedTuple):
+    """How much farther a point of A's segment `i` is from one of B's than from another; the greater of both."""
+
+    i: int
+    one: int
+    two: int
+    most: float
+
+
+@value_at.register
+def _(function: _TwoSegments, lines, t):
+    (i, one, two, _), control = function, lines.other.pieces.control
     x, y = _point(lines, i, t)
-    control = lines.other.control
-    return distance_to(control, span.near0, x, y), distance_to(control, span.near1, x, y)
+    d, e = distance_to(control, one, x, y), distance_to(control, two, x, y)
+    most = max(d, e)
+    return _TwoSegments(i, one, two, most), d - e, 1e-15 * most
 
 
 @inline
@@ -112,25 +118,17 @@ def _crossing(lines, i, span):
 
     Returns the parameter and the greater of both distances there.
     """
-    d, e = _offs(lines, i, span.t0, span)
-    d_end, e_end = _offs(lines, i, span.t1, span)
-    bracket = Bracket(span.t0, span.t1, d - e, d_end - e_end, 0)
-    t, most = 0.5 * (span.t0 + span.t1), np.inf
-    for _ in range(MOST_STEPS):
-        rises = bracket.f_high > bracket.f_low
-        t = secant(bracket) if rises else 0.5 * (span.t0 + span.t1)
-        d, e = _offs(lines, i, t, span)
-        f, most = d - e, max(d, e)
-        if abs(f) <= 1e-15 * most or bracket.high - bracket.low <= NARROWEST or not rises:
-            break
-        bracket = narrowed(bracket, t, f, f > 0.0)
-    return t, most
+    both = _TwoSegments(i, span.near0, span.near1, np.inf)
+    _, f_low, _ = value_at(both, lines, span.t0)
+    _, f_high, _ = value_at(both, lines, span.t1)
+    t, both = root_in(Bracket(span.t0, span.t1, f_low, f_high, 0), both, lines)
+    return t, both.most
 
 
 @inline
 def _bound_of(lines, i, span, enough):
     """An upper bound of the distance of a span by segments of B, by a run of them where it is above `enough`."""
-    control = lines.other.control
+    control = lines.other.pieces.control
     x, y = _point(lines, i, span.t1)
     bound = max(span.d0, distance_to(control, span.near0, x, y))
     x, y = _point(lines, i, span.t0)
@@ -146,9 +144,9 @@ def _bound_of(lines, i, span, enough):
 
 
 @inline
-def _first_span(lines, i, hint, state, open_nodes):
-    d0, near0 = _offer(lines, i, 0.0, hint, open_nodes, state)
-    d1, near1 = _offer(lines, i, 1.0, near0, open_nodes, state)
+def _first_span(lines, i, hint, state, stack):
+    d0, near0 = _offer(lines, i, 0.0, hint, stack, state)
+    d1, near1 = _offer(lines, i, 1.0, near0, stack, state)
     state.n_ends += 2
     return Span(0.0, near0, d0, 1.0, near1, d1)
 
@@ -156,7 +154,7 @@ def _first_span(lines, i, hint, state, open_nodes):
 @inline
 def _solve_segment(lines, i, hint, aim, state, work):
     """Raises the lower bound to the greatest distance of segment `i` of A to B, proven; returns a hint."""
-    spans, first = work.spans, _first_span(lines, i, hint, state, work.open_nodes)
+    spans, first = work.spans, _first_span(lines, i, hint, state, work.stack)
     _put_span(spans, 0, first)
     top = 1
     while top > 0 and state.lower <= aim.limit:
@@ -176,7 +174,7 @@ def _solve_segment(lines, i, hint, aim, state, work):
             continue
         if not span.t0 < t < span.t1:
             t = 0.5 * (span.t0 + span.t1)
-        d, near = _offer(lines, i, t, span.near0, work.open_nodes, state)
+        d, near = _offer(lines, i, t, span.near0, work.stack, state)
         done = bound <= max(state.lower + aim.gap, aim.enough)
         no_room = top + 2 > MOST_OPEN or not span.t0 < t < span.t1
         if done or state.n_cuts > aim.budget or no_room:
@@ -192,7 +190,7 @@ def _solve_segment(lines, i, hint, aim, state, work):
 @inline
 def _search_bucket(lines, first, last, hint, aim, state, work):
     """Solves those of A's segments from `first` to before `last` that no segment of B covers; returns a hint."""
-    control, shift_x, shift_y = lines.other.control, lines.shift_x, lines.shift_y
+    control, shift_x, shift_y = lines.other.pieces.control, lines.shift_x, lines.shift_y
     for k in range(first, last):
         reach_sq = max(state.lower + aim.gap, aim.enough) ** 2
         covering = covering_segment(lines.control, k, control, hint, shift_x, shift_y, reach_sq)
@@ -212,20 +210,22 @@ def directed_polyline(
     shift_y: float,
     aim: SearchGoal,
     states: SearchStates,
+    witness: Floats,
 ):
     """Fills the first of `states` with the directed distance from A to B; stops once it passes `aim.limit`.
 
     Args:
-        one, two: A and B, `Segments`; shift: from A's frame into B's; states: SEARCH_STATE, zeros.
+        one, two: A and B; shift: from A's frame into B's; states: SEARCH_STATE, zeros; witness: (5,) as of
+            `write_witness`.
     """
-    lines, state = Polylines(one.control, two, shift_x, shift_y), states[0]
-    n, size = one.control.shape[0] // 2, one.boxes.shape[0] // 2
+    pa, pb, state = one.pieces, two.pieces, states[0]
+    lines = Polylines(pa.control, two, shift_x, shift_y)
+    n, size = pa.control.shape[0] // 2, one.boxes.shape[0] // 2
     state.piece_a, state.n_arcs = -1, n
-    open_nodes = OpenNodes(np.empty(STACK, np.int64), np.empty(STACK))
-    work, todo = SegmentScratch(np.empty((MOST_OPEN, 6)), open_nodes), np.empty(STACK, np.int64)
-    hint = two.control.shape[0] // 4
+    work = SegmentScratch(np.empty((MOST_OPEN, 6)), np.empty((STACK, 2)))
+    todo, hint = np.empty(STACK, np.int64), pb.control.shape[0] // 4
     for k in range(0, n, max(1, n // SEEDS)):
-        _, hint = _offer(lines, k, 0.5, hint, open_nodes, state)
+        _, hint = _offer(lines, k, 0.5, hint, work.stack, state)
     todo[0], top = 1, 1
     while top > 0:
         top -= 1
@@ -233,7 +233,7 @@ def directed_polyline(
         if one.boxes[node, 0] > one.boxes[node, 2]:
             continue
         covered_sq = max(state.lower, aim.enough) ** 2
-        if is_box_covered(one.boxes, node, two.control, hint, shift_x, shift_y, covered_sq):
+        if is_box_covered(one.boxes, node, pb.control, hint, shift_x, shift_y, covered_sq):
             continue
         if node < size:
             todo[top], todo[top + 1] = 2 * node + 1, 2 * node
@@ -242,3 +242,4 @@ def directed_polyline(
         first = (node - size) * BUCKET
         hint = _search_bucket(lines, first, min(n, first + BUCKET), hint, aim, state, work)
     state.upper = max(state.upper, max(state.lower + aim.gap, aim.enough))
+    write_witness(Curves(pa, pb, shift_x, shift_y), one.joints, two.joints, state, witness)

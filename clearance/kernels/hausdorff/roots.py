@@ -4,18 +4,13 @@ Not for: proving that a root is the only one (`hausdorff.single_roots`).
 """
 
 import math
+from typing import NamedTuple
 
 from clearance.compile.decorators import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.nearest import slide_to_foot
 from clearance.kernels.curve.pair import CurvePart, Curves
-from clearance.kernels.hausdorff.bracket import (
-    MOST_STEPS,
-    NARROWEST,
-    Bracket,
-    narrowed,
-    secant,
-)
+from clearance.kernels.hausdorff.bracket import Bracket, root_in, value_at
 
 
 @inline
@@ -58,6 +53,23 @@ def common_normal(
     return t, s
 
 
+class _Branches(NamedTuple):
+    """How much farther a point of A's piece `i` is from one branch of B than from another, both followed."""
+
+    i: int
+    j: int
+    s: float
+    k: int
+    r: float
+
+
+@value_at.register
+def _(function: _Branches, curves, t):
+    s, d = slide_from(curves, function.i, t, function.j, function.s)
+    r, e = slide_from(curves, function.i, t, function.k, function.r)
+    return _Branches(function.i, function.j, s, function.k, r), d - e, 1e-16 * (d + e)
+
+
 @kernel
 def self_bisector(
     curves: Curves, i: int, t_one: float, t_two: float, j: int, s: float, k: int, r: float
@@ -67,20 +79,9 @@ def self_bisector(
     At `t_one` the branch (j, s) is the nearer, at `t_two` the branch (k, r). Feet are followed by Newton's
     method, so that the first two equations hold at every step. nan where the branches do not cross.
     """
-    _, d_one = slide_from(curves, i, t_one, j, s)
-    _, e_one = slide_from(curves, i, t_one, k, r)
-    s, d_two = slide_from(curves, i, t_two, j, s)
-    r, e_two = slide_from(curves, i, t_two, k, r)
-    bracket = Bracket(t_one, t_two, d_one - e_one, d_two - e_two, 0)
-    if not (bracket.f_low <= 0.0 and bracket.f_high >= 0.0) or bracket.f_low == bracket.f_high:
+    branches = _Branches(i, j, s, k, r)
+    _, f_one, _ = value_at(branches, curves, t_one)
+    branches, f_two, _ = value_at(branches, curves, t_two)
+    if not (f_one <= 0.0 and f_two >= 0.0) or f_one == f_two:
         return math.nan
-    t = t_two
-    for _ in range(MOST_STEPS):
-        t = secant(bracket)
-        s, d = slide_from(curves, i, t, j, s)
-        r, e = slide_from(curves, i, t, k, r)
-        f = d - e
-        if abs(f) <= 1e-16 * (d + e) or abs(bracket.high - bracket.low) <= NARROWEST:
-            break
-        bracket = narrowed(bracket, t, f, f > 0.0)
-    return t
+    return root_in(Bracket(t_one, t_two, f_one, f_two, 0), branches, curves)[0]

@@ -10,24 +10,19 @@ import numpy as np
 
 from clearance.compile.declared import Floats2
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.curve.boxes import box_gap_sq, fill_inner_boxes
+from clearance.kernels.curve.bezier import Joints, Pieces
+from clearance.kernels.curve.boxes import cut_sq, fill_inner_boxes, nearest_in, with_bucket
 
 BUCKET = 8  # segments in a box
 STACK = 128  # nodes of a tree that may be open at once
 
 
 class Segments(NamedTuple):
-    """A polyline: its control points (2 n, 3) and their `segment_boxes` (2 P, 4)."""
+    """A polyline: its pieces, their `segment_boxes` (2 P, 4), and how the pieces follow one another."""
 
-    control: Floats2
+    pieces: Pieces
     boxes: Floats2
-
-
-class OpenNodes(NamedTuple):
-    """Scratch of `nearest_segment`: (STACK,) nodes, and (STACK,) how near each may be, squared."""
-
-    nodes: np.ndarray
-    gaps: np.ndarray
+    joints: Joints
 
 
 @kernel
@@ -75,31 +70,35 @@ def distance_to(control, k, x, y):
     return math.sqrt(foot_on(control, k, x, y)[0])
 
 
+class _NearestSegment(NamedTuple):
+    """The nearest segment so far, and its squared distance."""
+
+    square: float
+    which: int
+
+
+@cut_sq.register
+def _(best: _NearestSegment):
+    return best.square
+
+
+@with_bucket.register
+def _(best: _NearestSegment, control, bucket, x, y):
+    square, which = best
+    for k in range(bucket * BUCKET, min(control.shape[0] // 2, (bucket + 1) * BUCKET)):
+        there = foot_on(control, k, x, y)[0]
+        if there < square:
+            square, which = there, k
+    return _NearestSegment(square, which)
+
+
 @inline
-def nearest_segment(segments, x, y, hint, open_nodes):
+def nearest_segment(segments, x, y, hint, stack):
     """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
-    control, boxes, (nodes, gaps) = segments.control, segments.boxes, open_nodes
-    n, size = control.shape[0] // 2, boxes.shape[0] // 2
-    best, which = foot_on(control, hint, x, y)[0], hint
-    nodes[0], gaps[0], top = 1, 0.0, 1
-    while top > 0:
-        top -= 1
-        node = nodes[top]
-        if gaps[top] >= best:
-            continue
-        if node >= size:
-            first = (node - size) * BUCKET
-            for k in range(first, min(n, first + BUCKET)):
-                square = foot_on(control, k, x, y)[0]
-                if square < best:
-                    best, which = square, k
-            continue
-        a, b = box_gap_sq(boxes, 2 * node, x, y), box_gap_sq(boxes, 2 * node + 1, x, y)
-        nearer = 2 * node if a <= b else 2 * node + 1
-        nodes[top], gaps[top] = 4 * node + 1 - nearer, max(a, b)
-        nodes[top + 1], gaps[top + 1] = nearer, min(a, b)
-        top += 2
-    return math.sqrt(best), which
+    control = segments.pieces.control
+    first = _NearestSegment(foot_on(control, hint, x, y)[0], hint)
+    found = nearest_in(segments.boxes, x, y, first, control, stack)
+    return math.sqrt(found.square), found.which
 
 
 @inline

@@ -90,7 +90,7 @@ def _single_in(systems, j, s0, s1, a_box, points, room, rising_only):
     if s0 == s1:
         return True
     curves, union, gap = systems.pair.curves, room[:4], room[4]
-    enclose(curves.b, systems.db, j, s0, s1, points, union)
+    enclose(systems.b, j, s0, s1, points, union)
     gap_box(a_box[0], union[0], curves, gap)
     slopes = foot_slopes(gap, union)
     bends = slopes.bend_low > 0.0 or slopes.bend_high < 0.0
@@ -102,7 +102,7 @@ def same_foot(systems, one, two, a_box, points, room):
     """Whether the stretch of B from one cell to the other has provably one nearest point at most.
 
     Args:
-        one, two: the rows of two cells; room: (5, 4) scratch.
+        one, two: the rows of two cells; room: (5, 6) scratch.
     """
     i, j = int(one[PIECE]), int(two[PIECE])
     if i == j:

@@ -4,6 +4,7 @@ Not for: proving that there is one at most (`hausdorff.single_roots`).
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from clearance.kernels.hausdorff.bracket import (
     MOST_STEPS,
     NARROWEST,
     Bracket,
-    narrowed,
-    secant,
+    root_in,
+    value_at,
 )
 from clearance.kernels.hausdorff.roots import common_normal
 from clearance.kernels.hausdorff.single_roots import PIECE, S0, S1
@@ -119,28 +120,31 @@ def try_normal(pair, part, cell, state, work):
     _offer(pair, part.piece, t, cell, state, work)
 
 
-@inline
-def _difference(curves, i, t, one, two, work):
-    """How much farther A's point is from one cell than from another, and the sum of both distances."""
-    d, _ = _distance_to_cell(curves, i, t, one, work)
-    e, _ = _distance_to_cell(curves, i, t, two, work)
-    return d - e, d + e
+class _Cells(NamedTuple):
+    """How much farther a point of A's piece `i` is from one cell than from another, signed to rise."""
+
+    i: int
+    sign: float
+
+
+@value_at.register
+def _(function: _Cells, arrays, t):
+    curves, one, two, work = arrays
+    d, _ = _distance_to_cell(curves, function.i, t, one, work)
+    e, _ = _distance_to_cell(curves, function.i, t, two, work)
+    return function, function.sign * (d - e), 1e-16 * (d + e)
 
 
 @inline
 def try_bisector(pair, part, one, two, state, work):
     """System (13): the one point of T that is equally far from two cells, if there is one (regula falsi)."""
     state.n_bisectors += 1
-    curves, i = pair.curves, part.piece
-    f_low, _ = _difference(curves, i, part.t0, one, two, work)
-    f_high, _ = _difference(curves, i, part.t1, one, two, work)
+    i, arrays = part.piece, (pair.curves, one, two, work)
+    _, f_low, _ = value_at(_Cells(i, 1.0), arrays, part.t0)
+    _, f_high, _ = value_at(_Cells(i, 1.0), arrays, part.t1)
     if f_low * f_high > 0.0 or f_low == f_high:
         return
-    bracket, t = Bracket(part.t0, part.t1, f_low, f_high, 0), part.t0
-    for _ in range(MOST_STEPS):
-        t = secant(bracket)
-        f, total = _difference(curves, i, t, one, two, work)
-        if abs(f) <= 1e-16 * total or bracket.high - bracket.low <= NARROWEST:
-            break
-        bracket = narrowed(bracket, t, f, f * bracket.f_high > 0.0)
+    sign = 1.0 if f_high > f_low else -1.0
+    bracket = Bracket(part.t0, part.t1, sign * f_low, sign * f_high, 0)
+    t, _ = root_in(bracket, _Cells(i, sign), arrays)
     _offer(pair, i, t, one, state, work)

@@ -15,8 +15,8 @@ import numpy as np
 
 from clearance.compile.declared import Floats2
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.curve.bezier import Pieces
-from clearance.kernels.curve.interval import derived, dot, enclose
+from clearance.kernels.curve.bezier import Pieces, rough_joints
+from clearance.kernels.curve.interval import dot, enclose, with_derivatives
 from clearance.kernels.curve.pair import CurveArrays, CurvePair, CurvePart, Curves
 from clearance.kernels.curve.scratch import SQUARES, new_scratch, widest
 from clearance.kernels.hausdorff.bounds import consider, extent_bound, upper_bound
@@ -44,15 +44,22 @@ A_ROOT = 40.0  # what finding a root costs beside excluding a cell
 
 
 class Systems(NamedTuple):
-    """What is solved: two curves, three derivatives of B, and (n, 2) which of its ends are not smooth."""
+    """What is solved.
+
+    Attributes:
+        pair: two curves. a, b: their pieces `with_derivatives`.
+        ends_a, ends_b: (n, 2) which of their ends are not smooth.
+    """
 
     pair: CurvePair
-    db: tuple[Pieces, Pieces, Pieces]
+    a: Pieces
+    b: Pieces
+    ends_a: np.ndarray
     ends_b: np.ndarray
 
 
 class BoxScratch(NamedTuple):
-    """Scratch: (4, 4) the boxes of A's part, (4,) one of a gap, (5, 4) for `same_foot`."""
+    """Scratch: (4, 6) the boxes of A's part, (4,) one of a gap, (5, 6) for `same_foot`."""
 
     a: np.ndarray
     gap: np.ndarray
@@ -140,10 +147,10 @@ def _settle_pairs(systems, part, table, level, boxes, state, work):
 
 
 @inline
-def _settle_level(systems, da, part, table, level, boxes, state, work):
+def _settle_level(systems, part, table, level, boxes, state, work):
     """Settles what can be of an interval's systems: whether any stays open, whether all fit, and the cost."""
     points = work[SQUARES]
-    enclose(systems.pair.curves.a, da, part.piece, part.t0, part.t1, points, boxes.a)
+    enclose(systems.a, part.piece, part.t0, part.t1, points, boxes.a)
     n = put_child_cells(systems, table, level, level > 1, boxes.a, points, boxes.gap)
     cost = 2.0 * table.n_cells[level - 1]
     cost += _settle_normals(systems, part, table, level, n, boxes, state, work)
@@ -157,7 +164,7 @@ def _settle_level(systems, da, part, table, level, boxes, state, work):
 
 
 @inline
-def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
+def _solve_part(systems, b_parts, part, budget, table, boxes, state, work):
     """Finds all candidates on one part of A; see the module.
 
     What the budget, the depth or the room leaves open is bounded.
@@ -175,7 +182,7 @@ def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
         if not fits_first or spent > budget:
             _leave(systems.pair, here, state, work)
             continue
-        is_open, fits, cost = _settle_level(systems, da, here, table, level, boxes, state, work)
+        is_open, fits, cost = _settle_level(systems, here, table, level, boxes, state, work)
         spent += cost
         if not fits or (is_open and level >= DEEPEST):
             _leave(systems.pair, here, state, work)
@@ -184,13 +191,6 @@ def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
             stack[top, 0], stack[top, 1], stack[top, 2] = middle, here.t1, level + 1
             stack[top + 1, 0], stack[top + 1, 1], stack[top + 1, 2] = here.t0, middle, level + 1
             top += 2
-
-
-@inline
-def _three_derivatives(pieces):
-    first = derived(pieces)
-    second = derived(first)
-    return first, second, derived(second)
 
 
 @inline
@@ -224,14 +224,19 @@ def solve_directed(
     """
     state, work = states[0], new_scratch(max(widest(one.pieces), widest(two.pieces)), 0)
     pair = CurvePair(Curves(one.pieces, two.pieces, shift_x, shift_y), two.leaves)
-    da, db = _three_derivatives(one.pieces), _three_derivatives(two.pieces)
-    systems, table = Systems(pair, db, two.is_end), new_table()
-    boxes = BoxScratch(np.empty((4, 4)), np.empty(4), np.empty((5, 4)))
+    systems = Systems(
+        pair,
+        with_derivatives(one.pieces),
+        with_derivatives(two.pieces),
+        rough_joints(one.pieces, one.joints),
+        rough_joints(two.pieces, two.joints),
+    )
+    table, boxes = new_table(), BoxScratch(np.empty((4, 6)), np.empty(4), np.empty((5, 6)))
     share = budget / max(1, a_parts.shape[0])
     for k in range(a_parts.shape[0]):
-        _consider_ends(pair, one.is_end, a_parts[k], state, work)
+        _consider_ends(pair, systems.ends_a, a_parts[k], state, work)
         part = CurvePart(int(a_parts[k, 0]), a_parts[k, 1], a_parts[k, 2])
-        _solve_part(systems, da, b_parts, part, share, table, boxes, state, work)
+        _solve_part(systems, b_parts, part, share, table, boxes, state, work)
     if state.piece_a < 0:  # nothing to solve, and no end: any point for a witness
         consider(pair, 0, 0.5, 0, state, work)
     state.upper = max(state.upper, state.distance)

@@ -25,7 +25,7 @@ from clearance.kernels.curve.arc import (
     arc_middle,
     segment_distance,
 )
-from clearance.kernels.curve.arc_fit import BUCKET, Leaves
+from clearance.kernels.curve.arc_fit import Leaves
 from clearance.kernels.curve.bezier import Pieces, hypotenuse
 from clearance.kernels.curve.distance_map import DistanceMap, draw, nearest_arc
 
@@ -84,50 +84,12 @@ def arc_covers(points, row, reach):
 
 
 @inline
-def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
-    """Whether all curve in a node's box lies within `reach` of one arc of the other curve; and that arc.
-
-    The distance to an arc grows by at most what a point moves, so that the box's centre decides.
-    """
-    x0, y0, x1, y1 = boxes[node, 0], boxes[node, 1], boxes[node, 2], boxes[node, 3]
-    enough = reach - 0.5 * hypotenuse(x1 - x0, y1 - y0) * (1.0 + 1e-15)
-    if not enough > 0.0:
-        return False, hint
-    x, y = 0.5 * (x0 + x1) + shift_x, 0.5 * (y0 + y1) + shift_y
-    distance, hint = nearest_arc(other, x, y, hint, enough, stack)
-    return distance <= enough, hint
-
-
-@inline
-def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack):
-    """Clears `kept` for whole nodes of the tree that lie within the lower bound of one arc of the other.
-
-    What trimming arc by arc does, for runs of arcs that are short beside the lower bound.
-    """
-    boxes = leaves.boxes
-    size, n_arcs = boxes.shape[0] // 2, leaves.arcs.shape[0]
-    epsilon = 0.0
-    for k in range(other.arcs.shape[0]):
-        epsilon = max(epsilon, other.arcs[k, EPS])
-    reach = lower_bound * (1.0 - 1e-14) - epsilon
-    nodes = np.empty(128, np.int64)
-    nodes[0], top, hint = 1, 1, drawn.arc[0]
-    while top > 0:
-        top -= 1
-        node = nodes[top]
-        if boxes[node, 0] > boxes[node, 2]:
-            continue
-        covered, hint = _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack)
-        if not covered and node < size:
-            nodes[top], nodes[top + 1] = 2 * node + 1, 2 * node
-            top += 2
-        elif covered:
-            depth = 0
-            while node < size:
-                node, depth = 2 * node, depth + 1
-            first = (node - size) * BUCKET
-            for k in range(first, min(n_arcs, first + (BUCKET << depth))):
-                kept[k] = False
+def put_control_points(row, shift_x, shift_y, points):
+    """Writes the control points (3, 2) of an arc, moved by the shift."""
+    mx, my = arc_middle(row)
+    points[0, 0], points[0, 1] = row[X0] + shift_x, row[Y0] + shift_y
+    points[1, 0], points[1, 1] = mx + shift_x, my + shift_y
+    points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
 
 
 @kernel
@@ -139,22 +101,18 @@ def trim(
     shift_y: float,
     lower_bound: float,
     kept: Flags,
-) -> int:
-    """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance; returns how many stay.
+):
+    """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance.
 
     The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end,
     and the two beside that in the middle.
     """
     points = np.empty((3, 2))
-    n_kept = 0
     for k in range(leaves.arcs.shape[0]):
         if not kept[k]:
             continue
         row = leaves.arcs[k]
-        mx, my = arc_middle(row)
-        points[0, 0], points[0, 1] = row[X0] + shift_x, row[Y0] + shift_y
-        points[1, 0], points[1, 1] = mx + shift_x, my + shift_y
-        points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
+        put_control_points(row, shift_x, shift_y, points)
         start, end = drawn.first[k], drawn.first[k + 1]
         covered = False
         for j in range(5):
@@ -168,8 +126,6 @@ def trim(
                 covered = True
                 break
         kept[k] = not covered
-        n_kept += kept[k]
-    return n_kept
 
 
 @kernel

@@ -4,7 +4,7 @@ import numpy as np
 
 from clearance.compile.declared import Floats
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.curve.bezier import hypotenuse, jet
+from clearance.kernels.curve.bezier import hypotenuse, is_rough, jet
 from clearance.kernels.curve.pair import CurveArrays, Curves
 from clearance.kernels.hausdorff.state import (
     COMMON_NORMAL,
@@ -21,14 +21,14 @@ STEEP = (
 
 
 @inline
-def _is_end(ends, piece, local):
-    return (local <= AT_THE_END and ends[piece, 0]) or (
-        local >= 1.0 - AT_THE_END and ends[piece, 1]
-    )
+def _is_end(pieces, joints, i, local):
+    if local <= AT_THE_END and is_rough(pieces, joints, i, 0):
+        return True
+    return local >= 1.0 - AT_THE_END and is_rough(pieces, joints, i, 1)
 
 
 @inline
-def write_witness(curves, ends_a, ends_b, state, out):
+def write_witness(curves, joints_a, joints_b, state, out):
     """Fills `out` (5,) with the two points that `state` names and the kind of solution that they are.
 
     At a smooth point of A the distance is either stationary (common normal, or a corner or end of B) or it
@@ -41,12 +41,12 @@ def write_witness(curves, ends_a, ends_b, state, out):
     length = hypotenuse(ex, ey)
     is_apart = length > SAME_POINT * (hypotenuse(a.x, a.y) + hypotenuse(b.x, b.y))
     is_steep = abs(ex * a.dx + ey * a.dy) > STEEP * length * hypotenuse(a.dx, a.dy)
-    if _is_end(ends_a, i, state.at_a):
+    if _is_end(curves.a, joints_a, i, state.at_a):
         out[4] = END
     elif is_apart and is_steep:
         out[4] = SELF_BISECTOR
     else:
-        out[4] = END if _is_end(ends_b, j, state.at_b) else COMMON_NORMAL
+        out[4] = END if _is_end(curves.b, joints_b, j, state.at_b) else COMMON_NORMAL
 
 
 @kernel
@@ -56,5 +56,5 @@ def witness_of(
     """The points (5,) that the first of `states` names, as `write_witness` gives them."""
     points = np.empty(5)
     curves = Curves(one.pieces, two.pieces, shift_x, shift_y)
-    write_witness(curves, one.is_end, two.is_end, states[0], points)
+    write_witness(curves, one.joints, two.joints, states[0], points)
     return points
