@@ -160,3 +160,19 @@ def test_an_outline_against_its_own_tessellation():
     assert sagitta.max() - 1e-13 <= found.distance <= 2.0 * half.max()
     few = hausdorff(exact, Curve.polyline(vertices))
     assert few.distance == pytest.approx(np.hypot(*(vertices[-1] - vertices[0])) / 2, rel=1e-3)
+
+
+def comb(low, high):
+    """Vertices of teeth just below the x axis, ten a unit; those at both ends are 0.1 below."""
+    n = round(10 * (high - low))
+    return [[low + (high - low) * k / n, -0.15 if k % 2 else -0.1] for k in range(n + 1)]
+
+
+@pytest.mark.parametrize(("start", "width"), [(60, 6), (64, 2), (64, 6), (66, 2), (70, 6), (90, 2)])
+def test_a_straight_edge_over_a_long_row_of_teeth_is_farthest_over_its_gap(start, width):
+    bottom = [[start, -12], [start + width, -12]]
+    teeth = Curve.polyline([*comb(0, start), *bottom, *comb(start + width, 100)])
+    below = Curve.contours([teeth, Curve.arc([50, -60], 1, 0, 1)])  # no polyline any more
+    found = hausdorff(Curve.line([0, 0], [100, 0]), below).directed["a_to_b"]
+    assert found.distance == pytest.approx(math.hypot(0.5 * width, 0.1), rel=1e-12)
+    assert found.lower <= math.hypot(0.5 * width, 0.1) <= found.upper

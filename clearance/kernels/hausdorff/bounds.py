@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from clearance.compile.decorators import inline
-from clearance.kernels.curve.arc import EPS, arc_distance, segment_distance
+from clearance.kernels.curve.arc import segment_distance
 from clearance.kernels.curve.bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest
@@ -77,17 +77,6 @@ def chord_bound(curves, part, other, work):
         x, y = p[k, 0] / p[k, 2] + curves.shift_x, p[k, 1] / p[k, 2] + curves.shift_y
         most = max(most, segment_distance(x, y, x0, y0, x1, y1))
     return most + off
-
-
-@inline
-def line_covered(pair, part, hint, lower):
-    """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
-    curves = pair.curves
-    here, there = jet(curves.a, part.piece, part.t0), jet(curves.a, part.piece, part.t1)
-    x, y = 0.5 * (here.x + there.x) + curves.shift_x, 0.5 * (here.y + there.y) + curves.shift_y
-    half = 0.5 * hypotenuse(there.x - here.x, there.y - here.y)
-    row = pair.leaves.arcs[hint]
-    return half < lower and (arc_distance(row, x, y) + row[EPS] + half) * (1.0 + 1e-14) <= lower
 
 
 @inline

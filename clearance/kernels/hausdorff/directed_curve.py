@@ -8,6 +8,7 @@ import numpy as np
 
 from clearance.compile.declared import Floats
 from clearance.compile.decorators import inline, kernel
+from clearance.kernels.arithmetic.rows import with_room
 from clearance.kernels.curve.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
@@ -20,7 +21,7 @@ from clearance.kernels.curve.scratch import (
 )
 from clearance.kernels.hausdorff.cutting import ROOM
 from clearance.kernels.hausdorff.interval_search import MANY, close, examine
-from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval, with_room
+from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval
 from clearance.kernels.hausdorff.state import SearchGoal, SearchStates
 from clearance.kernels.hausdorff.trim import trim
 from clearance.kernels.hausdorff.witness import write_witness

@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.decorators import inline
+from clearance.kernels.arithmetic.rows import with_room
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.follow import (
     SHARES,
@@ -20,11 +21,11 @@ from clearance.kernels.curve.follow import (
 )
 from clearance.kernels.curve.pair import CurvePart
 from clearance.kernels.curve.scratch import FEET
-from clearance.kernels.hausdorff.bounds import chord_bound, consider, line_covered, upper_bound
+from clearance.kernels.hausdorff.bounds import chord_bound, consider, upper_bound
 from clearance.kernels.hausdorff.cutting import ROOM, BoundPlace, cut_interval
-from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop, with_room
+from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop
 from clearance.kernels.hausdorff.roots import common_normal, slide_from
-from clearance.kernels.hausdorff.run import NearestRun, arc_run_bound
+from clearance.kernels.hausdorff.run import NearestRun, StraightPart, run_bound
 
 MANY = 512  # arcs from which on whole runs of them are tried first
 WORTH = 0.25  # the drift's share of what a bound is too large, from which on a map of higher order is tried
@@ -106,8 +107,12 @@ def _run_bound(pair, interval, leaf, aim, state, planes):
     one = consider(pair, interval.piece, interval.t0, leaf, state, planes)
     two = consider(pair, interval.piece, interval.t1, one.leaf, state, planes)
     run = NearestRun(one.leaf, two.leaf, one.distance, two.distance)
-    part = CurvePart(interval.piece, interval.t0, interval.t1)
-    return arc_run_bound(pair.curves, part, pair.leaves.arcs, run, settled_below(aim, state))
+    curves = pair.curves
+    here = jet(curves.a, interval.piece, interval.t0)
+    there = jet(curves.a, interval.piece, interval.t1)
+    dx, dy = there.x - here.x, there.y - here.y
+    part = StraightPart(here.x, here.y, dx, dy, curves.shift_x, curves.shift_y)
+    return run_bound(part, pair.leaves, run, settled_below(aim, state))
 
 
 @inline
@@ -176,11 +181,6 @@ def examine(pair, aim, interval, state, work, heap, n_open):
     curves, i = pair.curves, interval.piece
     straight = curves.a.first[i + 1] - curves.a.first[i] == 2 and not curves.a.rational[i]
     state.n_cuts += 1
-    known = max(state.lower, aim.enough)
-    part = CurvePart(i, interval.t0, interval.t1)
-    if straight and line_covered(pair, part, interval.hint, known):
-        state.upper = max(state.upper, known)
-        return interval.hint, n_open
     middle = 0.5 * (interval.t0 + interval.t1)
     foot = consider(pair, i, middle, interval.hint, state, work.planes)
     if state.lower > aim.limit:

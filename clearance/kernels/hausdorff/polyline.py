@@ -13,11 +13,10 @@ import numpy as np
 
 from clearance.compile.declared import Floats
 from clearance.compile.decorators import inline, kernel
-from clearance.kernels.curve.arc import Chord
 from clearance.kernels.curve.pair import Curves
 from clearance.kernels.hausdorff.bounds import keep_best
 from clearance.kernels.hausdorff.bracket import Bracket, root_in, value_at
-from clearance.kernels.hausdorff.run import NearestRun, segment_run_bound
+from clearance.kernels.hausdorff.run import NearestRun, StraightPart, run_bound
 from clearance.kernels.hausdorff.segments import (
     BUCKET,
     STACK,
@@ -137,9 +136,9 @@ def _bound_of(lines, i, span, enough):
         x0, y0 = point_at(lines.control, i, span.t0)
         x1, y1 = point_at(lines.control, i, span.t1)
         run = NearestRun(span.near0, span.near1, span.d0, span.d1)
-        chord = Chord(x0, y0, x1, y1)
-        by_run = segment_run_bound(chord, lines.shift_x, lines.shift_y, control, run, enough)
-        bound = min(bound, by_run)
+        x, y = x0 + lines.shift_x, y0 + lines.shift_y
+        part = StraightPart(x, y, x1 - x0, y1 - y0, 0.0, 0.0)
+        bound = min(bound, run_bound(part, lines.other, run, enough))
     return bound
 
 

@@ -5,8 +5,6 @@ Not for: what becomes of them (`hausdorff.interval_search`).
 
 from typing import NamedTuple
 
-import numpy as np
-
 from clearance.compile.decorators import inline
 
 BOUND, T0, T1, HINT, WAS_CUT, PIECE = range(6)
@@ -74,13 +72,3 @@ def pop(heap, n):
             return n
         _swap(heap, k, first)
         k = first
-
-
-@inline
-def with_room(heap, n, more):
-    """The queue of `n` entries, or a larger copy where there is no room for `more`."""
-    if n + more <= heap.shape[0]:
-        return heap
-    wider = np.empty((2 * heap.shape[0], heap.shape[1]))
-    wider[: heap.shape[0]] = heap
-    return wider

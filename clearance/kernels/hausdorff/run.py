@@ -9,9 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.decorators import inline
+from clearance.compile.decorators import by_type, inline
 from clearance.kernels.curve.arc import EPS, RADIUS, X0, X1, Y0, Y1, arc_middle
-from clearance.kernels.curve.bezier import hypotenuse, jet
+from clearance.kernels.curve.arc_fit import Leaves
+from clearance.kernels.curve.bezier import hypotenuse
+from clearance.kernels.hausdorff.segments import Segments
 
 LONGEST_RUN = 2000
 
@@ -25,57 +27,78 @@ class NearestRun(NamedTuple):
     off_last: float
 
 
-@inline
-def _direction(dx, dy, run, enough):
-    """The unit vector along (dx, dy) and whether a bound of `run` can be below `enough` at all."""
-    length = hypotenuse(dx, dy)
-    if length == 0.0 or max(run.off_first, run.off_last) > enough:
-        return 0.0, 0.0, False
-    return dx / length, dy / length, abs(run.first - run.last) <= LONGEST_RUN
+class StraightPart(NamedTuple):
+    """A straight part of A: where it starts, where it leads, and the step into B's frame."""
+
+    x: float
+    y: float
+    dx: float
+    dy: float
+    shift_x: float
+    shift_y: float
+
+
+@by_type
+def _follows(others, k):
+    """Whether arc or segment `k` of B starts where the one before ends."""
+    raise TypeError
+
+
+@by_type
+def _reach(others, k, part):
+    """How far B at arc or segment `k` may be from the line of a part, its direction a unit vector."""
+    raise TypeError
 
 
 @inline
-def arc_run_bound(curves, part, arcs, run, enough):
-    """The bound for a run of B's arcs; inf or a number beyond `enough` where the run bounds nothing."""
-    here, there = jet(curves.a, part.piece, part.t0), jet(curves.a, part.piece, part.t1)
-    dx, dy, serves = _direction(there.x - here.x, there.y - here.y, run, enough)
-    if not serves:
+def _off_line(part, x, y):
+    """The distance of a point of B from the line of a part."""
+    x, y = x - part.x - part.shift_x, y - part.y - part.shift_y
+    return abs(part.dx * y - part.dy * x)
+
+
+@_follows.register
+def _(others: Leaves, k):
+    row, before = others.arcs[k], others.arcs[k - 1]
+    return row[X0] == before[X1] and row[Y0] == before[Y1]
+
+
+@_reach.register
+def _(others: Leaves, k, part):
+    row = others.arcs[k]
+    off = max(_off_line(part, row[X0], row[Y0]), _off_line(part, row[X1], row[Y1]))
+    if row[RADIUS] != 0.0:
+        x, y = arc_middle(row)
+        off = max(off, _off_line(part, x, y))
+    return off + row[EPS]
+
+
+@_follows.register
+def _(others: Segments, k):
+    control, r = others.pieces.control, 2 * k
+    return control[r, 0] == control[r - 1, 0] and control[r, 1] == control[r - 1, 1]
+
+
+@_reach.register
+def _(others: Segments, k, part):
+    control, r = others.pieces.control, 2 * k
+    off = _off_line(part, control[r, 0], control[r, 1])
+    return max(off, _off_line(part, control[r + 1, 0], control[r + 1, 1]))
+
+
+@inline
+def run_bound(part, others, run, enough):
+    """The bound of a part by a run of B's arcs (`Leaves`) or `Segments`; inf where it is above `enough`."""
+    length, most = hypotenuse(part.dx, part.dy), max(run.off_first, run.off_last)
+    if length == 0.0 or most > enough or abs(run.first - run.last) > LONGEST_RUN:
         return np.inf
-    shift_x, shift_y, most = curves.shift_x, curves.shift_y, max(run.off_first, run.off_last)
+    dx, dy = part.dx / length, part.dy / length
+    line = StraightPart(part.x, part.y, dx, dy, part.shift_x, part.shift_y)
     low, high = min(run.first, run.last), max(run.first, run.last)
     for k in range(low, high + 1):
-        row = arcs[k]
-        if k > low and (row[X0] != arcs[k - 1, X1] or row[Y0] != arcs[k - 1, Y1]):
+        if k > low and not _follows(others, k):
             return np.inf
-        x, y = row[X1] - here.x - shift_x, row[Y1] - here.y - shift_y
-        off = abs(dx * y - dy * x)
-        if k == low:
-            x, y = row[X0] - here.x - shift_x, row[Y0] - here.y - shift_y
-            off = max(off, abs(dx * y - dy * x))
-        if row[RADIUS] != 0.0:
-            mx, my = arc_middle(row)
-            x, y = mx - here.x - shift_x, my - here.y - shift_y
-            off = max(off, abs(dx * y - dy * x))
-        most = max(most, off + row[EPS])
-        if most > enough:
-            break
-    return most
-
-
-@inline
-def segment_run_bound(chord, shift_x, shift_y, control, run, enough):
-    """The bound of a segment of A, given by its ends, for a run of B's segments; inf beyond `enough`."""
-    dx, dy, serves = _direction(chord.x1 - chord.x0, chord.y1 - chord.y0, run, enough)
-    if not serves:
-        return np.inf
-    x0, y0 = chord.x0 + shift_x, chord.y0 + shift_y
-    most = max(run.off_first, run.off_last)
-    low, high = 2 * min(run.first, run.last), 2 * max(run.first, run.last) + 1
-    for r in range(low, high + 1):
-        starts = r > low and r % 2 == 0
-        if starts and (control[r, 0] != control[r - 1, 0] or control[r, 1] != control[r - 1, 1]):
-            return np.inf
-        most = max(most, abs(dx * (control[r, 1] - y0) - dy * (control[r, 0] - x0)))
+        most = max(most, _reach(others, k, line))
         if most > enough:
             return np.inf
     return most
