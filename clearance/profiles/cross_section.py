@@ -15,50 +15,28 @@ from clearance.kernels.profile.swept_cover import Raster
 from clearance.kernels.profile.swept_cut import add_cut_cover, cut_hulls, cut_segments
 from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
-from clearance.profiles.silhouette import CHUNK, Hulls
+from clearance.profiles.silhouette import CHUNK, Hulls, PlaneView
 
 
-class CrossSection:
+class CrossSection(PlaneView):
     """The cross-section of one body, at its knots."""
 
     def __init__(self, label: str, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
-        self.shape, self.knots = shape.outward(), knots
-        self._axes = np.vstack([plane.axes, np.cross(*plane.axes)])
-        self._origin = plane.origin
+        axes = np.vstack([plane.axes, np.cross(*plane.axes)])
+        super().__init__(shape.outward(), knots, plane.origin, axes)
         self._closed = self.shape.component_closed[self.shape.face_component]
         self._label = label
-        self._open_cut = False
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """True once `hulls` has cut an open surface."""
-        return (
-            (f"{self._label} is not closed: its cut is that of its surface",)
-            if self._open_cut
-            else ()
-        )
-
-    @property
-    def short(self) -> float:
-        """[m] how far any point swept in the plane may be from the polygons and the covered pixels."""
-        return float(self.knots.chord.max(initial=0.0))
 
     @property
     def excess(self) -> float:
         """[m] how far any point of them may be from a swept point in space: off the plane, and off a chord."""
         return 2.0 * self.short
 
-    def box(self) -> np.ndarray:
-        """(2, 2) [m] a box in the plane that contains the body at all knots."""
-        corners = np.stack(np.meshgrid(*self.shape.bounds.T), axis=-1).reshape(-1, 3)
-        seen = self._placed(self.knots.poses, corners)[:, :, :2].reshape(-1, 2)
-        return np.stack([seen.min(axis=0), seen.max(axis=0)])
-
     def cover(self, raster: Raster) -> None:
         """Marks the pixels that are filled at any knot."""
         shape = self.shape
         for start in range(0, len(self.knots.instant), CHUNK):
-            points = self._placed(self.knots.poses[start : start + CHUNK], shape.vertices)
+            points = self.placed(self.knots.poses[start : start + CHUNK], shape.vertices)
             add_cut_cover(raster, points, shape.face_starts, shape.face_vertices, self._closed)
 
     def hulls(
@@ -71,16 +49,17 @@ class CrossSection:
         moving = np.flatnonzero(knots.moves).tolist()
         runs = [(0, 0, 0.0)] + [(i, i + 1, float(knots.chord[i])) for i in moving]
         for i, j, reach in runs:
-            start, end = self._placed(knots.poses[[i, j]], vertices)
-            corners, count = cut_hulls(raster, sums, start, end, triangles, reach, width, slack)
-            self._open_cut |= len(corners) > 0 and not self._closed.all()
-            yield Hulls(corners, count, np.full(len(corners), knots.instant[i]))
+            start, end = self.placed(knots.poses[[i, j]], vertices)
+            rows = cut_hulls(raster, sums, start, end, triangles, reach, width, slack)
+            if len(rows) and not self._closed.all():
+                self.notes = (f"{self._label} is not closed: its cut is that of its surface",)
+            yield Hulls.of(rows, knots.instant[i:])
 
     def _filled(self) -> Hulls:
         """The sections of closed parts at the first knot, part by part, as convex polygons."""
         from clearance.profiles.region import convex_parts, union
 
-        shape, points = self.shape, self._placed(self.knots.poses[:1], self.shape.vertices)[0]
+        shape, points = self.shape, self.placed(self.knots.poses[:1], self.shape.vertices)[0]
         cuts = np.empty((shape.n_faces, 4))
         filled = []
         for component in np.flatnonzero(shape.component_closed):
@@ -89,12 +68,6 @@ class CrossSection:
             filled.append(region_of_cuts(cuts[:n]))
         corners, count = convex_parts(union(filled))
         return Hulls(corners, count, np.zeros(len(count)))
-
-    def _placed(self, poses: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """(k, v, 3) [m] the points of the body in the plane's frame, heights last."""
-        turn = self._axes @ poses[:, :3, :3]
-        shift = (poses[:, :3, 3] - self._origin) @ self._axes.T
-        return np.ascontiguousarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
 
 
 def region_of_cuts(cuts: np.ndarray):

@@ -17,7 +17,13 @@ import numpy as np
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, add_cover
-from clearance.kernels.profile.swept_hulls import edge_hulls, triangle_hulls
+from clearance.kernels.profile.swept_hulls import (
+    CORNERS,
+    COUNT,
+    INTERVAL,
+    edge_hulls,
+    triangle_hulls,
+)
 from clearance.profiles.chords import BodyKnots
 from clearance.profiles.plane import Plane
 
@@ -43,12 +49,53 @@ class Hulls:
     n_corners: np.ndarray
     instant: np.ndarray
 
+    @classmethod
+    def of(cls, rows: np.ndarray, instants: np.ndarray) -> Hulls:
+        """The polygons that kernels write as rows; an interval counts in `instants`."""
+        corners = rows[:, CORNERS:].reshape(len(rows), rows.shape[1] // 2 - 1, 2)
+        interval = rows[:, INTERVAL].astype(np.int64)
+        return cls(corners, rows[:, COUNT].astype(np.int64), instants[interval])
 
-class Silhouette:
+
+class PlaneView:
+    """One body at its knots, in coordinates along `axes`: the plane's two, and heights if they matter."""
+
+    notes: tuple[str, ...] = ()
+
+    def __init__(
+        self, shape: Polyhedron, knots: BodyKnots, origin: np.ndarray, axes: np.ndarray
+    ) -> None:
+        self.shape, self.knots, self._origin, self._axes = shape, knots, origin, axes
+
+    def box(self) -> np.ndarray:
+        """(2, 2) [m] a box in the plane that contains the body at all knots."""
+        corners = np.stack(np.meshgrid(*self.shape.bounds.T), axis=-1).reshape(-1, 3)
+        seen = self.placed(self.knots.poses, corners)[:, :, :2].reshape(-1, 2)
+        return np.stack([seen.min(axis=0), seen.max(axis=0)])
+
+    def placed(self, poses: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(k, v, axes) [m] the coordinates of points of the body."""
+        turn = self._axes @ poses[:, :3, :3]
+        shift = (poses[:, :3, 3] - self._origin) @ self._axes.T
+        return np.ascontiguousarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
+
+    @property
+    def short(self) -> float:
+        """[m] how far any point swept in the plane may be from the polygons and the covered pixels."""
+        return float(self.knots.chord.max(initial=0.0))
+
+    @property
+    def excess(self) -> float:
+        """[m] how far any point of them may be from a swept point, besides `slack`."""
+        return self.short
+
+
+class Silhouette(PlaneView):
     """One body seen along a plane's normal, at its knots."""
 
     def __init__(self, shape: Polyhedron, knots: BodyKnots, plane: Plane) -> None:
-        self.shape, self.knots, self.plane = shape, knots, plane
+        super().__init__(shape, knots, plane.origin, plane.axes)
+        self._toward = np.cross(*plane.axes)
 
     @cached_property
     def _edges(self) -> SweptEdges:
@@ -66,28 +113,21 @@ class Silhouette:
         ways = np.where(use.forward, 1, -1).astype(np.int64)
         return SweptEdges(np.ascontiguousarray(ends), use.starts, ring.face[use.order], ways)
 
-    def box(self) -> np.ndarray:
-        """(2, 2) [m] a box in the plane that contains the body at all knots."""
-        low, high = self.shape.bounds
-        corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1)
-        seen = self._seen(self.knots.poses, corners.reshape(-1, 3)).reshape(-1, 2)
-        return np.stack([seen.min(axis=0), seen.max(axis=0)])
-
     def cover(self, raster: Raster) -> None:
         """Marks the pixels that are covered at any knot."""
         for start in range(0, len(self.knots.instant), CHUNK):
             poses = self.knots.poses[start : start + CHUNK]
             signs = np.sign(self._facing(poses)).astype(np.int8)
-            add_cover(raster, self._seen(poses, self.shape.vertices), self._edges, signs)
+            add_cover(raster, self.placed(poses, self.shape.vertices), self._edges, signs)
 
     def hulls(
         self, raster: Raster, sums: np.ndarray, width: float, slack: float
     ) -> Iterator[Hulls]:
         """The polygons that are not covered, a few instants at a time."""
         knots = self.knots
-        first = self._seen(knots.poses[:1], self.shape.vertices)[0]
-        corners, count = triangle_hulls(raster, sums, first, self.shape.triangles(), width)
-        yield Hulls(corners, count, np.full(len(corners), knots.instant[0]))
+        first = self.placed(knots.poses[:1], self.shape.vertices)[0]
+        rows = triangle_hulls(raster, sums, first, self.shape.triangles(), width)
+        yield Hulls.of(rows, knots.instant)
         moving = np.flatnonzero(knots.moves)
         for run in np.split(moving, np.flatnonzero(np.diff(moving) != 1) + 1):
             for start in range(0, len(run), CHUNK):
@@ -101,32 +141,10 @@ class Silhouette:
         facing = self._facing(knots.middle[run])
         open_side = np.abs(facing) <= knots.turn[run, None] + DOUBT
         states = np.where(open_side, 0, np.sign(facing)).astype(np.int8)
-        points = self._seen(knots.poses[run[0] : run[-1] + 2], self.shape.vertices)
-        corners, count, interval = edge_hulls(
-            raster, sums, points, self._edges, states, width, slack
-        )
-        return Hulls(corners, count, knots.instant[run][interval])
+        points = self.placed(knots.poses[run[0] : run[-1] + 2], self.shape.vertices)
+        rows = edge_hulls(raster, sums, points, self._edges, states, width, slack)
+        return Hulls.of(rows, knots.instant[run])
 
     def _facing(self, poses: np.ndarray) -> np.ndarray:
         """(k, f) cosine of each face's normal to the plane's."""
-        normal = self.plane.axes[0], self.plane.axes[1]
-        toward = np.cross(*normal)
-        return (poses[:, :3, :3].transpose(0, 2, 1) @ toward) @ self.shape.normals.T
-
-    def _seen(self, poses: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """(k, v, 2) [m] the points of the body in the plane."""
-        turn = self.plane.axes @ poses[:, :3, :3]
-        shift = (poses[:, :3, 3] - self.plane.origin) @ self.plane.axes.T
-        return np.ascontiguousarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
-
-    @property
-    def short(self) -> float:
-        """[m] how far any swept point may be from the polygons and the covered pixels."""
-        return float(self.knots.chord.max(initial=0.0))
-
-    @property
-    def excess(self) -> float:
-        """[m] how far any point of them may be from a swept point, besides `slack`."""
-        return self.short
-
-    notes: tuple[str, ...] = ()
+        return (poses[:, :3, :3].transpose(0, 2, 1) @ self._toward) @ self.shape.normals.T

@@ -19,7 +19,7 @@ from clearance.kernels.profile.swept_cover import (
     lies_covered,
     row_of,
 )
-from clearance.kernels.profile.swept_hulls import fattened_hull
+from clearance.kernels.profile.swept_hulls import CORNERS, fattened_hull, with_polygon
 
 MOST = 40
 """Corners of the largest polygon that is handed out here: six points and fifteen lines cut twice."""
@@ -146,7 +146,7 @@ def cut_hulls(
     reach: float,
     width: float,
     slack: float,
-) -> tuple[Floats3, Integers]:
+) -> Floats2:
     """What triangles leave in the plane from one instant to the next, as convex polygons, uncovered only.
 
     Args:
@@ -155,10 +155,9 @@ def cut_hulls(
         width, slack: as `edge_hulls`.
 
     Returns:
-        corners (m, MOST, 2), n_corners (m,).
+        (m, CORNERS + 2 MOST) the polygons as rows.
     """
-    found = 0
-    corners, n_corners = np.empty((64, MOST, 2)), np.empty(64, np.int64)
+    found, rows = 0, np.empty((64, CORNERS + 2 * MOST))
     stack, six = np.empty((4 * DEEPEST + 4, 6, 3)), np.empty((6, 3))
     depth = np.empty(4 * DEEPEST + 4, np.int64)
     flat, out, widened = np.empty((40, 2)), np.empty((200, 2)), np.empty((160, 2))
@@ -180,10 +179,6 @@ def cut_hulls(
                 depth[left : left + 4] = level + 1
                 left += 4
                 continue
-            if found == len(n_corners):
-                corners = np.concatenate((corners, np.empty((found, MOST, 2))))
-                n_corners = np.concatenate((n_corners, np.empty(found, np.int64)))
-            corners[found, :n] = out[:n]
-            n_corners[found] = n
+            rows = with_polygon(rows, found, out, n, 0)
             found += 1
-    return corners[:found].copy(), n_corners[:found].copy()
+    return rows[:found].copy()

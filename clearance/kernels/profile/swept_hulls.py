@@ -8,12 +8,26 @@ import math
 
 import numpy as np
 
-from clearance.compile.declared import Floats2, Floats3, Integers, Integers2, Shorts2, Signs2
+from clearance.compile.declared import Floats2, Floats3, Integers2, Shorts2, Signs2
 from clearance.compile.decorators import inline, kernel
+from clearance.kernels.arithmetic.rows import with_room
 from clearance.kernels.profile.swept_cover import Raster, SweptEdges, lies_covered
 
 MOST = 8
 """Corners of the largest polygon that is handed out here."""
+
+COUNT, INTERVAL, CORNERS = range(3)
+"""Columns of a polygon's row: how many corners, of which interval, and from there on x and y of each corner."""
+
+
+@inline
+def with_polygon(rows, n, corners, count, interval):
+    """The array of `n` polygons as rows and one more; a larger copy where there was no room."""
+    rows = with_room(rows, n, 1)
+    rows[n, COUNT], rows[n, INTERVAL] = count, interval
+    for i in range(count):
+        rows[n, CORNERS + 2 * i], rows[n, CORNERS + 2 * i + 1] = corners[i, 0], corners[i, 1]
+    return rows
 
 
 @inline
@@ -119,7 +133,7 @@ def edge_hulls(
     states: Signs2,
     width: float,
     slack: float,
-) -> tuple[Floats3, Integers, Integers]:
+) -> Floats2:
     """What the edges that may bound a body's outline sweep between neighbouring instants, uncovered only.
 
     An edge is cut in halves until what it sweeps is convex or within `slack` of its hull.
@@ -133,12 +147,10 @@ def edge_hulls(
         slack: [m] how far hulls may exceed what the edges sweep on their chords.
 
     Returns:
-        corners (m, MOST, 2), n_corners (m,), interval (m,).
+        (m, CORNERS + 2 MOST) the polygons as rows.
     """
     ends, starts, faces, ways = edges.ends, edges.starts, edges.faces, edges.ways
-    found = 0
-    corners, n_corners = np.empty((1024, MOST, 2)), np.empty(1024, np.int64)
-    intervals = np.empty(1024, np.int64)
+    found, rows = 0, np.empty((1024, CORNERS + 2 * MOST))
     four, spare = np.empty((4, 2)), np.empty((4, 2))
     out, widened, waiting = np.empty((40, 2)), np.empty((16, 2)), np.empty((128, 2))
     for k in range(points.shape[0] - 1):
@@ -165,24 +177,17 @@ def edge_hulls(
                     waiting[left + 1, 0], waiting[left + 1, 1] = low, middle
                     left += 2
                     continue
-                if found == len(intervals):
-                    corners = np.concatenate((corners, np.empty((found, MOST, 2))))
-                    n_corners = np.concatenate((n_corners, np.empty(found, np.int64)))
-                    intervals = np.concatenate((intervals, np.empty(found, np.int64)))
-                corners[found, :n] = out[:n]
-                n_corners[found] = n
-                intervals[found] = k
+                rows = with_polygon(rows, found, out, n, k)
                 found += 1
-    return corners[:found].copy(), n_corners[:found].copy(), intervals[:found].copy()
+    return rows[:found].copy()
 
 
 @kernel
 def triangle_hulls(
     raster: Raster, sums: Shorts2, points: Floats2, triangles: Integers2, width: float
-) -> tuple[Floats3, Integers]:
-    """The triangles of one body at one instant that are not covered; as `edge_hulls`, without intervals."""
-    corners = np.empty((len(triangles), MOST, 2))
-    n_corners = np.empty(len(triangles), np.int64)
+) -> Floats2:
+    """The triangles of one body at one instant that are not covered; as `edge_hulls`."""
+    rows = np.empty((64, CORNERS + 2 * MOST))
     four, out, widened = np.empty((4, 2)), np.empty((40, 2)), np.empty((16, 2))
     found = 0
     for t in range(len(triangles)):
@@ -191,7 +196,6 @@ def triangle_hulls(
                 four[i, c] = points[triangles[t, i], c]
         n = fattened_hull(four, 3, width, widened, out)
         if not lies_covered(raster, sums, out, n):
-            corners[found, :n] = out[:n]
-            n_corners[found] = n
+            rows = with_polygon(rows, found, out, n, 0)
             found += 1
-    return corners[:found].copy(), n_corners[:found].copy()
+    return rows[:found].copy()
