@@ -104,7 +104,7 @@ def _write(found, out: Path, field: bool) -> None:
     if field:
         from clearance.planar.picture import draw_comparison
 
-        draw_comparison(found.a.curve, found.b.curve, found.found, str(out), field=True)
+        draw_comparison(found.a.curve, found.b.curve, found.found, out)
         click.echo(f"picture {out}")
         return
     from clearance.profiles.picture import draw_outlines

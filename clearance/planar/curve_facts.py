@@ -156,6 +156,20 @@ class CurveFacts:
         last = piece + 1 == self.n_pieces or self.contour[piece] == self.contour[piece + 1]
         return float(high if last else np.nextafter(high, low))
 
+    def spread_on_leaves(self, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pieces and local parameters of `count` (n,) places on each leaf, evenly, its start first."""
+        rows = self.leaves.arcs
+        index = np.repeat(np.arange(len(rows)), count)
+        rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
+        local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
+        return self.leaves.piece[index], local
+
+    @property
+    def leaf_chords(self) -> np.ndarray:
+        """(n,) the length of each leaf's chord."""
+        rows = self.leaves.arcs
+        return np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
+
     def _jets(self, which: np.ndarray, local: np.ndarray) -> np.ndarray:
         out = np.empty((len(which), 6))
         points_on(self.pieces, which, local, out)
@@ -190,7 +204,7 @@ def _farthest_of(rows: np.ndarray, axis: int, sign: float, best: float) -> float
         rows = rows[_coordinate(rows, axis, sign).max(axis=1) > best + slack]
         if not len(rows):
             return best
-        rows = np.concatenate(_halved(rows))
+        rows = np.concatenate(halved(rows))
         best = max(best, _coordinate(rows[:, [0, -1]], axis, sign).max())
     return max(best, _coordinate(rows, axis, sign).max())
 
@@ -199,7 +213,7 @@ def _coordinate(rows: np.ndarray, axis: int, sign: float) -> np.ndarray:
     return sign * rows[:, :, axis] / rows[:, :, 2]
 
 
-def _halved(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def halved(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Both halves of each control polygon, by de Casteljau at 1/2."""
     left, right, inner = np.empty_like(rows), np.empty_like(rows), rows
     for k in range(rows.shape[1]):

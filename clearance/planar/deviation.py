@@ -102,13 +102,10 @@ def deviation(a: Curve, b: Curve, *, limit: float | None = None, samples: int = 
 
 def _spread(a: Curve, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Pieces and local parameters of the samples: each leaf gets its share by chord length."""
-    rows, owner = a.leaves.arcs, a.leaves.piece
-    chord = np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
-    count = np.maximum(1, np.ceil(chord / chord.sum() * samples)).astype(int)
-    index = np.repeat(np.arange(len(rows)), count)
-    rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
-    local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
-    which = owner[index]
+    chord = a.leaf_chords
+    which, local = a.spread_on_leaves(
+        np.maximum(1, np.ceil(chord / chord.sum() * samples)).astype(int)
+    )
     last = np.flatnonzero(np.append(np.diff(a.contour[which]) != 0, True))
     return np.insert(which, last + 1, which[last]), np.insert(local, last + 1, 1.0)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,9 +19,11 @@ from clearance.planar.curve import Curve
 
 KINDS = ("end", "common_normal", "self_bisector")
 
+COUNTED = ("pixels", "ends", "normals", "bisectors", "cuts", "given_up")
+"""Fields of SEARCH_STATE, `n_` before them, that a `SearchTally` has behind its arcs."""
 
-@dataclass(frozen=True)
-class SearchTally:
+
+class SearchTally(NamedTuple):
     """The work of a search.
 
     Attributes:
@@ -117,18 +120,9 @@ def directed_of(
         parameter_a=at_here if forward else at_there,
         parameter_b=at_there if forward else at_here,
         kind=KINDS[int(points[4])],
-        tally=_tally(known),
-    )
-
-
-def _tally(known: dict) -> SearchTally:
-    return SearchTally(
-        arcs=known["n_arcs"],
-        trimmed_arcs=known["n_arcs"] - known["n_kept"],
-        pixels=known["n_pixels"],
-        end_systems=known["n_ends"],
-        normal_systems=known["n_normals"],
-        bisector_systems=known["n_bisectors"],
-        intervals=known["n_cuts"],
-        given_up=known["n_given_up"],
+        tally=SearchTally(
+            known["n_arcs"],
+            known["n_arcs"] - known["n_kept"],
+            *(known[f"n_{name}"] for name in COUNTED),
+        ),
     )

@@ -166,20 +166,7 @@ def greater_of(forth: DirectedDistance, back: DirectedDistance) -> Hausdorff:
         direction="a_to_b" if first else "b_to_a",
         kind=top.kind,
         directed={"a_to_b": forth, "b_to_a": back},
-        tally=_sum_of(forth.tally, back.tally),
-    )
-
-
-def _sum_of(one: SearchTally, two: SearchTally) -> SearchTally:
-    return SearchTally(
-        one.arcs + two.arcs,
-        one.trimmed_arcs + two.trimmed_arcs,
-        one.pixels + two.pixels,
-        one.end_systems + two.end_systems,
-        one.normal_systems + two.normal_systems,
-        one.bisector_systems + two.bisector_systems,
-        one.intervals + two.intervals,
-        one.given_up + two.given_up,
+        tally=SearchTally(*map(sum, zip(forth.tally, back.tally, strict=True))),
     )
 
 

@@ -1,11 +1,14 @@
 """Pictures of a comparison, like Figs. 8, 17 and 18 of the paper: the adapter of matplotlib.
 
-Curve a and b, the rest of each after trimming (bold), the line of the distance, and on request the distance map
+Curve a and b, the rest of each after trimming (bold), the line of the distance, and the distance map
 of b with a colour for each nearest arc. Not for: reports' other figures.
 """
 
 from __future__ import annotations
 
+import io
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,38 +23,68 @@ from clearance.planar.hausdorff import Hausdorff
 COLOR_A, COLOR_B, COLOR_LINE = "#c99700", "#1f5fbf", "#d62728"
 
 
-def draw_comparison(
-    a: Curve, b: Curve, found: Hausdorff, path: str, *, field: bool = False
-) -> None:
+def draw_comparison(a: Curve, b: Curve, found: Hausdorff, path: str | Path) -> None:
     """Writes the picture of `found` into `path`, an .svg or .png file; the same input gives the same bytes.
 
     Raises: BadInput (another suffix), Unavailable (no matplotlib), Unwritable.
     """
-    suffix = Path(path).suffix.lower()
+    write_picture(path, partial(_comparison, a, b, found))
+
+
+def write_picture(path: str | Path, drawn: Callable[[str], bytes]) -> None:
+    """Writes what `drawn` gives for the suffix of a file, .svg or .png.
+
+    Raises: BadInput (another suffix), Unwritable, and what `drawn` raises.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
     if suffix not in (".svg", ".png"):
-        raise BadInput(
-            f"a picture {suffix or 'without suffix'}", where=str(path), valid=".svg or .png"
-        )
+        given = suffix or "without suffix"
+        raise BadInput(f"a picture {given}", where=str(path), valid=".svg or .png")
+    content = drawn(suffix)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    except OSError as error:
+        raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
+
+
+def new_figure(size: tuple[float, float]):
+    """A figure of matplotlib of a size [inch].
+
+    Raises: Unavailable (no matplotlib).
+    """
     with importing("report", "a picture"):
-        import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
-    figure = Figure(figsize=_size_of(*_page(a, b)), layout="constrained")
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    _fill(figure.add_subplot(), a, b, found, field)
+    return figure
+
+
+def figure_bytes(figure, suffix: str, dpi: int) -> bytes:
+    """A figure as the content of an .svg or .png file, always the same."""
+    import matplotlib
+
+    out = io.BytesIO()
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
     with matplotlib.rc_context({"svg.hashsalt": "clearance", "svg.fonttype": "path"}):
-        try:
-            figure.savefig(path, dpi=150, metadata=metadata)
-        except OSError as error:
-            raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
+        figure.savefig(out, format=suffix[1:], dpi=dpi, metadata=metadata)
+    return out.getvalue()
 
 
-def _page(a: Curve, b: Curve) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner of the page: both curves with a margin."""
+def page_of(a: Curve, b: Curve, margin: float) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of a page: both curves with a margin, a share of its diagonal."""
     low, high = np.minimum(a.box[0], b.box[0]), np.maximum(a.box[1], b.box[1])
-    margin = 0.06 * float(np.hypot(*(high - low)))
+    margin *= float(np.hypot(*(high - low)))
     return low - margin, high + margin
+
+
+def bare_axes(axes, labelsize: str) -> None:
+    """Takes frame lines off that say nothing, and greys the others."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color("#999999")
+    axes.tick_params(colors="#555555", labelsize=labelsize)
 
 
 def _size_of(low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
@@ -61,25 +94,25 @@ def _size_of(low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
     return max(5.0, width * scale + 0.6), max(2.2, height * scale) + 1.3
 
 
-def _fill(axes, a: Curve, b: Curve, found: Hausdorff, field: bool) -> None:
-    low, high = _page(a, b)
-    if field:
-        _draw_field(axes, b, low, high)
+def _comparison(a: Curve, b: Curve, found: Hausdorff, suffix: str) -> bytes:
+    low, high = page_of(a, b, 0.06)
+    figure = new_figure(_size_of(low, high))
+    axes = figure.add_subplot()
+    _draw_field(axes, b, low, high)
     pairs = ((a, b, COLOR_A, "a"), (b, a, COLOR_B, "b"))
     for (one, two, color, name), directed in zip(pairs, found.directed.values(), strict=True):
         _draw_curve(axes, one, two, directed.lower, color, name)
     _draw_distance(axes, found)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color("#999999")
-    axes.tick_params(colors="#555555", labelsize="small")
+    bare_axes(axes, "small")
     direction = found.direction.replace("_", " ")
     kind = found.kind.replace("_", " ")
     axes.set_title(
         f"Hausdorff distance {found.distance:.9g} ± {found.error_bound:.1e}\n{direction}, {kind}",
         fontsize="medium",
     )
-    axes.figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+    figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+    return figure_bytes(figure, suffix, 150)
 
 
 def _draw_field(axes, b: Curve, low: np.ndarray, high: np.ndarray) -> None:

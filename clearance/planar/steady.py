@@ -14,6 +14,7 @@ import numpy as np
 
 from clearance.planar.assembly import assembled
 from clearance.planar.curve import Curve
+from clearance.planar.curve_facts import halved
 from clearance.tolerance import WEIGHTS
 
 HALVINGS = 12
@@ -94,16 +95,8 @@ def _even(rows: np.ndarray, matrix: np.ndarray, halvings: int):
     matrix = matrix @ np.diag([1.0, step])
     if halvings == 0 or rows[:, 2].max() <= WEIGHTS * rows[:, 2].min():
         return [(rows, matrix)]
-    left, right = _halves(rows)
+    left, right = (half[0] for half in halved(rows[None]))
     return [
         *_even(left, matrix @ np.array([[1.0, 0.5], [0.0, 0.5]]), halvings - 1),
         *_even(right, matrix @ np.array([[0.5, 0.0], [0.5, 1.0]]), halvings - 1),
     ]
-
-
-def _halves(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    left, right, inner = np.empty_like(rows), np.empty_like(rows), rows
-    for k in range(len(rows)):
-        left[k], right[-1 - k] = inner[0], inner[-1]
-        inner = 0.5 * (inner[:-1] + inner[1:])
-    return left, right

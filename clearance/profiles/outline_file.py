@@ -82,23 +82,19 @@ def rings_of_curve(curve: Curve) -> list[np.ndarray]:
         points = curve.point(curve.limits[:, 0])
         owner = curve.contour
     else:
-        rows, piece = curve.leaves.arcs, curve.leaves.piece
-        count = _chord_counts(curve, rows, piece)
-        index = np.repeat(np.arange(len(rows)), count)
-        rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
-        local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
-        low, high = curve.limits[piece[index]].T
+        piece, local = curve.spread_on_leaves(_chord_counts(curve))
+        low, high = curve.limits[piece].T
         points = curve.point(low + local * (high - low))
-        owner = curve.contour[piece[index]]
+        owner = curve.contour[piece]
     return np.split(points, np.flatnonzero(np.diff(owner)) + 1)
 
 
-def _chord_counts(curve: Curve, rows: np.ndarray, piece: np.ndarray) -> np.ndarray:
+def _chord_counts(curve: Curve) -> np.ndarray:
     """(n,) chords of each leaf, so that they stay within about FINE / 10 of the size of the curve."""
-    chord = np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
-    radius = np.where(rows[:, RADIUS] > 0.0, rows[:, RADIUS], np.inf)
-    count = np.ceil(chord / np.sqrt(8.0 * radius * 0.1 * FINE * curve.size))
-    free = np.diff(curve.pieces.first)[piece] > 3
+    radius = curve.leaves.arcs[:, RADIUS]
+    radius = np.where(radius > 0.0, radius, np.inf)
+    count = np.ceil(curve.leaf_chords / np.sqrt(8.0 * radius * 0.1 * FINE * curve.size))
+    free = np.diff(curve.pieces.first)[curve.leaves.piece] > 3
     return np.clip(count + 3 * free, 1, 64).astype(int)
 
 

@@ -5,13 +5,11 @@ SVG and PNG through matplotlib, the same bytes for the same input. Not for: the 
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, Unwritable
-from clearance.extras import importing
+from clearance.planar.picture import bare_axes, figure_bytes, new_figure, page_of, write_picture
 from clearance.profiles.outline_file import DrawnOutline, rings_of_curve
 from clearance.profiles.region import Region, difference, rings_of
 
@@ -26,27 +24,16 @@ def draw_outlines(
     path: str | Path,
     *,
     shade: tuple[str, str] = ("only in b", "only in a"),
-    fill: bool = True,
 ) -> None:
     """Writes the picture of two outlines and a distance line into a .svg or .png file.
 
     Args:
         ends: (2, 2) the ends of the line.
         shade: names of the areas that only b and only a have.
-        fill: shade them.
 
     Raises: BadInput (another suffix), Unavailable (no matplotlib), Unwritable.
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in (".svg", ".png"):
-        given = suffix or "without suffix"
-        raise BadInput(f"a picture {given}", where=str(path), valid=".svg or .png")
-    content = picture_bytes(a, b, ends, title, suffix, shade=shade, fill=fill)
-    try:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).write_bytes(content)
-    except OSError as error:
-        raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
+    write_picture(path, lambda suffix: picture_bytes(a, b, ends, title, suffix, shade=shade))
 
 
 def picture_bytes(
@@ -57,24 +44,18 @@ def picture_bytes(
     suffix: str,
     *,
     shade: tuple[str, str] = ("only in b", "only in a"),
-    fill: bool = True,
 ) -> bytes:
     """The picture as the content of an .svg or .png file.
 
     Raises: Unavailable (no matplotlib).
     """
-    with importing("report", "a picture"):
-        import matplotlib
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    low, high = _page(a, b)
+    low, high = page_of(a.curve, b.curve, 0.05)
     width, height = high - low
     scale = min(6.6 / width, 5.4 / height)
     size = (width * scale + 4.2, max(height * scale, 3.0) + 1.2)
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = new_figure(size)
     whole, near = figure.subplots(1, 2, width_ratios=[max(width * scale, 2.0), 3.2])
-    fill = fill and a.curve.is_closed and b.curve.is_closed
+    fill = a.curve.is_closed and b.curve.is_closed
     for axes in (whole, near):
         _fill(axes, a, b, ends, shade if fill else None)
     whole.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
@@ -84,18 +65,7 @@ def picture_bytes(
     figure.legend(
         handles, names, loc="outside lower center", ncols=5, fontsize="small", frameon=False
     )
-    out = io.BytesIO()
-    metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
-    with matplotlib.rc_context({"svg.hashsalt": "clearance", "svg.fonttype": "path"}):
-        figure.savefig(out, format=suffix[1:], dpi=130, metadata=metadata)
-    return out.getvalue()
-
-
-def _page(a: DrawnOutline, b: DrawnOutline) -> tuple[np.ndarray, np.ndarray]:
-    low = np.minimum(a.curve.box[0], b.curve.box[0])
-    high = np.maximum(a.curve.box[1], b.curve.box[1])
-    margin = 0.05 * float(np.hypot(*(high - low)))
-    return low - margin, high + margin
+    return figure_bytes(figure, suffix, 130)
 
 
 def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
@@ -113,9 +83,7 @@ def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
         box = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) * max(reach, 0.01 * page)
         whole.plot(*(box + middle).T, color="#666666", linewidth=0.8, zorder=6)
     for axes in (whole, near):
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.spines[["left", "bottom"]].set_color("#999999")
-        axes.tick_params(colors="#555555", labelsize="x-small")
+        bare_axes(axes, "x-small")
 
 
 def _fill(
