@@ -18,8 +18,7 @@ from .planar.curve_file import read_curve
 from .planar.deviation import deviation
 from .planar.hausdorff import Undecided, hausdorff, within
 from .planar.minimum import minimum_distance
-from .profiles.fit import fit
-from .profiles.fit_result import Fit
+from .profiles.fit import Fit, fit
 from .profiles.profile import Profile
 from .profiles.sweep import swept_profile
 from .query.common_point import common_point

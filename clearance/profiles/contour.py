@@ -33,8 +33,20 @@ class Contour:
         return len(self.bulges)
 
     def curve(self) -> Curve:
-        """The contour as one closed curve of rational quadratics; piece i has the parameters i to i + 1."""
-        return _curve(self.vertices, self.bulges)
+        """The contour as one closed curve of rational quadratics; piece i has the parameters i to i + 1.
+
+        Degree two throughout: a line has its middle as third control point, an arc the corner of its tangents.
+        """
+        n, following = self.n_pieces, np.roll(self.vertices, -1, axis=0)
+        half = 2.0 * np.arctan(self.bulges)
+        control = np.empty((2 * n + 1, 2))
+        control[0:-1:2], control[-1] = self.vertices, self.vertices[0]
+        _, left = self._chords()
+        control[1::2] = 0.5 * (self.vertices + following) - 0.5 * np.tan(half)[:, None] * left
+        weights = np.ones(2 * n + 1)
+        weights[1::2] = np.cos(half)
+        knots = np.concatenate([[0.0], np.repeat(np.arange(n + 1.0), 2), [float(n)]])
+        return Curve.bspline(control, 2, knots, weights)
 
     def middles(self) -> np.ndarray:
         """(n, 2) [m] the point half-way along each piece."""
@@ -86,22 +98,6 @@ def joined(contours: Sequence[Contour]) -> Curve:
     """All contours as one curve, in their order."""
     curves = [contour.curve() for contour in contours]
     return curves[0] if len(curves) == 1 else Curve.contours(curves)
-
-
-def _curve(vertices: np.ndarray, bulges: np.ndarray) -> Curve:
-    """Degree two throughout: a line has its middle as third control point, an arc the corner of its tangents."""
-    n = len(bulges)
-    following = np.roll(vertices, -1, axis=0)
-    along = following - vertices
-    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
-    half = 2.0 * np.arctan(bulges)
-    control = np.empty((2 * n + 1, 2))
-    control[0:-1:2], control[-1] = vertices, vertices[0]
-    control[1::2] = 0.5 * (vertices + following) - 0.5 * np.tan(half)[:, None] * left
-    weights = np.ones(2 * n + 1)
-    weights[1::2] = np.cos(half)
-    knots = np.concatenate([[0.0], np.repeat(np.arange(n + 1.0), 2), [float(n)]])
-    return Curve.bspline(control, 2, knots, weights)
 
 
 def _points(x: float, y: float, u: float, v: float, bulge: float, tolerance: float) -> np.ndarray:

@@ -51,20 +51,18 @@ class PlacedShape:
         return abs(sum(contour.area for contour in self.contours))
 
 
-def least_numbers(kinds: Sequence[str], numbers: np.ndarray, size: float) -> np.ndarray:
-    """How small each number may become in one step: lengths and angles, of these `kinds`, stay above 0."""
-    found = np.full(len(numbers), -np.inf)
+def range_of_numbers(
+    kinds: Sequence[str], numbers: np.ndarray, size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the greatest value of each number after one step.
+
+    Lengths and angles, of these `kinds`, stay above 0, angles below half a turn.
+    """
+    low, high = np.full(len(numbers), -np.inf), np.full(len(numbers), np.inf)
     for i, kind in enumerate(kinds):
         if kind != "parameter":
             floor = FLOOR if kind in ("angle", "ratio") else FLOOR * size
-            found[i] = min(numbers[i], max(SHRINK * numbers[i], floor))
-    return found
-
-
-def greatest_numbers(kinds: Sequence[str], numbers: np.ndarray) -> np.ndarray:
-    """How great each number may become in one step: angles stay below half a turn."""
-    found = np.full(len(numbers), np.inf)
-    for i, kind in enumerate(kinds):
+            low[i] = min(numbers[i], max(SHRINK * numbers[i], floor))
         if kind == "angle":
-            found[i] = math.pi - SHRINK * (math.pi - numbers[i])
-    return found
+            high[i] = math.pi - SHRINK * (math.pi - numbers[i])
+    return low, high

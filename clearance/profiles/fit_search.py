@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_placed import PlacedShape, greatest_numbers, least_numbers
+from clearance.profiles.fit_placed import PlacedShape, range_of_numbers
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import FitTarget, Places
 
@@ -32,9 +32,9 @@ class FitSearch:
     def bounds(self, here: PlacedShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
         shape, numbers = self.shape, here.numbers
-        low = least_numbers(shape.kinds, numbers, shape.size) - numbers
-        high = greatest_numbers(shape.kinds, numbers) - numbers
-        return np.maximum(low / shape.scale, -reach), np.minimum(high / shape.scale, reach)
+        low, high = range_of_numbers(shape.kinds, numbers, shape.size)
+        low, high = (low - numbers) / shape.scale, (high - numbers) / shape.scale
+        return np.maximum(low, -reach), np.minimum(high, reach)
 
     def with_places(self, here: PlacedShape, points: np.ndarray, samples: Places) -> Places:
         """The samples and the places of more points of the shape."""

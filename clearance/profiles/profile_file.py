@@ -202,8 +202,7 @@ def _text_of(drawing, profile: Profile) -> str:
 def _draw(drawing, profile: Profile, layer: str) -> None:
     space = drawing.modelspace()
     for contour in profile.contours:
-        rows = np.column_stack([contour.vertices, contour.bulges]).tolist()
-        space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs={"layer": layer})
+        space.add_lwpolyline(_rows(contour), format="xyb", close=True, dxfattribs={"layer": layer})
 
 
 def layer_name(link: str) -> str:

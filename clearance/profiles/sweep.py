@@ -21,9 +21,9 @@ from clearance.profiles.profile import Origin, Profile
 from clearance.profiles.region import Region, RegionIndex, covered_region, polygons, touching, union
 from clearance.profiles.silhouette import Hulls, Silhouette
 from clearance.profiles.swept_bodies import (
-    CaseOverTime,
     RecordHolder,
     SweptBody,
+    TimedCase,
     over_time,
     swept_bodies,
 )
@@ -33,6 +33,7 @@ from clearance.world.case import Case
 
 if TYPE_CHECKING:
     from clearance.profiles.cross_section import CrossSection
+    from clearance.record.record import Record
 
 TOLERANCE = 5e-4
 """[m] How far a swept profile may exceed what is swept, by default."""
@@ -57,7 +58,7 @@ CUT_SHARE = 0.15
 
 
 def swept_profile(
-    run: Case | CaseOverTime | RecordHolder,
+    run: Case | TimedCase | Record | RecordHolder,
     plane: str = "xy",
     *,
     links: Sequence[str] | None = None,

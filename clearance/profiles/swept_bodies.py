@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -26,22 +26,15 @@ from clearance.world.phase import Phase
 from clearance.world.rules import matches
 from clearance.world.timeline import Timeline, timeline_of
 
-
-class CaseOverTime(Protocol):
-    """A case and when what of it moves how, as a record."""
-
-    @property
-    def case(self) -> Case: ...
-
-    @property
-    def timeline(self) -> Timeline: ...
+if TYPE_CHECKING:
+    from clearance.record.record import Record
 
 
 class RecordHolder(Protocol):
     """Anything with a record, as a run."""
 
     @property
-    def record(self) -> CaseOverTime: ...
+    def record(self) -> Record: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +63,7 @@ class SweptBody:
         return knots_of(self.chain, self.body.shape, plane, limit, solid=solid, first=self.first)
 
 
-def over_time(run: Case | CaseOverTime | RecordHolder) -> CaseOverTime:
+def over_time(run: Case | TimedCase | Record | RecordHolder) -> TimedCase:
     """The case, and when what moves how: as its trajectories say, or as it was in a run.
 
     Raises:
@@ -78,11 +71,12 @@ def over_time(run: Case | CaseOverTime | RecordHolder) -> CaseOverTime:
     """
     if isinstance(run, Case):
         return TimedCase(run, timeline_of(run, [kinematic_motion(one) for one in run.robots]))
-    return run if hasattr(run, "timeline") else run.record  # type: ignore[return-value]
+    timed = run.record if hasattr(run, "record") else run
+    return TimedCase(timed.case, timed.timeline)
 
 
 def swept_bodies(
-    run: CaseOverTime, links: Sequence[str] | None, obstacles: Sequence[str]
+    run: TimedCase, links: Sequence[str] | None, obstacles: Sequence[str]
 ) -> list[SweptBody]:
     """The links with all that they carry, then the obstacles: body by body, and of each phase by phase.
 
@@ -134,7 +128,7 @@ def _is_carried_by(links: Collection[str], i_obstacle: int, phase: Phase) -> boo
     return _holder(phase, i_obstacle) in links
 
 
-def _chosen_links(run: CaseOverTime, links: Sequence[str] | None) -> Collection[str]:
+def _chosen_links(run: TimedCase, links: Sequence[str] | None) -> Collection[str]:
     """Names of links as in tables: those with a shape, and those that carry a part."""
     case = run.case
     bodies = [
@@ -188,7 +182,7 @@ def _holder(phase: Phase, i_obstacle: int) -> str | None:
 
 
 def _over_phases(
-    run: CaseOverTime, index: BodyIndex, is_swept: Callable[[Phase], bool]
+    run: TimedCase, index: BodyIndex, is_swept: Callable[[Phase], bool]
 ) -> Iterator[SweptBody]:
     """The body in each phase in which it is swept; where it stands on at one pose, once."""
     label, body = index.name_in(run.case), index.body_in(run.case)
