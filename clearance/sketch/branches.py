@@ -16,8 +16,8 @@ from clearance.sketch.graph.graph import POINT, TURN
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
 from clearance.sketch.solve.execute import FAILED, Run, execute
+from clearance.sketch.solve.search import RESTARTS
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import limits_of, residual_of
 
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""
@@ -126,19 +126,17 @@ def _closing(
 ) -> frozenset[int] | None:
     """The fewest steps to turn for a branch on which all holds; None where there is none."""
     start, _ = started(problem, before, ())
-    every = bytes([1]) * problem.system.kind.size
     allowed = DEPENDENT if problem.plan.dependent.size else RESIDUAL
     for mask in sorted(range(2 ** len(steps)), key=int.bit_count):
         problem.limit.require_time()
         turned = frozenset(k for bit, k in enumerate(steps) if mask >> bit & 1)
         x = start.copy()
-        fates = execute(
-            problem.system, problem.plan, x, Run(start, every, turned), limits_of(problem)
-        )
+        chosen = Run(start, problem.rule(RESTARTS), turned)
+        fates = execute(problem.system, problem.plan, x, chosen)
         if (fates == FAILED).any():
             continue
         x = x[problem.alias]
-        holds = residual_of(problem, x)[0] <= allowed * problem.size
+        holds = problem.residual(x)[0] <= allowed * problem.size
         if holds and sides_hold(x, sides, problem.size):
             return turned
     return None

@@ -25,38 +25,34 @@ class Constraint:
         name: unique in the sketch.
         kind: a key of `KINDS`.
         entities: what it relates.
-        given: the dimension as given (a number or an expression), None where the kind has none.
-        number: the dimension's value [m], [rad] or [-]; NaN without one.
         driven: measured only; it constrains nothing.
         built_in: part of how an entity was drawn (a line through its points).
         index: its place among the sketch's constraints.
-        n_rows: how many equations it has.
+        given: the dimension as given (a number or an expression), None where the kind has none.
+        number: the dimension's value [m], [rad] or [-]; NaN without one.
+        valency: how many equations it has, and so how many degrees of freedom it takes.
     """
 
     name: str
     kind: str
     entities: tuple[Entity, ...]
-    given: float | str | None
-    number: float
     driven: bool
     built_in: bool
     index: int
-    n_rows: int
     options: dict
-
-    @property
-    def valency(self) -> int:
-        """The degrees of freedom that it removes."""
-        return self.n_rows
+    given: float | str | None = None
+    number: float = math.nan
+    valency: int = 0
 
 
 class Form(NamedTuple):
-    """A form of a kind: the entities it is for, how it becomes rows, and its dimension's
-    unit."""
+    """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's unit."""
 
     types: tuple[type[Entity], ...]
     rows: Callable[..., list[Row]]
     unit: str = ""
+    measure: Callable[..., float] | None = None
+    """The dimension as it is drawn, but for its sign; as the rows, by the sketch's numbers and the entities."""
     spans: bool = False
     """The lines must have two points."""
 
@@ -64,32 +60,32 @@ class Form(NamedTuple):
 P, L, C = Point, Line, Circle
 KINDS: dict[str, tuple[Form, ...]] = {
     "distance": (
-        Form((P, P), rows.point_point, "length"),
-        Form((P, L), rows.point_line, "length"),
-        Form((P, C), rows.point_circle, "length"),
-        Form((L, L), rows.line_line, "length"),
+        Form((P, P), rows.point_point, "length", rows.span),
+        Form((P, L), rows.point_line, "length", rows.gap),
+        Form((P, C), rows.point_circle, "length", rows.clear),
+        Form((L, L), rows.line_line, "length", rows.beside),
     ),
     "incident": (Form((P, L), rows.on_line), Form((P, C), rows.on_circle)),
     "coincident": (Form((P, P), rows.together), Form((L, L), rows.same_line)),
     "tangent": (Form((L, C), rows.line_touches), Form((C, C), rows.circles_touch)),
-    "angle": (Form((L, L), rows.angle, "angle"),),
+    "angle": (Form((L, L), rows.angle, "angle", rows.turned),),
     "parallel": (Form((L, L), rows.parallel),),
     "perpendicular": (Form((L, L), rows.perpendicular),),
-    "concentric": (Form((P, C), rows.point_centered), Form((C, C), rows.centered)),
+    "concentric": (Form((P, C), rows.together), Form((C, C), rows.together)),
     "horizontal": (Form((L,), rows.level), Form((P, P), rows.points_level)),
     "vertical": (Form((L,), rows.upright), Form((P, P), rows.points_upright)),
-    "radius": (Form((C,), rows.radius, "length"),),
-    "diameter": (Form((C,), rows.diameter, "length"),),
+    "radius": (Form((C,), rows.radius, "length", lambda x, c: x[c.variable]),),
+    "diameter": (Form((C,), rows.diameter, "length", lambda x, c: 2.0 * x[c.variable]),),
     "equal_length": (Form((L, L), rows.equal_length, spans=True),),
     "equal_radius": (Form((C, C), rows.equal_radius),),
     "ratio": (
-        Form((L, L), rows.length_ratio, "ratio", True),
-        Form((C, C), rows.radius_ratio, "ratio"),
+        Form((L, L), rows.length_ratio, "ratio", rows.times_as_long, spans=True),
+        Form((C, C), rows.radius_ratio, "ratio", lambda x, c, d: x[c.variable] / x[d.variable]),
     ),
     "midpoint": (Form((P, L), rows.midpoint, spans=True), Form((P, P, P), rows.middle)),
     "symmetric": (Form((P, P, L), rows.symmetric), Form((C, C, L), rows.circles_symmetric)),
     "same_side": (Form((P, P, L), rows.nothing),),
-    "fix": (Form((P,), rows.fix_point), Form((L,), rows.fix_line), Form((C,), rows.fix_circle)),
+    "fix": (Form((P,), rows.fix), Form((L,), rows.fix), Form((C,), rows.fix_circle)),
 }
 """Every kind of constraint with its forms; the valency is the number of rows."""
 
@@ -127,29 +123,5 @@ def _check_spans(kind: str, form: Form, entities: Sequence[Entity]) -> None:
 
 def measured(constraint: Constraint, x: list[float]) -> float:
     """The dimension as it is in the sketch now ([m], [rad] or [-]); NaN for kinds without one."""
-    match constraint.kind, *constraint.entities:
-        case "radius", Circle() as c:
-            return x[c.variable]
-        case "diameter", Circle() as c:
-            return 2.0 * x[c.variable]
-        case "angle", Line() as a, Line() as b:
-            return abs(math.remainder(rows.turns(x, a, b), 2.0 * math.pi))
-        case "ratio", Circle() as c, Circle() as d:
-            return x[c.variable] / x[d.variable]
-        case "ratio", Line() as a, Line() as b:
-            return _length(x, a) / _length(x, b)
-        case "distance", Point() as p, Point() as q:
-            return rows.span(x, p, q)
-        case "distance", Point() as p, Circle() as c:
-            return abs(rows.span(x, p, c.center) - x[c.variable])
-        case "distance", Point() as p, Line() as a:
-            return abs(rows.gap(x, p, a))
-        case "distance", Line() as a, Line() as b:
-            same = rows.sign(math.cos(rows.turns(x, a, b)))
-            return abs(x[b.variable + 1] - same * x[a.variable + 1])
-    return math.nan
-
-
-def _length(x: list[float], line: Line) -> float:
-    assert line.ends is not None, "`form_of` refuses lines without points where a kind spans them"
-    return rows.span(x, *line.ends)
+    form, entities = form_of(constraint.kind, constraint.entities)
+    return math.nan if form.measure is None else abs(form.measure(x, *entities))

@@ -9,14 +9,12 @@ regular.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.sketch.equations import (
     CODES,
-    KINDS,
     Across,
     CircleCircle,
     InLine,
@@ -42,27 +40,22 @@ class Contacts(NamedTuple):
         return system.replaced(code=code, var=var, value=value)
 
 
-def contacts_of(
-    code: np.ndarray, var: np.ndarray, plain: np.ndarray, sound: np.ndarray
-) -> Contacts | None:
-    """The points of contact among equations with codes (m,) and variables (m, 8); None for none.
+def contacts_of(system: System, plain: np.ndarray, sound: np.ndarray) -> Contacts | None:
+    """The points of contact among equations; None for none.
 
     Args:
         plain: (m,) marks the incidences: equations that never have a value.
         sound: (m,) marks the equations of parts in which none follows from others: there, another would follow
         if one of touching were replaced.
     """
-    touching = np.flatnonzero(are(code, LineCircle, CircleCircle) & sound)
-    if not touching.size:
+    touching = np.flatnonzero(are(system.code, LineCircle, CircleCircle) & sound).tolist()
+    if not touching:
         return None
-    on_line: dict[tuple[int, int], list[int]] = {}
-    on_circle: dict[tuple[int, int], list[int]] = {}
-    for row in _rows(code, var, np.flatnonzero(plain & are(code, PointLine))):
-        on_line.setdefault((row.theta, row.d), []).append(row.px)
-    for row in _rows(code, var, np.flatnonzero(plain & are(code, PointCircle))):
-        on_circle.setdefault((row.cx, row.r), []).append(row.px)
-    every = zip(touching.tolist(), _rows(code, var, touching), strict=True)
-    found = [(row, _regular(equation, on_line, on_circle)) for row, equation in every]
+    equations = system.plain.equations
+    on: dict[tuple[int, int], list[int]] = {}
+    for row in np.flatnonzero(plain & are(system.code, PointLine, PointCircle)).tolist():
+        on.setdefault(_carrier(equations[row]), []).append(equations[row].px)
+    found = [(row, _regular(equations[row], on)) for row in touching]
     known = [(row, other) for row, other in found if other is not None]
     if not known:
         return None
@@ -73,24 +66,21 @@ def contacts_of(
     return Contacts(np.array(rows), np.array(codes), variables)
 
 
-def _rows(code: np.ndarray, var: np.ndarray, chosen: np.ndarray) -> Iterator[Any]:
-    """Some equations, of the places of their numbers."""
-    for kind, places in zip(code[chosen].tolist(), var[chosen].tolist(), strict=True):
-        yield KINDS[kind](*places[: len(KINDS[kind]._fields)])
+def _carrier(e: PointLine | PointCircle) -> tuple[int, int]:
+    """What a point lies on: the numbers of a line, or a circle's centre and radius."""
+    return (e.theta, e.d) if isinstance(e, PointLine) else (e.cx, e.r)
 
 
-def _regular(
-    e: LineCircle | CircleCircle, on_line: dict, on_circle: dict
-) -> Across | InLine | None:
+def _regular(e: LineCircle | CircleCircle, on: dict) -> Across | InLine | None:
     """The equation that says the same as one of touching; None without a point of contact.
 
-    `on_line` and `on_circle` are the points (first variables) on every line and circle.
+    `on` are the points (first variables) on every line and circle.
     """
     if isinstance(e, LineCircle):
-        first, second = on_line.get((e.theta, e.d), []), on_circle.get((e.cx, e.r), [])
+        first, second = (e.theta, e.d), (e.cx, e.r)
     else:
-        first, second = on_circle.get((e.ax, e.r), []), on_circle.get((e.bx, e.s), [])
-    p = next((p for p in first if p in second), None)
+        first, second = (e.ax, e.r), (e.bx, e.s)
+    p = next((p for p in on.get(first, []) if p in on.get(second, [])), None)
     if p is None:
         return None
     if isinstance(e, LineCircle):

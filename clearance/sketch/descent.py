@@ -16,9 +16,8 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from clearance.sketch.effort import OutOfTime
-from clearance.sketch.problem import Problem
+from clearance.sketch.problem import FLOOR, Problem
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.steps import FLOOR
 
 LONGEST = 200
 """Steps of a descent; patches of 1000 slivered triangles need 30 to 140."""
@@ -61,10 +60,7 @@ class ProblemPart:
 
     def __init__(self, problem: Problem, part: int) -> None:
         self.system, self.limit = problem.system, problem.limit
-        chosen = (problem.row_part == part) & (problem.fate == 0)
-        chosen[problem.plan.dependent] = False
-        self.rows = np.flatnonzero(chosen)
-        vertices = np.flatnonzero(problem.part == part)
+        self.rows, vertices = problem.independent_rows(part), problem.vertices_of(part)
         self.columns = Columns(problem.system, vertices, self.rows)
         if self.rows.size and self.columns.n:
             unit = self._matrix(np.zeros(self.columns.pairs[0].size), 1.0)

@@ -22,7 +22,6 @@ from clearance.sketch.problem import DEPENDENT, RESIDUAL, Problem
 from clearance.sketch.repairs import Repair, repairs_of
 from clearance.sketch.solve.execute import FAILED, TOO_LARGE
 from clearance.sketch.solve.search import BANDED
-from clearance.sketch.steps import errors_of
 from clearance.sketch.trials import Trials
 
 CHAIN = "one distance is longer than the others together"
@@ -73,7 +72,7 @@ def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis
 
 def not_holding(problem: Problem, x: np.ndarray) -> list[int]:
     """The constraints of which an equation does not hold."""
-    rows = errors_of(problem, x) > RESIDUAL * problem.size
+    rows = problem.errors(x) > RESIDUAL * problem.size
     return sorted({int(o) for o in problem.tables.owner[rows]})
 
 
@@ -94,7 +93,7 @@ def _diagnosed(trial: Trials, problem: Problem, outcome) -> Diagnosis:
 
 def _rest_holds(problem: Problem, x: np.ndarray) -> bool:
     """Whether all equations hold that no others imply by the count."""
-    error = errors_of(problem, x)
+    error = problem.errors(x)
     error[problem.plan.dependent] = 0.0
     return bool((error <= DEPENDENT * problem.size).all())
 
@@ -155,9 +154,9 @@ def _suspects(problem: Problem, broken: int) -> list[int] | None:
         touched = np.unique(var[rows][var[rows] >= 0])
         merged = np.flatnonzero(problem.fate == MERGED)
         near = merged[np.isin(var[merged], touched).any(axis=1)]
-        together = {
-            i for i, row in problem.tables.together if places(Linear, var[row]).a in touched
-        }
+        joined = problem.tables.together
+        first = places(Linear, var[problem.tables.first_rows(joined)]).a
+        together = set(np.array(joined)[np.isin(first, touched)].tolist())
         return sorted({int(o) for o in owner[rows]} | {int(o) for o in owner[near]} | together)
     return None
 

@@ -10,12 +10,11 @@ from collections.abc import Iterable, Sequence
 from typing import TypeVar
 
 from clearance.errors import BadShape
-from clearance.sketch.checked_numbers import number, two
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.faults import DegenerateSketch
 from clearance.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
 from clearance.sketch.lists import FlatLists
-from clearance.sketch.register import Register
+from clearance.sketch.register import Register, number, two
 from clearance.sketch.relations import Relations
 
 Place = Point | Sequence[float]

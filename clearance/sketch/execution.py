@@ -22,12 +22,11 @@ from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.execute import FAILED, SKIPPED, Run, execute
+from clearance.sketch.solve.execute import FAILED, LARGEST_BLOCK, SKIPPED, Run, execute
 from clearance.sketch.solve.fit import set_down
 from clearance.sketch.solve.search import BANDED, RESTARTS, solve_cluster
 from clearance.sketch.solve.system import System
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import LARGEST_BLOCK, limits_of, residual_of, stopping_rule
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -59,7 +58,7 @@ def stopped(problem: Problem, before: np.ndarray, found: np.ndarray | None) -> E
     Its best numbers are those found by then, where their error is less.
     """
     places = [x[problem.alias] for x in (before, found) if x is not None]
-    residual, row, best = min((*residual_of(problem, x), k) for k, x in enumerate(places))
+    residual, row, best = min((*problem.residual(x), k) for k, x in enumerate(places))
     fates = np.full(len(problem.plan.steps), SKIPPED)
     out = ExecutionResult(before.copy(), fates, max(row, 0), residual, stopped=True)
     out.best = places[best]
@@ -175,8 +174,8 @@ def _solve_parts(
     size, s = problem.size, problem.system
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], False).tolist()
-    limits = limits_of(problem, RESTARTS if effort else 4)
-    fates = execute(s, problem.plan, x, Run(start, active, turned), limits)
+    rule = problem.rule(RESTARTS if effort else 4)
+    fates = execute(s, problem.plan, x, Run(start, rule, turned, active))
     if effort == 0 and (fates == FAILED).any():
         return fates, x
     broken = _unsettled(problem, s, x, RESIDUAL * size)
@@ -224,7 +223,7 @@ def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
     it holds."""
     if problem.free[part] + np.sum(problem.row_part == part) < BANDED:
         return False
-    mine = (problem.system.vertex_of > 0) & (problem.part[problem.system.vertex_of] == part)
+    mine = problem.numbers_of(part)
     branch = nearest_branch(problem, part, start)
     origin = np.where(mine, start if branch is None else branch, x)
     found = solve_from(problem, part, origin, RESIDUAL * problem.size)
@@ -237,15 +236,13 @@ def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
 def _numeric_part(
     problem: Problem, part: int, x: np.ndarray, start: np.ndarray, effort: int
 ) -> bool:
-    """Solves one whole part at once, from the start and from the end of the plan; True when it holds."""
-    s = problem.system
-    vertices = np.flatnonzero(problem.part == part)
+    """Solves one whole part at once, from the start and from where the plan came; True when it holds."""
     rows = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
     if rows.size > 4 * LARGEST_BLOCK:
         return False
-    columns = Columns(s, vertices, rows)
-    rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
-    mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
+    columns = Columns(problem.system, problem.vertices_of(part), rows)
+    rule = problem.rule(6 if rows.size < 60 and effort == 2 else effort)
+    mine = problem.numbers_of(part)
     for origin in (start, x):
         problem.limit.require_time()
         found = solve_cluster(columns, np.where(mine, origin, x), rule)  # other parts stay
@@ -257,7 +254,7 @@ def _numeric_part(
 
 def _verdict(problem: Problem, x: np.ndarray) -> tuple[float, int]:
     """(residual, row that does not hold or -1)."""
-    residual, row = residual_of(problem, x)
+    residual, row = problem.residual(x)
     contradicted = np.flatnonzero(problem.fate == CONTRADICTED)
     if contradicted.size:
         return residual, int(contradicted[0])

@@ -26,7 +26,6 @@ from clearance.sketch.mobility import (
 )
 from clearance.sketch.problem import Problem, entities_of
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.rank import singular_steps
 
 FACTORED = 1500
 """Freedoms of a part up to which its matrix is factored; beyond that the plan's own steps are the
@@ -34,6 +33,10 @@ evidence."""
 
 WALKED = 400
 """Freedoms of a part up to which contacts beyond the first order are examined: half a second."""
+
+ALIKE = 1e-12
+"""Determinant of the unit derivatives' products at which they count as one: sine squared, 1e-6 each. What only
+touches is marked as well."""
 
 CLEAR = 1e-6
 """[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""
@@ -46,10 +49,9 @@ def equations_of(problem: Problem, part: int, x: np.ndarray, *, regular: bool = 
     regular equation says what it says only together with the incidences of its point.
     """
     system = problem.regular if regular else problem.system
-    chosen = (problem.row_part == part) & (problem.fate == 0)
-    last = problem.plan.dependent[chosen[problem.plan.dependent]]
-    chosen[last] = False
-    return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x, system)
+    last = problem.plan.dependent[problem.row_part[problem.plan.dependent] == part]
+    rows = np.concatenate([problem.independent_rows(part), last])
+    return Equations(problem, part, rows, x, system)
 
 
 def rigid_motions(problem: Problem, x: np.ndarray, columns: Columns) -> np.ndarray:
@@ -83,10 +85,38 @@ def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
     """(parts,) whether the count alone may err: numeric clusters, implied equations, singular steps."""
     plan, out = problem.plan, np.zeros(problem.n_parts, bool)
     numeric = [step.vertex for step in plan.steps if step.numeric]
-    singular = singular_steps(problem.system, plan.steps, x, problem.size)
-    out[problem.part[numeric + [step.vertex for step in singular]]] = True
+    out[problem.part[numeric + _singular_steps(problem, x)]] = True
     out[problem.row_part[plan.dependent]] = True
     return out
+
+
+def _singular_steps(problem: Problem, x: np.ndarray) -> list[int]:
+    """The first vertices of the closed steps with two or three equations that are not independent at x: two loci
+    that are one, or run side by side. The count of freedoms does not see them."""
+    s = problem.system
+    closed = [step for step in problem.plan.steps if not step.numeric and len(step.rows) > 1]
+    columns = Columns(s, np.arange(1, s.kind.size), np.arange(s.code.size))
+    step_of_row, place_of_row = np.full((2, s.code.size), -1)
+    step_of, place_of = np.full((2, columns.n), -1)
+    for k, step in enumerate(closed):
+        rows = np.array(step.rows)
+        step_of_row[rows], place_of_row[rows] = k, np.arange(rows.size)
+        first = columns.first[list(step.vertices)]
+        mine = np.append(first, first[0] + 1)[:3] if s.kind[step.vertex] == POINT else first
+        step_of[mine], place_of[mine] = k, np.arange(mine.size)
+    row, column = columns.pattern
+    unit = np.ones(columns.n)
+    unit[columns.first[columns.single[s.kind[columns.single] == TURN]]] = 1.0 / problem.size
+    own = (step_of[column] >= 0) & (step_of[column] == step_of_row[row])
+    slopes = np.zeros((len(closed), 3, 3))
+    at = step_of[column], place_of_row[row], place_of[column]
+    np.add.at(slopes, tuple(i[own] for i in at), (columns.entries(x) * unit[column])[own])
+    length = np.linalg.norm(slopes, axis=2, keepdims=True)
+    slopes /= np.where(length > 0.0, length, 1.0)
+    gram = slopes @ slopes.transpose(0, 2, 1)
+    gram[:, 2, 2] += [len(step.rows) == 2 for step in closed]
+    singular = np.flatnonzero(np.linalg.det(gram) <= ALIKE)
+    return [closed[k].vertex for k in singular]
 
 
 def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) -> int:

@@ -5,9 +5,8 @@ The tables that a solve works on are made of them (`problem`). Not for: names an
 
 from __future__ import annotations
 
-import math
 from array import array
-from collections.abc import Callable, Iterable, Set
+from collections.abc import Set
 
 import numpy as np
 
@@ -29,14 +28,10 @@ class FlatLists:
         rows: the equations.
         owners, ranks: the constraint (by index) and the rank of every row.
         constraints: every constraint by its index.
-        together: (constraint, row) of every pair of points that coincide.
-
-    Args:
-        on_growth: called when a number or a constraint has come in.
+        together: the constraint (by index) of every pair of points that coincide.
     """
 
-    def __init__(self, on_growth: Callable[[], None]) -> None:
-        self._on_growth = on_growth
+    def __init__(self) -> None:
         self.numbers: list[float] = []
         self.roles = array("q")
         self.line_ends = array("q")
@@ -44,8 +39,7 @@ class FlatLists:
         self.owners = array("q")
         self.ranks = array("q")
         self.constraints: list[Constraint] = []
-        self.together: list[tuple[int, int]] = []
-        self._same_sides: list[Constraint] = []
+        self.together: list[int] = []
         self._origin: tuple[float, float] | None = None
 
     @property
@@ -65,38 +59,31 @@ class FlatLists:
         for number, role in pairs:
             self.numbers.append(float(number))
             self.roles.append(role)
-        self._on_growth()
         return first
 
-    def append_rows(self, constraint: Constraint, rows: Iterable[Row]) -> None:
-        """Appends a constraint's equations; coincident points are listed separately."""
-        first, rows = len(self.rows), list(rows)
+    def append_rows(self, constraint: Constraint, rows: list[Row]) -> None:
+        """Appends a constraint's equations; coincident points are listed apart."""
         self.rows += rows
         for row in rows:
             self.owners.append(constraint.index)
             rank = ALONE if len(rows) == 1 else TOGETHER
             self.ranks.append(DRAWN if constraint.built_in else (AGAIN if row.again else rank))
-        constraint.n_rows = len(rows)
+        constraint.valency = len(rows)
         points = constraint.kind == "coincident" and constraint.entities[0].what == "point"
-        if constraint.n_rows and (points or constraint.kind == "concentric"):
-            self.together.append((constraint.index, first))
+        if points or constraint.kind == "concentric":
+            self.together.append(constraint.index)
 
-    def dimensions(self) -> list[float]:
-        """The dimension of every constraint; 0 for those without."""
-        return [0.0 if math.isnan(c.number) else c.number for c in self.constraints]
-
-    def append_constraint(self, constraint: Constraint) -> None:
-        """Gives a constraint its place among all; its rows come separately."""
-        self.constraints.append(constraint)
-        if constraint.kind == "same_side" and not constraint.driven:
-            self._same_sides.append(constraint)
-        self._on_growth()
+    def dimensions(self) -> np.ndarray:
+        """(constraints,) the dimension of every constraint; 0 for those without."""
+        return np.nan_to_num([c.number for c in self.constraints])
 
     def sides(self, chosen: Set[int] | None = None) -> list[tuple[int, int, int]]:
         """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
         return [
             (p.variable, q.variable, line.variable)
             for p, q, line in (
-                c.entities for c in self._same_sides if chosen is None or c.index in chosen
+                c.entities
+                for c in self.constraints
+                if c.kind == "same_side" and not c.driven and (chosen is None or c.index in chosen)
             )
         ]

@@ -61,7 +61,7 @@ class Equations:
         self.part = part
         self.rows = rows
         self.solution = x
-        self.vertices = np.flatnonzero(problem.part == part)
+        self.vertices = problem.vertices_of(part)
         self.columns = Columns(system, self.vertices, rows)
         self.first, self.n = self.columns.first, self.columns.n
         self.system = s = system

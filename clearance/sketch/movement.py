@@ -12,11 +12,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import splu
 
-from clearance.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
+from clearance.sketch.graph.graph import DIRECTION
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.system import System
 
 DENSE = 160
 """Unknowns up to which the dense factorisation of the optimality system is the faster one
@@ -35,9 +36,7 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
         weight: (n,) how much each variable of a point counts.
     """
     best = _best(_Work(problem, part, target, weight), x, start)
-    if (
-        best is None and problem.contacts is not None
-    ):  # a regular equation may lead to a line's other side
+    if best is None and problem.contacts is not None:  # it may lead to a line's other side
         plain = replace(problem, contacts=None)
         return _best(_Work(plain, part, target, weight), x, start)
     return best
@@ -67,40 +66,25 @@ def closed(problem: Problem, part: int, x: np.ndarray) -> np.ndarray | None:
 
 
 class _Work:
-    """One part's columns, weights and equations."""
+    """One part's columns and equations, and the movement's second derivative (n,), which is diagonal."""
 
     def __init__(self, problem: Problem, part: int, target: np.ndarray, weight: np.ndarray) -> None:
-        self.system: System = problem.regular
-        s = self.system
-        self.problem = problem
-        self.vertices = np.flatnonzero(problem.part == part)
-        dependent = np.zeros(problem.row_part.size, bool)
-        dependent[problem.plan.dependent] = True
-        self.rows = np.flatnonzero((problem.row_part == part) & (problem.fate == 0) & ~dependent)
-        self.columns = Columns(s, self.vertices, self.rows)
-        self.first, self.n = self.columns.first, self.columns.n
-        self.target = target
-        self.hessian = self._hessian(weight)
+        self.system, self.problem, self.target = problem.regular, problem, target
+        self.rows = problem.independent_rows(part)
+        self.columns = Columns(self.system, problem.vertices_of(part), self.rows)
+        self.n = self.columns.n
+        self.bending = self._bending(weight)
 
-    def _hessian(self, weight: np.ndarray) -> np.ndarray:
-        """Entries (row, column, value) of the movement's second derivative."""
-        s, entries = self.system, []
-        size = self.problem.size
-        drawn = {int(t) for t, a, _ in self.problem.tables.line_ends if a >= 0}
-        for v in self.vertices:
-            c, i = self.first[v], s.root[v]
-            if s.kind[v] == POINT:
-                entries += [(c, c, weight[i]), (c + 1, c + 1, weight[i])]
-            elif s.kind[v] == SIZE:
-                for j in s.member[s.member_start[v] : s.member_start[v + 1]]:
-                    entries.append((c, c, s.scale[j] ** 2))
-            elif s.kind[v] == TURN:
-                for j in s.member[s.member_start[v] : s.member_start[v + 1]]:
-                    entries.append((c, c, size * size * (WEAK if int(j) in drawn else 1.0)))
-            elif s.kind[v] == SLIDE:
-                for j in s.member[s.member_start[v] : s.member_start[v + 1]]:
-                    entries.append((c, c, s.scale[j] ** 2 * (WEAK if int(j) - 1 in drawn else 1.0)))
-        return np.array(entries).reshape(-1, 3)
+    def _bending(self, weight: np.ndarray) -> np.ndarray:
+        """(n,) how much the square of every column counts."""
+        s, tables, columns, out = self.system, self.problem.tables, self.columns, np.zeros(self.n)
+        share = np.where(tables.role == DIRECTION, self.problem.size**2, 1.0)
+        theta = tables.line_ends[tables.line_ends[:, 1] >= 0, 0]
+        share[theta] *= WEAK
+        share[theta + 1] *= WEAK
+        out[columns.at_points] = weight[s.root[s.vertex_of[columns.points]]]
+        counted = share[columns.merged] * s.scale[columns.merged] ** 2
+        return out + np.bincount(columns.at_merged, counted, self.n)
 
     def holds(self, x: np.ndarray) -> bool:
         """Whether the equations hold as they are counted: a contact may be regular on a line's other side."""
@@ -110,103 +94,74 @@ class _Work:
         return bool(np.abs(error).max(initial=0.0) <= RESIDUAL * self.problem.size)
 
     def offsets(self, x: np.ndarray) -> np.ndarray:
-        """(n,) how far every column is from its target."""
-        s, out = self.system, np.empty(self.n)
-        points = self.vertices[s.kind[self.vertices] == POINT]
-        for k in (0, 1):
-            out[self.first[points] + k] = x[s.root[points] + k] - self.target[s.root[points] + k]
-        others = self.vertices[s.kind[self.vertices] != POINT]
-        for v in others:
-            mine = s.member[s.member_start[v] : s.member_start[v + 1]]
-            goal = np.mean((self.target[mine] - s.shift[mine]) / s.scale[mine])
-            out[self.first[v]] = x[s.root[v]] - goal
+        """(n,) how far every column is from its target: merged numbers from their targets' mean."""
+        s, columns, out = self.system, self.columns, np.empty(self.n)
+        out[columns.at_points] = x[columns.points] - self.target[columns.points]
+        merged, at = columns.merged, columns.at_merged
+        goals = (self.target[merged] - s.shift[merged]) / s.scale[merged]
+        count = np.maximum(np.bincount(at, minlength=self.n), 1)
+        goal = np.bincount(at, goals, self.n) / count
+        out[at] = x[columns.root] - goal[at]
         return out
 
     def movement(self, x: np.ndarray) -> float:
         """The movement squared."""
-        g = self.offsets(x)
-        i, _, h = self.hessian.T
-        return float(np.sum(h * g[i.astype(int)] ** 2))
+        return float(np.sum(self.bending * self.offsets(x) ** 2))
 
     def optimum(self, x: np.ndarray) -> np.ndarray | None:
         """Sequential quadratic programming from x; None when the equations could not be
         satisfied."""
-        size = self.problem.size
         multipliers = np.zeros(self.rows.size)
         for k in range(30):
             self.problem.limit.require_time()
-            f, entries = self.columns.errors(x), self.columns.entries(x)
-            rows, cols = self.columns.pattern
-            gap = self.offsets(x)
-            bent = self.columns.bend(x, multipliers) if k > 1 else None
-            step, fresh = self._step(f, rows, cols, entries, gap, bent)
-            if step is None:
+            found = self._step(x, [self.columns.bend(x, multipliers)] if k > 1 else [])
+            if found is None:
                 return None
-            moved, length = self._search(x, f, gap, step, fresh)
-            x, multipliers = moved, fresh
-            if length * np.abs(step).max() <= 1e-9 * size:
+            step, multipliers = found
+            x, taken = self._search(x, step, multipliers)
+            if taken * np.abs(step).max() <= 1e-9 * self.problem.size:
                 break
         return self.restored(x)
 
-    def _step(self, f, rows, cols, entries, gap, bent):
-        i, _, h = self.hessian.T
-        diagonal = np.bincount(i.astype(int), h, self.n)
-        m = f.size
-        right = np.concatenate([-diagonal * gap, -f])
-        for with_bend in (bent is not None, False):
-            solution = self._solved(
-                diagonal, bent if with_bend else None, rows, cols, entries, m, right
-            )
-            if solution is None or not np.isfinite(solution).all():
-                continue
-            step = solution[: self.n]
-            if with_bend:
-                curved = np.sum(bent[2] * step[bent[0]] * step[bent[1]]) + np.sum(
-                    diagonal * step**2
-                )
-                if curved <= 1e-3 * np.sum(diagonal * step**2):
-                    continue
-            return step, solution[self.n :]
-        return None, None
+    def _step(self, x: np.ndarray, bent: list) -> tuple[np.ndarray, np.ndarray] | None:
+        """(step, multipliers) of the optimality system, with the equations' curvature if that bends upwards."""
+        entries = self.columns.entries(x)
+        right = np.append(-self.bending * self.offsets(x), -self.columns.errors(x))
+        solution = self._solved(entries, bent, right)
+        if bent and solution is not None:
+            step, (i, j, value) = solution[: self.n], bent[0]
+            plain = np.sum(self.bending * step**2)
+            if np.sum(value * step[i] * step[j]) + plain <= 1e-3 * plain:
+                solution = None
+        if bent and solution is None:
+            solution = self._solved(entries, [], right)
+        return None if solution is None else (solution[: self.n], solution[self.n :])
 
-    def _solved(self, diagonal, bent, rows, cols, entries, m: int, right: np.ndarray):
-        n = self.n
-        if n + m <= 2 * DENSE:
-            matrix = np.zeros((n + m, n + m))
-            matrix[np.arange(n), np.arange(n)] = diagonal
-            if bent is not None:
-                np.add.at(matrix, (bent[0], bent[1]), bent[2])
-            np.add.at(matrix, (n + rows, cols), entries)
-            matrix[:n, n:] = matrix[n:, :n].T
-            matrix[np.arange(n, n + m), np.arange(n, n + m)] = -1e-13
-            try:
-                return np.linalg.solve(matrix, right)
-            except np.linalg.LinAlgError:
-                return None
-        from scipy.sparse import coo_array
-        from scipy.sparse.linalg import splu
-
-        i = [np.arange(n), n + rows, cols, np.arange(n, n + m)]
-        j = [np.arange(n), cols, n + rows, np.arange(n, n + m)]
-        value = [diagonal, entries, entries, np.full(m, -1e-13)]
-        if bent is not None:
-            i, j, value = [*i, bent[0]], [*j, bent[1]], [*value, bent[2]]
-        matrix = coo_array((np.concatenate(value), (np.concatenate(i), np.concatenate(j))))
+    def _solved(self, entries: np.ndarray, bent: list, right: np.ndarray) -> np.ndarray | None:
+        """(n + m,) the solution of the optimality system; None where it is singular."""
+        row, column = self.columns.pattern
+        n, whole = self.n, right.size
+        own, diagonal = np.arange(whole), np.append(self.bending, np.full(whole - n, -1e-13))
+        blocks = [(own, own, diagonal), (n + row, column, entries), (column, n + row, entries)]
+        i, j, value = (np.concatenate(mine) for mine in zip(*blocks, *bent, strict=True))
         try:
-            return splu(matrix.tocsc()).solve(right)
-        except RuntimeError:
+            if whole <= 2 * DENSE:
+                flat = np.bincount(i * whole + j, value, whole * whole)
+                out = np.linalg.solve(flat.reshape(whole, whole), right)
+            else:
+                out = splu(coo_array((value, (i, j))).tocsc()).solve(right)
+        except (np.linalg.LinAlgError, RuntimeError):
             return None
+        return out if np.isfinite(out).all() else None
 
-    def _search(self, x, f, gap, step, multipliers):
-        """A step along which the merit (movement and violated equations) falls."""
-        i, _, h = self.hessian.T
-        i = i.astype(int)
+    def _search(self, x, step, multipliers) -> tuple[np.ndarray, float]:
+        """(numbers, share of the step) where the merit (movement and violated equations) does not rise."""
         price = 2.0 * np.abs(multipliers).max(initial=0.0) + 1e-12
 
         def merit(numbers):
-            g = self.offsets(numbers)
-            r = self.columns.errors(numbers)
-            return 0.5 * np.sum(h * g[i] ** 2) + price * np.sum(np.abs(r))
+            return 0.5 * self.movement(numbers) + price * np.sum(
+                np.abs(self.columns.errors(numbers))
+            )
 
         before, size = merit(x), 1.0
         while size > 1e-3:
@@ -221,8 +176,7 @@ class _Work:
         size = self.problem.size
         best, least = None, RESIDUAL * size
         for _ in range(12):
-            f, entries = self.columns.errors(x), self.columns.entries(x)
-            rows, cols = self.columns.pattern
+            f = self.columns.errors(x)
             violated = np.abs(f).max(initial=0.0)
             if violated <= least:
                 if best is not None and violated > 0.3 * least:
@@ -230,14 +184,8 @@ class _Work:
                 best, least = x.copy(), violated
             if violated <= 2e-16 * size:
                 break
-            i, _, h = self.hessian.T
-            diagonal = np.bincount(i.astype(int), h, self.n)
-            right = np.concatenate([np.zeros(self.n), -f])
-            solution = self._solved(diagonal, None, rows, cols, entries, f.size, right)
-            if solution is None or not np.isfinite(solution).all():
+            solution = self._solved(self.columns.entries(x), [], np.append(np.zeros(self.n), -f))
+            if solution is None:
                 break
             x = self.columns.moved(x, solution[: self.n])
         return best
-
-
-__all__ = ["least_movement"]

@@ -19,6 +19,7 @@ from clearance.sketch.equations import CODES, OF_LENGTH, CircleCircle, Linear, a
 from clearance.sketch.graph.graph import (
     DIRECTION,
     FREEDOMS,
+    IN_GRAPH,
     MERGED,
     OFFSET,
     SLIDE,
@@ -32,11 +33,15 @@ from clearance.sketch.graph.graph import (
 )
 from clearance.sketch.graph.plan import make_plan
 from clearance.sketch.graph.steps import ConstructionPlan
+from clearance.sketch.solve.newton import StoppingRule
 from clearance.sketch.solve.system import System
 
 RESIDUAL = 1e-12
 """[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
 coordinate."""
+
+FLOOR = 2e-16
+"""[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
 SETTLED = 2e-13
 """[-] Equations that hold to this, relative to the size, stay untouched: a solved sketch solves to
@@ -60,7 +65,7 @@ class Tables:
     ground: np.ndarray
     owner: np.ndarray
     line_ends: np.ndarray
-    together: list[tuple[int, int]]
+    together: list[int]
     numbers: np.ndarray
     """(constraints,) current dimension of every constraint; 0 for those without."""
 
@@ -69,10 +74,15 @@ class Tables:
         """(m,) the value of every row."""
         return self.offset + self.scale * self.numbers[self.owner]
 
+    def first_rows(self, constraints: list[int]) -> list[int]:
+        """The first row of each of some constraints (by index)."""
+        at = dict(zip(reversed(self.owner.tolist()), reversed(range(self.owner.size)), strict=True))
+        return [at[k] for k in constraints]
+
     def only(self, chosen: np.ndarray) -> Tables:
         """The tables of the constraints (by index) that `chosen` marks."""
         rows = chosen[self.owner] if self.owner.size else np.zeros(0, bool)
-        together = [pair for pair in self.together if chosen[pair[0]]]
+        together = [k for k in self.together if chosen[k]]
         return Tables(
             self.role, self.code[rows], self.var[rows], self.coef[rows], self.scale[rows],
             self.offset[rows], self.ground[rows], self.owner[rows], self.line_ends, together,
@@ -100,7 +110,7 @@ def tables_of(sketch) -> Tables:
         np.array(lists.owners, np.int64)[order],
         np.array(lists.line_ends, np.int64).reshape(-1, 3),
         list(lists.together),
-        np.array(lists.dimensions()),
+        lists.dimensions(),
     )
 
 
@@ -136,6 +146,37 @@ class Problem:
         """The system as it is regular at a solution, where points of contact are double roots otherwise."""
         return self.system if self.contacts is None else self.contacts.regular(self.system)
 
+    def vertices_of(self, part: int) -> np.ndarray:
+        """The vertices of a part."""
+        return np.flatnonzero(self.part == part)
+
+    def numbers_of(self, part: int) -> np.ndarray:
+        """(n,) marks the numbers of a part."""
+        vertex_of = self.system.vertex_of
+        return (vertex_of > 0) & (self.part[vertex_of] == part)
+
+    def independent_rows(self, part: int) -> np.ndarray:
+        """The equations of a part that are edges of the graph and that no others imply by the count."""
+        chosen = (self.row_part == part) & (self.fate == IN_GRAPH)
+        chosen[self.plan.dependent] = False
+        return np.flatnonzero(chosen)
+
+    def errors(self, x: np.ndarray) -> np.ndarray:
+        """(m,) [m] how far every equation is off at x (n,); infinite where that is no number."""
+        error = np.abs(self.system.all_rows.errors(x)) * self.length_scale
+        return np.where(error <= 1.7e308, error, np.inf)
+
+    def residual(self, x: np.ndarray) -> tuple[float, int]:
+        """The largest residual [m] of all equations, and its row; (0, -1) where all are 0."""
+        error = self.errors(x)
+        largest = float(error.max(initial=0.0))
+        return largest, int(np.argmax(error)) if largest > 0.0 else -1
+
+    def rule(self, attempts: int) -> StoppingRule:
+        """When the search for a cluster's place ends, at the problem's size."""
+        size = self.size
+        return StoppingRule(FLOOR * size, RESIDUAL * size, attempts, self.limit, SETTLED * size)
+
     @property
     def is_rigid(self) -> np.ndarray:
         """(parts,) whether nothing is free in a part beyond placing it as a whole."""
@@ -148,13 +189,20 @@ def entities_of(sketch, problem: Problem) -> dict[str, Entity]:
     return {name: e for name, e in sketch.entities.items() if e.variable < n}
 
 
-def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
-    """(alias, weight, rows of coincidences that others imply)."""
+class NumberAliases(NamedTuple):
+    """(n,) which number stands for each, and for how many each stands; rows that say so once more."""
+
+    alias: np.ndarray
+    weight: np.ndarray
+    repeated: list[int]
+
+
+def joined(tables: Tables) -> NumberAliases:
+    """The numbers that stand for those of coincident points."""
     n = tables.role.shape[0]
     alias = np.arange(n)
     if not tables.together:
-        return alias, np.ones(n), []
-    row_at = {int(o): k for k, o in reversed(list(enumerate(tables.owner)))}
+        return NumberAliases(alias, np.ones(n), [])
     repeated = []
     group: dict[int, int] = {}
 
@@ -163,8 +211,7 @@ def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
             i = group[i]
         return i
 
-    for index, _ in tables.together:
-        row = row_at[index]
+    for row in tables.first_rows(tables.together):
         same = places(Linear, tables.var[row])
         a, b = find(int(same.a)), find(int(same.b))
         if a == b:
@@ -172,7 +219,7 @@ def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
         group[max(a, b)] = min(a, b)
     for i in group:
         alias[i], alias[i + 1] = find(i), find(i) + 1
-    return alias, np.bincount(alias, minlength=n).astype(float), repeated
+    return NumberAliases(alias, np.bincount(alias, minlength=n).astype(float), repeated)
 
 
 def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Problem:
@@ -181,12 +228,13 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     value = tables.value
     size = size_of(tables, x, value)
     if like is None:
-        alias, weight, repeated = joined(tables)
-        var = np.where(tables.var >= 0, alias[tables.var], -1)
+        same = joined(tables)
+        var = np.where(tables.var >= 0, same.alias[tables.var], -1)
         turning = tables.role[np.maximum(places(Linear, var).a, 0)] == DIRECTION
         angular = are(tables.code, Linear) & turning
     else:
-        alias, weight, repeated, var = like.alias, like.weight, like.repeated, like.system.var
+        same = NumberAliases(like.alias, like.weight, like.repeated)
+        var = like.system.var
         angular = like.length_scale != 1.0
     length_scale = np.where(angular, size * 1.0000001, 1.0)
     merged = merge(
@@ -205,7 +253,6 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     if tables.together:
         of = places(Linear, var)
         merged.fate[are(tables.code, Linear) & (of.a == of.b) & (of.a >= 0)] = MERGED
-    same = _NumberAliases(alias, weight, repeated)
     return _fresh(tables, same, merged, var, coef, value, size, length_scale)
 
 
@@ -227,23 +274,15 @@ def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) 
     return coef
 
 
-class _NumberAliases(NamedTuple):
-    """(n,) which number stands for each, and for how many each stands; rows that say so once more."""
-
-    alias: np.ndarray
-    weight: np.ndarray
-    repeated: list[int]
-
-
-def _fresh(tables, same: _NumberAliases, merged: Merged, var, coef, value, size, length_scale):
+def _fresh(tables, same: NumberAliases, merged: Merged, var, coef, value, size, length_scale):
     """The problem with a plan of its own."""
     vertex_of, kind, root = vertices(tables.role, merged.parent, same.weight > 0)
-    ends = edges(var, tables.ground, merged.fate, vertex_of)
+    ground = _grounded(tables, var, merged.fate, vertex_of)
+    ends = edges(var, ground, merged.fate, vertex_of)
     start, member = members(vertex_of, tables.role, kind.size)
     theta_of = np.zeros(kind.size, np.int64)
     slides = np.flatnonzero(kind == SLIDE)
     theta_of[slides] = vertex_of[root[slides] - 1]
-    ground = _grounded(tables, var, merged.fate, vertex_of, ends)
     system = System(
         tables.code, var, coef, value, kind, root, merged.parent, merged.scale, merged.shift,
         start, member, vertex_of, ends,
@@ -256,21 +295,16 @@ def _fresh(tables, same: _NumberAliases, merged: Merged, var, coef, value, size,
     return Problem(
         tables, *same, system, merged.fate, ground, plan, part, n_parts, fixing,
         free, row_part, length_scale, size,
-        contacts_of(tables.code, var, plain, ~np.isin(row_part, row_part[plan.dependent])),
+        contacts_of(system, plain, ~np.isin(row_part, row_part[plan.dependent])),
     )  # fmt: skip
 
 
-def _grounded(tables: Tables, var, fate, vertex_of, ends) -> np.ndarray:
-    """(m,) how every row refers to the ground: those of known offsets by position; `ends` then begin with it."""
+def _grounded(tables: Tables, var, fate, vertex_of) -> np.ndarray:
+    """(m,) how every row refers to the ground: those of known offsets by position."""
     placed = (tables.role == OFFSET) & (vertex_of == 0)
     if not placed.any():
         return tables.ground
-    ground = np.where((placed[var] & (var >= 0)).any(axis=1) & (fate == 0), 1, tables.ground)
-    first_is_ground = (ground == 1) & (tables.ground == 0)
-    ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(
-        -1, 5
-    )
-    return ground
+    return np.where((placed[var] & (var >= 0)).any(axis=1) & (fate == 0), 1, tables.ground)
 
 
 def _row_parts(var, part, vertex_of) -> np.ndarray:
@@ -290,12 +324,6 @@ def _remaining_freedoms(kind, ends, part, n_parts: int, dependent) -> np.ndarray
     chosen[dependent] = False
     first = ends[chosen, np.argmax(ends[chosen] > 0, axis=1)]
     return (out - np.bincount(part[first], minlength=n_parts)).astype(np.int64)
-
-
-def _ground_first(ends: np.ndarray) -> list[int]:
-    """The vertices of an edge with the ground in front, as rows that name a place have it."""
-    rest = [int(v) for v in ends if v > 0]
-    return ([0, *rest] + [-1] * 5)[:5]
 
 
 def size_of(tables: Tables, x: np.ndarray, value: np.ndarray) -> float:

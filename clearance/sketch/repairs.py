@@ -70,7 +70,7 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     soft = np.isin(tables.owner, dimensions) & (tables.scale != 0.0)
     free = np.unique(tables.var[tables.var >= 0])
     weight = np.where(soft, 1.0, FIRM)
-    alias, _, _ = joined(tables)
+    alias = joined(tables).alias
     var = np.where(tables.var >= 0, alias[tables.var], -1)
     rows = Rows(tables.code, var, tables.coef, tables.value)
 

@@ -6,14 +6,16 @@ Not for: the search itself (`solver`), conflicts (`diagnosis`), the plan's wordi
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from clearance.sketch.diagnosis import Repair
-    from clearance.sketch.plan import Step
-    from clearance.sketch.problem import Problem
+from clearance.sketch.diagnosis import Diagnosis, diagnose
+from clearance.sketch.freedom import entity_freedoms, freedom_of, redundant_constraints
+from clearance.sketch.graph.graph import X, Y
+from clearance.sketch.plan import Step, readable
+from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.repairs import Repair
+from clearance.sketch.roots import alternatives_of, by_name
 
 
 class SketchResult:
@@ -55,22 +57,16 @@ class SketchResult:
     @cached_property
     def freedom(self) -> int:
         """Remaining degrees of freedom beyond placing the whole."""
-        from clearance.sketch.freedom import freedom_of
-
         return freedom_of(self._problem, self._outcome.x)
 
     @cached_property
     def freedom_of(self) -> dict[str, int]:
         """Degrees of freedom of every entity with the initial cluster fixed."""
-        from clearance.sketch.freedom import entity_freedoms
-
         return entity_freedoms(self.sketch, self._problem, self._outcome.x)
 
     @cached_property
     def redundant(self) -> list[str]:
         """Constraints that follow from the others."""
-        from clearance.sketch.freedom import redundant_constraints
-
         chosen = redundant_constraints(self._problem, self._outcome.x, self.solved)
         return [self.sketch._lists.constraints[k].name for k in chosen]
 
@@ -89,8 +85,6 @@ class SketchResult:
     @cached_property
     def movement(self) -> float:
         """[m] how far the points moved: root of the summed squares."""
-        from clearance.sketch.graph.graph import X, Y
-
         role = self._problem.tables.role
         shift = (self._outcome.x - self._before)[(role == X) | (role == Y)]
         return float(np.linalg.norm(shift))
@@ -98,15 +92,11 @@ class SketchResult:
     @cached_property
     def plan(self) -> list[Step]:
         """The construction plan, step by step."""
-        from clearance.sketch.plan import readable
-
         return readable(self.sketch, self._problem, self._outcome.fates)
 
     @cached_property
     def alternatives(self) -> list[dict[str, np.ndarray]]:
         """Other solutions of the small numeric clusters: the numbers of every entity, by name."""
-        from clearance.sketch.roots import alternatives_of
-
         sides = self.sketch.sides()
         x = self._outcome.x
         return alternatives_of(self.sketch, self._problem, x, sides) if self.solved else []
@@ -117,16 +107,13 @@ class SketchResult:
 
         A sketch that is not solved stays as it was drawn; this is how far its solve came.
         """
-        from clearance.sketch.roots import by_name
-
         return by_name(self.sketch, self._problem, self._outcome.best)
 
     @cached_property
     def errors(self) -> dict[str, float]:
         """[m] how far every constraint is off at the best placement (directions as arcs at the sketch's size)."""
-        from clearance.sketch.steps import errors_of
 
-        error, owner = errors_of(self._problem, self._outcome.best), self._problem.tables.owner
+        error, owner = self._problem.errors(self._outcome.best), self._problem.tables.owner
         out = np.zeros(len(self.sketch._lists.constraints))
         np.maximum.at(out, owner, error)
         constraints = self.sketch._lists.constraints
@@ -138,20 +125,15 @@ class SketchResult:
 
         First those that place entities, in their order, then over-constrained parts.
         """
-        from clearance.sketch.problem import RESIDUAL
-        from clearance.sketch.steps import errors_of
-
         problem, constraints = self._problem, self.sketch._lists.constraints
-        off = errors_of(problem, self._outcome.best) > RESIDUAL * problem.size
+        off = problem.errors(self._outcome.best) > RESIDUAL * problem.size
         clusters = [*(list(step.rows) for step in problem.plan.steps), *problem.plan.circuits]
         owners = [problem.tables.owner[sorted(rows)] for rows in clusters if off[rows].any()]
         named = [list(dict.fromkeys(constraints[k].name for k in mine)) for mine in owners]
         return [] if self.solved else named
 
     @cached_property
-    def _diagnosis(self):
-        from clearance.sketch.diagnosis import diagnose
-
+    def _diagnosis(self) -> Diagnosis:
         return diagnose(self.sketch, self._problem, self._before, self._outcome)
 
     @property

@@ -16,10 +16,10 @@ from clearance.sketch.graph.graph import POINT, SIZE, TURN
 from clearance.sketch.graph.steps import PlanStep
 from clearance.sketch.problem import RESIDUAL, Problem, entities_of
 from clearance.sketch.solve.columns import Columns
-from clearance.sketch.solve.execute import DONE
+from clearance.sketch.solve.execute import DONE, FAILED, TOO_LARGE, Run, execute
 from clearance.sketch.solve.newton import descended
+from clearance.sketch.solve.search import RESTARTS
 from clearance.sketch.start import Sides, sides_hold
-from clearance.sketch.steps import residual_of, run_after, stopping_rule
 
 SMALL = 10
 """Entities up to which a cluster's other roots are searched."""
@@ -60,7 +60,7 @@ def roots_of(problem: Problem, step: PlanStep, x: np.ndarray, starts: int = STAR
     s, vertices = problem.system, np.array(step.vertices)
     columns = Columns(s, vertices, np.array(step.rows), problem.plan.body_of)
     reach = max(_extent(problem, vertices, x), 0.1 * problem.size)
-    random, rule = np.random.default_rng(12345), stopping_rule(problem, 1)
+    random, rule = np.random.default_rng(12345), problem.rule(1)
     scale = np.full(columns.n, reach)
     scale[columns.first[columns.single[s.kind[columns.single] == TURN]]] = np.pi
     scale[columns.turns] = np.pi
@@ -114,9 +114,19 @@ def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np
         found = roots_of(problem, step, x, QUICK_STARTS)
         away = np.linalg.norm(found[:, mine] - sketch[mine], axis=1)
         if away.min() < 0.999 * away[0]:
-            nearer, good = run_after(problem, k, found[int(np.argmin(away))], sketch)
+            nearer, good = _run_after(problem, k, found[int(np.argmin(away))], sketch)
             x = nearer if good else x
     return x
+
+
+def _run_after(
+    problem: Problem, step: int, x: np.ndarray, sketch: np.ndarray
+) -> tuple[np.ndarray, bool]:
+    """The numbers after the steps that follow one are run again from x, on the branches of `sketch`; and whether
+    every step found its place."""
+    out, plan = x.copy(), problem.plan.after(step)
+    fates = execute(problem.system, plan, out, Run(sketch, problem.rule(RESTARTS)))
+    return out, not np.isin(fates, (FAILED, TOO_LARGE)).any()
 
 
 def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, float]]:
@@ -126,9 +136,9 @@ def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, f
         if not is_small(problem, step):
             continue
         for root in roots_of(problem, step, x)[1:]:
-            complete, _ = run_after(problem, k, root, x)
+            complete, _ = _run_after(problem, k, root, x)
             complete = complete[problem.alias]
-            residual, _ = residual_of(problem, complete)
+            residual, _ = problem.residual(complete)
             if residual <= RESIDUAL * problem.size:
                 found.append((complete, residual))
     return sorted(found, key=lambda pair: float(np.linalg.norm(pair[0] - x)))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from clearance.sketch.entities import Arc, Circle, Line, Point
+from clearance.sketch.entities import Arc, Circle, Entity, Line, Point
 from clearance.sketch.equations import (
     Across,
     CircleCircle,
@@ -41,34 +41,77 @@ class Row(NamedTuple):
     """Often said by another constraint as well: that two lines at a distance are parallel."""
 
 
-def pair(e: Point | Line) -> tuple[int, int]:
-    return e.variable, e.variable + 1
+def pair(e: Entity) -> tuple[int, int]:
+    """The two numbers of a point or a line, or of a circle's centre."""
+    first = e.center.variable if isinstance(e, Circle) else e.variable
+    return first, first + 1
 
 
 def rim(c: Circle) -> tuple[int, int, int]:
-    return *pair(c.center), c.variable
+    return *pair(c), c.variable
 
 
-def gap(x: list[float], p: Point, line: Line) -> float:
-    """[m] signed distance of p from the line in the sketch."""
-    theta, d = x[line.variable], x[line.variable + 1]
-    return math.cos(theta) * x[p.variable + 1] - math.sin(theta) * x[p.variable] - d
+def gap(x: list[float], p: Entity, line: Line) -> float:
+    """[m] signed distance of p (or a circle's centre) from the line in the sketch."""
+    theta, d = (x[i] for i in pair(line))
+    px, py = (x[i] for i in pair(p))
+    return math.cos(theta) * py - math.sin(theta) * px - d
 
 
-def span(x: list[float], p: Point, q: Point) -> float:
-    return math.hypot(x[p.variable] - x[q.variable], x[p.variable + 1] - x[q.variable + 1])
+def span(x: list[float], p: Entity, q: Entity) -> float:
+    """[m] distance of two points or centres in the sketch."""
+    (px, py), (qx, qy) = pair(p), pair(q)
+    return math.hypot(x[px] - x[qx], x[py] - x[qy])
 
 
-def sign(value: float) -> float:
-    return -1.0 if value < 0.0 else 1.0
+def times_as_long(x: list[float], line: Line, other: Line) -> float:
+    """How many times as long as another a line is in the sketch; both have points (see `form_of`)."""
+    assert line.ends and other.ends, "the forms say that they span lines"
+    return span(x, *line.ends) / span(x, *other.ends)
+
+
+def clear(x: list[float], p: Point, c: Circle) -> float:
+    """[m] how far a point is outside a circle in the sketch."""
+    return span(x, p, c) - x[c.variable]
 
 
 def turns(x: list[float], line: Line, other: Line) -> float:
     return x[other.variable] - x[line.variable]
 
 
-def half_turn(x: list[float], line: Line, other: Line) -> float:
-    return math.pi * round(turns(x, line, other) / math.pi)
+def beside(x: list[float], line: Line, other: Line) -> float:
+    """[m] how far the other of two nearly parallel lines is to the left of the first in the sketch."""
+    same = sign(math.cos(turns(x, line, other)))
+    return x[other.variable + 1] - same * x[line.variable + 1]
+
+
+def turned(x: list[float], line: Line, other: Line) -> float:
+    """[rad] the turn from one line to the other, up to half a turn either way."""
+    return math.remainder(turns(x, line, other), 2.0 * math.pi)
+
+
+def sign(value: float) -> float:
+    return -1.0 if value < 0.0 else 1.0
+
+
+def half_turns(angle: float) -> float:
+    """The nearest angle along the same line."""
+    return math.pi * round(angle / math.pi)
+
+
+def quarter_turns(angle: float) -> float:
+    """The nearest angle at right angles."""
+    return math.pi * (round(angle / math.pi - 0.5) + 0.5)
+
+
+def equal(i: int, j: int, **value: Any) -> Row:
+    """Two numbers are equal, or differ by a value."""
+    return Row(Linear(i, j), (1.0, -1.0), **value)
+
+
+def given(i: int, **value: Any) -> Row:
+    """A number has a value."""
+    return Row(Linear(i), (1.0,), **value)
 
 
 def point_point(x, p, q):
@@ -80,18 +123,14 @@ def point_line(x, p, line):
 
 
 def point_circle(x, p, c):
-    side = sign(span(x, p, c.center) - x[c.variable])
-    return [Row(PointCircle(*pair(p), *rim(c)), scale=side)]
+    return [Row(PointCircle(*pair(p), *rim(c)), scale=sign(clear(x, p, c)))]
 
 
 def line_line(x, a, b):
-    turn = half_turn(x, a, b)
-    same = sign(math.cos(turn))
-    shift = x[b.variable + 1] - same * x[a.variable + 1]
-    return [
-        Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn, again=True),
-        Row(Linear(b.variable + 1, a.variable + 1), (1.0, -same), scale=sign(shift)),
-    ]
+    (turn,), same = parallel(x, a, b), sign(math.cos(turns(x, a, b)))
+    offsets = Linear(b.variable + 1, a.variable + 1)
+    side = sign(beside(x, a, b))
+    return [turn._replace(again=True), Row(offsets, (1.0, -same), scale=side)]
 
 
 def on_line(x, p, line):
@@ -103,29 +142,17 @@ def on_circle(x, p, c):
 
 
 def together(x, p, q):
-    return [Row(Linear(p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
-
-
-def centered(x, c, d):
-    return together(x, c.center, d.center)
-
-
-def point_centered(x, p, c):
-    return together(x, p, c.center)
+    return [equal(i, j) for i, j in zip(pair(p), pair(q), strict=True)]
 
 
 def same_line(x, a, b):
-    turn = half_turn(x, a, b)
-    same = sign(math.cos(turn))
-    return [
-        Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(Linear(b.variable + 1, a.variable + 1), (1.0, -same)),
-    ]
+    turn, offset = line_line(x, a, b)
+    return [turn._replace(again=False), offset._replace(scale=0.0)]
 
 
 def line_touches(x, line, c):
-    side = sign(gap(x, c.center, line))
-    return [Row(LineCircle(*pair(c.center), *pair(line), c.variable), (side,))]
+    side = sign(gap(x, c, line))
+    return [Row(LineCircle(*pair(c), *pair(line), c.variable), (side,))]
 
 
 def shared_end(c, d) -> Point | None:
@@ -137,7 +164,7 @@ def shared_end(c, d) -> Point | None:
 
 def circles_touch(x, c, d, inside=None):
     r, q = x[c.variable], x[d.variable]
-    between = span(x, c.center, d.center)
+    between = span(x, c, d)
     shared = shared_end(c, d)
     if inside is None and shared is not None:
         (px, py), *centers = (
@@ -148,67 +175,58 @@ def circles_touch(x, c, d, inside=None):
     elif inside is None:
         inside = abs(between - abs(r - q)) < abs(between - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
-    place = CircleCircle(*pair(c.center), *pair(d.center), c.variable, d.variable)
+    place = CircleCircle(*pair(c), *pair(d), c.variable, d.variable)
     return [Row(place, signs)]
 
 
 def angle(x, a, b):
     turn = turns(x, a, b)
     whole = 2.0 * math.pi * round(turn / (2.0 * math.pi))
-    side = sign(turn - whole)
-    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), side, whole)]
+    return [equal(b.variable, a.variable, scale=sign(turn - whole), offset=whole)]
 
 
 def parallel(x, a, b):
-    turn = half_turn(x, a, b)
-    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [equal(b.variable, a.variable, offset=half_turns(turns(x, a, b)))]
 
 
 def perpendicular(x, a, b):
-    turn = math.pi * (round(turns(x, a, b) / math.pi - 0.5) + 0.5)
-    return [Row(Linear(b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [equal(b.variable, a.variable, offset=quarter_turns(turns(x, a, b)))]
 
 
 def level(x, line):
-    turn = math.pi * round(x[line.variable] / math.pi)
-    return [Row(Linear(line.variable), (1.0,), offset=turn, ground=ORIENTED)]
+    return [given(line.variable, offset=half_turns(x[line.variable]), ground=ORIENTED)]
 
 
 def upright(x, line):
-    turn = math.pi * (round(x[line.variable] / math.pi - 0.5) + 0.5)
-    return [Row(Linear(line.variable), (1.0,), offset=turn, ground=ORIENTED)]
+    return [given(line.variable, offset=quarter_turns(x[line.variable]), ground=ORIENTED)]
 
 
 def points_level(x, p, q):
-    return [Row(Linear(p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
+    return [equal(p.variable + 1, q.variable + 1, ground=ORIENTED)]
 
 
 def points_upright(x, p, q):
-    return [Row(Linear(p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
+    return [equal(p.variable, q.variable, ground=ORIENTED)]
 
 
 def radius(x, c):
-    return [Row(Linear(c.variable), (1.0,), 1.0)]
+    return [given(c.variable, scale=1.0)]
 
 
 def diameter(x, c):
-    return [Row(Linear(c.variable), (1.0,), 0.5)]
-
-
-def lengths(a, b):
-    return Lengths(*(i for p in (*a.ends, *b.ends) for i in pair(p)))
+    return [given(c.variable, scale=0.5)]
 
 
 def equal_length(x, a, b):
-    return [Row(lengths(a, b), offset=1.0)]
+    return [length_ratio(x, a, b)[0]._replace(scale=0.0, offset=1.0)]
 
 
 def length_ratio(x, a, b):
-    return [Row(lengths(a, b), scale=1.0)]
+    return [Row(Lengths(*(i for p in (*a.ends, *b.ends) for i in pair(p))), scale=1.0)]
 
 
 def equal_radius(x, c, d):
-    return [Row(Linear(c.variable, d.variable), (1.0, -1.0))]
+    return [equal(c.variable, d.variable)]
 
 
 def radius_ratio(x, c, d):
@@ -220,10 +238,8 @@ def midpoint(x, m, line):
 
 
 def middle(x, m, p, q):
-    return [
-        Row(Linear(m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
-        for k in (0, 1)
-    ]
+    places = zip(pair(m), pair(p), pair(q), strict=True)
+    return [Row(Linear(*place), (1.0, -0.5, -0.5)) for place in places]
 
 
 def symmetric(x, p, q, line):
@@ -232,23 +248,15 @@ def symmetric(x, p, q, line):
 
 
 def circles_symmetric(x, c, d, line):
-    return symmetric(x, c.center, d.center, line) + equal_radius(x, c, d)
+    return symmetric(x, c, d, line) + equal_radius(x, c, d)
 
 
-def fix_point(x, p):
-    return [Row(Linear(v), (1.0,), offset=x[v], ground=GROUNDED) for v in pair(p)]
-
-
-def fix_line(x, line):
-    at = line.variable
-    return [Row(Linear(v), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
+def fix(x, e):
+    return [given(i, offset=x[i], ground=GROUNDED) for i in pair(e)]
 
 
 def fix_circle(x, c):
-    return [
-        *fix_point(x, c.center),
-        Row(Linear(c.variable), (1.0,), offset=x[c.variable]),
-    ]
+    return [*fix(x, c), given(c.variable, offset=x[c.variable])]
 
 
 def nothing(x, *entities):

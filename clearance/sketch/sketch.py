@@ -1,8 +1,8 @@
 """The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on demand.
 
 One class with every public method, so that an editor and a type checker see them; what each does is in the
-rooms it is made of. Not for: how entities are drawn (`drawing`), constraints made (`relations`), dimensions
-kept (`dimensions`), nor how a sketch is solved (`execution`), nor its files (`sketch_file`).
+rooms it is made of. Not for: how entities are drawn (`drawing`), constraints and dimensions made
+(`relations`), nor how a sketch is solved (`execution`), nor its files (`sketch_file`).
 """
 
 from __future__ import annotations
@@ -13,27 +13,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.sketch.checked_numbers import two
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.dimensions import Dimensions
 from clearance.sketch.drawing import Drawing
 from clearance.sketch.effort import SECONDS, TimeLimit
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.lists import FlatLists
-from clearance.sketch.register import Register
+from clearance.sketch.register import Register, two
 from clearance.sketch.relations import Relations
+from clearance.sketch.result import SketchResult
+from clearance.sketch.solver import Solver
 
 if TYPE_CHECKING:
     from clearance.planar.curve import Curve
-    from clearance.sketch.execution import ExecutionResult
-    from clearance.sketch.problem import Problem
-    from clearance.sketch.result import SketchResult
-    from clearance.sketch.solver import Solver
 
 Given = Entity | str
 """An entity of the sketch, or its name."""
-Dimension = float | str | None
+Value = float | str | None
 """A number, an expression of parameters and dimensions, or None for what is drawn."""
+Name = str | None
+"""A name that is used once, or None for the next one that is free."""
 
 
 class Sketch:
@@ -50,9 +48,8 @@ class Sketch:
 
     def __init__(self) -> None:
         self._register = Register(self)
-        self._lists = FlatLists(self._restructured)
-        self._dimensions = Dimensions(self._register, self._lists, self._dimension_changed)
-        self._relations = Relations(self._register, self._lists, self._dimensions)
+        self._lists = FlatLists()
+        self._relations = Relations(self._register, self._lists)
         self._drawing = Drawing(self._register, self._lists, self._relations)
         self._solver: Solver | None = None
         self.entities: dict[str, Entity] = self._register.entities
@@ -61,12 +58,12 @@ class Sketch:
         self.polylines: list[Polyline] = []
         self.most_seconds: float = SECONDS
 
-    def point(self, x: float, y: float, *, name: str | None = None) -> Point:
+    def point(self, x: float, y: float, *, name: Name = None) -> Point:
         """A new point at (x, y) [m]."""
         return self._drawing.point(x, y, name)
 
     def line(
-        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None
+        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: Name = None
     ) -> Line:
         """A new infinite line through two points of the sketch, or drawn through two pairs of
         numbers.
@@ -77,23 +74,21 @@ class Sketch:
         return self._drawing.line(Line, a, b, name)
 
     def segment(
-        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None
+        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: Name = None
     ) -> Segment:
-        """A new segment between two points of the sketch (or pairs of numbers, which become
-        points)."""
+        """A new segment between two points of the sketch (or pairs of numbers, which become points)."""
         return self._drawing.segment(a, b, name)
 
     def circle(
-        self, center: Point | Sequence[float], radius: float, *, name: str | None = None
+        self, center: Point | Sequence[float], radius: float, *, name: Name = None
     ) -> Circle:
         """A new circle about a point of the sketch, or about a new point at a pair of numbers."""
         return self._drawing.circle(center, radius, name)
 
     def arc(
-        self, center: Point | Sequence[float], start: Point, end: Point, *, name: str | None = None
+        self, center: Point | Sequence[float], start: Point, end: Point, *, name: Name = None
     ) -> Arc:
-        """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its
-        circle."""
+        """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its circle."""
         return self._drawing.arc(center, start, end, name)
 
     def polyline(
@@ -106,7 +101,7 @@ class Sketch:
 
     def parameter(self, name: str, value: float) -> None:
         """A new named number for expressions."""
-        self._dimensions.parameter(name, value)
+        self._relations.parameter(name, value)
 
     def set(self, name: str, value: float | str) -> None:
         """Changes a parameter or a dimension, and every dimension that is an expression of it.
@@ -114,11 +109,11 @@ class Sketch:
         Raises:
             UnknownEntity: no parameter or dimension has this name.
         """
-        self._dimensions.set(name, value)
+        self._relations.set(name, value)
 
     def value(self, name: str) -> float:
         """The value of a parameter or dimension; a driven one is measured now."""
-        return self._dimensions.value(name)
+        return self._relations.value(name)
 
     def entity(self, name: str) -> Entity:
         """The entity of that name."""
@@ -132,8 +127,8 @@ class Sketch:
         self,
         kind: str,
         *entities: Given,
-        value: Dimension = None,
-        name: str | None = None,
+        value: Value = None,
+        name: Name = None,
         driven: bool = False,
         inside: bool | None = None,
     ) -> Constraint:
@@ -148,121 +143,91 @@ class Sketch:
         own = tuple(self._register.own(e) for e in entities)
         return self._relations.add(kind, own, value=value, name=name, driven=driven, inside=inside)
 
-    def fix(self, entity: Given, *, name: str | None = None) -> Constraint:
+    def fix(self, entity: Given, *, name: Name = None) -> Constraint:
         """Fixes an entity where it is drawn."""
         return self.add("fix", entity, name=name)
 
     def distance(
-        self,
-        a: Given,
-        b: Given,
-        value: Dimension = None,
-        *,
-        name: str | None = None,
-        driven: bool = False,
+        self, a: Given, b: Given, value: Value = None, *, name: Name = None, driven: bool = False
     ) -> Constraint:
-        """Distance [m] of two points, a point and a line or circle, or two lines (made
-        parallel)."""
+        """Distance [m] of two points, a point and a line or circle, or two lines (made parallel)."""
         return self.add("distance", a, b, value=value, name=name, driven=driven)
 
-    def incident(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def incident(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """A point lies on a line or circle."""
         return self.add("incident", a, b, name=name)
 
-    def coincident(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def coincident(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two points, or two lines, are one."""
         return self.add("coincident", a, b, name=name)
 
     def tangent(
-        self, a: Given, b: Given, *, inside: bool | None = None, name: str | None = None
+        self, a: Given, b: Given, *, inside: bool | None = None, name: Name = None
     ) -> Constraint:
-        """A line touches a circle, or two circles touch (by default as drawn: inside or
-        outside)."""
+        """A line touches a circle, or two circles touch (by default as drawn: inside or outside)."""
         return self.add("tangent", a, b, inside=inside, name=name)
 
     def angle(
-        self,
-        a: Given,
-        b: Given,
-        value: Dimension = None,
-        *,
-        name: str | None = None,
-        driven: bool = False,
+        self, a: Given, b: Given, value: Value = None, *, name: Name = None, driven: bool = False
     ) -> Constraint:
         """Angle [rad], 0 to pi, between the directions of two lines; the turn is as drawn."""
         return self.add("angle", a, b, value=value, name=name, driven=driven)
 
-    def parallel(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def parallel(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two lines are parallel."""
         return self.add("parallel", a, b, name=name)
 
-    def perpendicular(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def perpendicular(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two lines are perpendicular."""
         return self.add("perpendicular", a, b, name=name)
 
-    def concentric(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def concentric(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two circles have one centre, or a point is a circle's centre."""
         return self.add("concentric", a, b, name=name)
 
-    def horizontal(self, *entities: Given, name: str | None = None) -> Constraint:
+    def horizontal(self, *entities: Given, name: Name = None) -> Constraint:
         """A line, or two points, lie along x."""
         return self.add("horizontal", *entities, name=name)
 
-    def vertical(self, *entities: Given, name: str | None = None) -> Constraint:
+    def vertical(self, *entities: Given, name: Name = None) -> Constraint:
         """A line, or two points, lie along y."""
         return self.add("vertical", *entities, name=name)
 
     def radius(
-        self,
-        circle: Given,
-        value: Dimension = None,
-        *,
-        name: str | None = None,
-        driven: bool = False,
+        self, circle: Given, value: Value = None, *, name: Name = None, driven: bool = False
     ) -> Constraint:
         """Radius [m] of a circle."""
         return self.add("radius", circle, value=value, name=name, driven=driven)
 
     def diameter(
-        self,
-        circle: Given,
-        value: Dimension = None,
-        *,
-        name: str | None = None,
-        driven: bool = False,
+        self, circle: Given, value: Value = None, *, name: Name = None, driven: bool = False
     ) -> Constraint:
         """Diameter [m] of a circle."""
         return self.add("diameter", circle, value=value, name=name, driven=driven)
 
-    def equal_length(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def equal_length(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two lines with points are equally long."""
         return self.add("equal_length", a, b, name=name)
 
-    def equal_radius(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+    def equal_radius(self, a: Given, b: Given, *, name: Name = None) -> Constraint:
         """Two circles have one radius."""
         return self.add("equal_radius", a, b, name=name)
 
     def ratio(
-        self,
-        a: Given,
-        b: Given,
-        value: Dimension = None,
-        *,
-        name: str | None = None,
-        driven: bool = False,
+        self, a: Given, b: Given, value: Value = None, *, name: Name = None, driven: bool = False
     ) -> Constraint:
         """Length (or radius) of a over that of b."""
         return self.add("ratio", a, b, value=value, name=name, driven=driven)
 
-    def midpoint(self, m: Given, *ends: Given, name: str | None = None) -> Constraint:
+    def midpoint(self, m: Given, *ends: Given, name: Name = None) -> Constraint:
         """A point is the middle of a line with points, or of two points."""
         return self.add("midpoint", m, *ends, name=name)
 
-    def symmetric(self, a: Given, b: Given, line: Given, *, name: str | None = None) -> Constraint:
+    def symmetric(self, a: Given, b: Given, line: Given, *, name: Name = None) -> Constraint:
         """Two points, or two circles, are mirror images in a line."""
         return self.add("symmetric", a, b, line, name=name)
 
-    def same_side(self, a: Given, b: Given, line: Given, *, name: str | None = None) -> Constraint:
+    def same_side(self, a: Given, b: Given, line: Given, *, name: Name = None) -> Constraint:
         """Two points lie on one side of a line."""
         return self.add("same_side", a, b, line, name=name)
 
@@ -320,23 +285,10 @@ class Sketch:
         """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
         return self._lists.sides(chosen)
 
-    def _restructured(self) -> None:
-        self._solver = None
-
-    def _dimension_changed(self, constraint: Constraint) -> None:
-        if self._solver is not None:
-            self._solver.changed(constraint)
-
-    def _result(
-        self, problem: Problem, before: np.ndarray, outcome: ExecutionResult
-    ) -> SketchResult:
-        from clearance.sketch.result import SketchResult
-
-        return SketchResult(self, problem, before, outcome)
+    def _result(self, *found) -> SketchResult:
+        return SketchResult(self, *found)
 
     def _engine(self) -> Solver:
-        from clearance.sketch.solver import Solver
-
-        if self._solver is None:
+        if self._solver is None or not self._solver.knows_all():
             self._solver = Solver(self)
         return self._solver

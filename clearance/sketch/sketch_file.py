@@ -86,31 +86,32 @@ def _listed(value) -> list:
 
 
 def _entities(sketch, content: dict) -> None:
-    for name, value in _mapping(content, "parameters").items():
-        with at(f"parameters.{name}"):
-            sketch.parameter(name, value)
-    for name, place in _mapping(content, "points").items():
-        with at(f"points.{name}"):
-            sketch.point(*_some(place, 2), name=name)
-    for name, ends in _mapping(content, "lines").items():
-        with at(f"lines.{name}"):
-            sketch.line(*(_place(sketch, e) for e in _some(ends, 2)), name=name)
-    for name, ends in _mapping(content, "segments").items():
-        with at(f"segments.{name}"):
-            sketch.segment(*(_place(sketch, e) for e in _some(ends, 2)), name=name)
-    for name, entry in _mapping(content, "circles").items():
-        with at(f"circles.{name}"):
-            center, radius = _fields(entry, ("center", "radius"))
-            sketch.circle(_place(sketch, center), radius, name=name)
-    for name, entry in _mapping(content, "arcs").items():
-        with at(f"arcs.{name}"):
-            center, start, end = _fields(entry, ("center", "start", "end"))
-            sketch.arc(
-                _place(sketch, center),
-                sketch.entity(str(start)),
-                sketch.entity(str(end)),
-                name=name,
-            )
+    makers = {
+        "parameters": lambda value, name: sketch.parameter(name, value),
+        "points": lambda place, name: sketch.point(*_some(place, 2), name=name),
+        "lines": lambda ends, name: sketch.line(*_ends(sketch, ends), name=name),
+        "segments": lambda ends, name: sketch.segment(*_ends(sketch, ends), name=name),
+        "circles": lambda entry, name: sketch.circle(*_circle(sketch, entry), name=name),
+        "arcs": lambda entry, name: sketch.arc(*_arc(sketch, entry), name=name),
+    }
+    for section, make in makers.items():
+        for name, value in _mapping(content, section).items():
+            with at(f"{section}.{name}"):
+                make(value, name)
+
+
+def _ends(sketch, ends) -> list:
+    return [_place(sketch, e) for e in _some(ends, 2)]
+
+
+def _circle(sketch, entry) -> tuple:
+    center, radius = _fields(entry, ("center", "radius"))
+    return _place(sketch, center), radius
+
+
+def _arc(sketch, entry) -> tuple:
+    center, *ends = _fields(entry, ("center", "start", "end"))
+    return _place(sketch, center), *(sketch.entity(str(end)) for end in ends)
 
 
 def _place(sketch, value):

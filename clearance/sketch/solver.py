@@ -6,21 +6,17 @@ Not for: how a problem is solved (`execution`).
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.sketch.branches import run_with_sides
-from clearance.sketch.degenerate import check_degenerate
 from clearance.sketch.effort import OutOfTime, TimeLimit
 from clearance.sketch.execution import ExecutionResult, stopped
+from clearance.sketch.faults import DegenerateSketch
+from clearance.sketch.graph.graph import RADIUS
 from clearance.sketch.movement import least_movement
-from clearance.sketch.problem import Problem, problem_of, tables_of
+from clearance.sketch.problem import RESIDUAL, Problem, problem_of, tables_of
 from clearance.sketch.start import sides_hold
-from clearance.sketch.steps import residual_of
-
-if TYPE_CHECKING:
-    from clearance.sketch.constraints import Constraint
 
 DRAGGED = 1e6
 """[-] Weight of a dragged point against 1 for all others."""
@@ -34,22 +30,22 @@ class Solver:
         self.tables = tables_of(sketch)
         self.sides = sketch.sides()
         self.problem = problem_of(self.tables, np.array(sketch._lists.numbers))
-        self.stale = False
 
-    def changed(self, constraint: Constraint) -> None:
-        """Adopts a changed dimension; earlier results have the old one."""
-        if not self.stale:
-            self.tables = replace(self.tables, numbers=self.tables.numbers.copy())
-        self.tables.numbers[constraint.index] = constraint.number
-        self.stale = True
+    def knows_all(self) -> bool:
+        """Whether no entity or constraint has come in since."""
+        lists, tables = self.sketch._lists, self.tables
+        return (len(lists.numbers), len(lists.constraints)) == (
+            tables.role.size,
+            tables.numbers.size,
+        )
 
     def current(self) -> Problem:
-        """The problem with the dimensions as they are now."""
-        if self.stale:
-            self.problem = problem_of(
-                self.tables, np.array(self.sketch._lists.numbers), self.problem
-            )
-            self.stale = False
+        """The problem with the dimensions as they are now; what was found before keeps the old ones."""
+        lists = self.sketch._lists
+        dimensions = lists.dimensions()
+        if not np.array_equal(dimensions, self.tables.numbers):
+            self.tables = replace(self.tables, numbers=dimensions)
+            self.problem = problem_of(self.tables, np.array(lists.numbers), self.problem)
         return self.problem
 
     def solve(self, limit: TimeLimit) -> tuple[Problem, np.ndarray, ExecutionResult]:
@@ -92,12 +88,40 @@ class Solver:
         moved = least_movement(problem, part, outcome.x, target, weight)
         if moved is not None and sides_hold(moved, self.sides, problem.size):
             outcome.x = moved[problem.alias]
-            outcome.residual, _ = residual_of(problem, moved)
+            outcome.residual, _ = problem.residual(moved)
 
     def _finish(
         self, problem: Problem, before: np.ndarray, outcome: ExecutionResult
     ) -> tuple[Problem, np.ndarray, ExecutionResult]:
         if outcome.broken == -1:
-            check_degenerate(self.sketch, problem, outcome.x)
+            _check_degenerate(self.sketch, problem, outcome.x)
             self.sketch._lists.numbers[:] = outcome.x.tolist()
         return problem, before, outcome
+
+
+def _check_degenerate(sketch, problem: Problem, x: np.ndarray) -> None:
+    """Passes a solution (n,) in which every line and circle has extent.
+
+    Raises:
+        DegenerateSketch: one has none; the message names it.
+    """
+    least = RESIDUAL * problem.size
+    tables = problem.tables
+    small = np.flatnonzero((tables.role == RADIUS) & ~(x > least))
+    if small.size:
+        name = _name_at(sketch, int(small[0]))
+        raise DegenerateSketch(f"{name} would have the radius 0", valid="a radius above 0")
+    line, a, b = tables.line_ends.T
+    short = line[(a >= 0) & (np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= least)]
+    if short.size:
+        raise DegenerateSketch(
+            f"the two points of {_name_at(sketch, int(short[0]))} would coincide",
+            valid="a line of some length",
+        )
+
+
+def _name_at(sketch, variable: int) -> str:
+    """The line, circle or arc whose numbers start at a variable."""
+    return next(
+        e.name for e in sketch.entities.values() if e.variable == variable and e.what != "point"
+    )

@@ -16,7 +16,6 @@ from clearance.sketch.problem import Problem, Tables, problem_of
 from clearance.sketch.solve.columns import Columns
 from clearance.sketch.solve.search import solve_cluster
 from clearance.sketch.start import sides_hold
-from clearance.sketch.steps import stopping_rule
 
 AT_ONCE = 64
 """Constraints up to which each is dropped in turn before halving: circuits mostly are minimal already."""
@@ -83,8 +82,8 @@ class Trials:
         return False
 
     def _descended(self, columns: Columns, x: np.ndarray) -> np.ndarray | None:
-        """The end of a descent from x where some equations hold, with every radius above 0; None without one."""
-        rule = stopping_rule(self.problem, 1)._replace(limit=self.limit)
+        """Where a descent from x makes some equations hold, with every radius above 0; None for nowhere."""
+        rule = self.problem.rule(1)._replace(limit=self.limit)
         found = solve_cluster(columns, x, rule) if columns.rows.size else x
         good = found is not None and (found[self.tables.role == RADIUS] > 0.0).all()
         return found if good else None

@@ -28,6 +28,8 @@ class Columns:
         first: (v,) the first column of every vertex (of its body, if it has one), -1 for those that stay.
         n: how many columns there are.
         single: the vertices outside bodies. turns: the columns of the bodies' turns.
+        points, merged: the numbers of single points, and the merged ones of other single vertices; `at_points`,
+            `at_merged`: their columns; `root`: the number that stands for each merged one.
     """
 
     def __init__(
@@ -56,25 +58,22 @@ class Columns:
         """The columns and factors of the single vertices' numbers, and of all equations' entries."""
         s = self.system
         points = s.root[single[s.kind[single] == POINT]]
-        self._points = np.concatenate([points, points + 1])
+        self.points = np.concatenate([points, points + 1])
         own = np.zeros(s.kind.size, bool)
         own[single] = True
         own &= s.kind != POINT
-        self._merged = s.member[own[s.vertex_of[s.member]]]
+        self.merged = s.member[own[s.vertex_of[s.member]]]
         column = np.full((s.vertex_of.size, 3), -1)
         factor = np.zeros((s.vertex_of.size, 3))
         at = self.first[s.vertex_of[points]]
         column[points, 0], column[points + 1, 0] = at, at + 1
-        column[self._merged, 0] = self.first[s.vertex_of[self._merged]]
-        factor[self._points, 0] = 1.0
-        factor[self._merged, 0] = s.scale[self._merged]
+        column[self.merged, 0] = self.first[s.vertex_of[self.merged]]
+        factor[self.points, 0] = 1.0
+        factor[self.merged, 0] = s.scale[self.merged]
         column[self._bodies.variables] = self._bodies.columns
         self._column, self._factor = column, factor
-        self._steps = (
-            column[self._points, 0],
-            column[self._merged, 0],
-            s.root[s.vertex_of[self._merged]],
-        )
+        self.at_points, self.at_merged = column[self.points, 0], column[self.merged, 0]
+        self.root = s.root[s.vertex_of[self.merged]]
 
     @cached_property
     def _entries(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -149,11 +148,10 @@ class Columns:
     def moved(self, x: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The numbers (..., n) after a step (..., columns)."""
         out, s = x.copy(), self.system
-        points, merged, root = self._steps
-        out[..., self._points] += step[..., points]
-        if merged.size:
-            number = x[..., root] + step[..., merged]
-            out[..., self._merged] = s.scale[self._merged] * number + s.shift[self._merged]
+        out[..., self.points] += step[..., self.at_points]
+        if self.merged.size:
+            number = x[..., self.root] + step[..., self.at_merged]
+            out[..., self.merged] = s.scale[self.merged] * number + s.shift[self.merged]
         if self._bodies.count:
             self._bodies.move(x, step, out)
         return out

@@ -23,22 +23,11 @@ from clearance.sketch.solve.system import System
 DONE, FAILED, TOO_LARGE, SKIPPED = 0, 1, 2, 3
 """Fates of a step: placed; no such place found; a cluster not tried; its equations held already."""
 
+LARGEST_BLOCK = 6000
+"""Equations of a numeric cluster up to which it is tried; large ones are solved on a band."""
+
 FREED = 4
 """How many times more unknowns a cluster may have with its bodies' points free than with bodies."""
-
-
-class StepTolerances(NamedTuple):
-    """When a step is skipped, and when it has found its place.
-
-    Attributes:
-        settled: [m] a step whose equations hold to this is skipped.
-        largest_block: equations up to which a numeric step is tried.
-        rule: for numeric steps.
-    """
-
-    settled: float
-    largest_block: int
-    rule: StoppingRule
 
 
 class Run(NamedTuple):
@@ -46,18 +35,18 @@ class Run(NamedTuple):
 
     Attributes:
         sketch: (n,) the numbers whose branches the closed steps follow.
-        active: (v,) 0 for the vertices of parts that need no work.
-        turned: the steps on the branch opposite to the sketch.
+        rule: when a step is skipped, and when a numeric one has found its place.
+        turned: the steps that take the branch opposite to the sketch.
+        active: (v,) 0 for the vertices of parts that need no work; all need some by default.
     """
 
     sketch: np.ndarray
-    active: Sequence[int]
+    rule: StoppingRule
     turned: frozenset[int] = frozenset()
+    active: Sequence[int] | None = None
 
 
-def execute(
-    s: System, plan: ConstructionPlan, x: np.ndarray, run: Run, limits: StepTolerances
-) -> np.ndarray:
+def execute(s: System, plan: ConstructionPlan, x: np.ndarray, run: Run) -> np.ndarray:
     """Runs the steps of a plan in place on x (n,); the fate of each.
 
     Raises:
@@ -65,18 +54,18 @@ def execute(
     """
     numbers, sketch, fates = x.tolist(), run.sketch.tolist(), np.full(len(plan.steps), SKIPPED)
     for k, step in enumerate(plan.steps):
-        if not run.active[step.vertex]:
+        if run.active is not None and not run.active[step.vertex]:
             continue
         turned = k in run.turned
-        if not turned and s.plain.holds(step.rows, numbers, limits.settled):
+        if not turned and s.plain.holds(step.rows, numbers, run.rule.settled):
             continue
         if not _is_numeric(s, step):
             done = place(s.plain, step, numbers, sketch, -1.0 if turned else 1.0)
             fates[k] = DONE if done else FAILED
             continue
         x[:] = numbers
-        limits.rule.limit.require_time()
-        fates[k] = _solve_numeric(s, plan, step, x, run.sketch, limits)
+        run.rule.limit.require_time()
+        fates[k] = _solve_numeric(s, plan, step, x, run)
         numbers = x.tolist()
     x[:] = numbers
     return fates
@@ -92,11 +81,10 @@ def _solve_numeric(
     plan: ConstructionPlan,
     step: PlanStep,
     x: np.ndarray,
-    sketch: np.ndarray,
-    limits: StepTolerances,
+    run: Run,
 ) -> int:
     """The fate of one numeric step, in place on x."""
-    if len(step.rows) > limits.largest_block:
+    if len(step.rows) > LARGEST_BLOCK:
         return TOO_LARGE
     vertices, rows = np.array(step.vertices), np.array(step.rows, np.int64)
     body_of = plan.body_of if step.numeric else np.full(s.kind.size, -1)
@@ -104,9 +92,9 @@ def _solve_numeric(
     found = None
     try:
         if BANDED <= columns.n and freedoms(s, vertices) <= FREED * columns.n:
-            found = find_freed(s, plan, step, x, sketch, limits.rule)
+            found = find_freed(s, plan, step, x, run.sketch, run.rule)
         if found is None:
-            found = solve_cluster(columns, x, limits.rule)
+            found = solve_cluster(columns, x, run.rule)
     except OutOfTime as stop:
         if stop.x is not None:
             x[:] = stop.x

@@ -11,6 +11,7 @@ import numpy as np
 from clearance.sketch.graph.graph import POINT
 from clearance.sketch.graph.steps import ConstructionPlan, PlanStep
 from clearance.sketch.solve.columns import Columns
+from clearance.sketch.solve.fit import set_down
 from clearance.sketch.solve.newton import StoppingRule
 from clearance.sketch.solve.search import solve_cluster
 from clearance.sketch.solve.system import System
@@ -47,7 +48,10 @@ def find_freed(
     found = solve_cluster(columns, start, rule)
     if found is None or base < 0:
         return found
-    found, off = _put_back(s, own & (s.kind == POINT), np.flatnonzero(inside), found, x)
+    part, base_points = np.where(inside, 0, -1), own & (s.kind == POINT)
+    found = set_down(s, part, np.array([3]), found, x, base_points.astype(float))
+    i = s.root[base_points][:, None] + np.arange(2)
+    off = np.abs(found[i] - x[i]).max(initial=0.0)
     alone = next(other for other in plan.steps if other.numeric) is step
     return found if alone or off <= rule.tolerance else None
 
@@ -70,21 +74,3 @@ def _inner_rows(
     within[plan.dependent] = False
     within[list(step.rows)] = False
     return np.concatenate([np.array(step.rows, np.int64), np.flatnonzero(within)])
-
-
-def _put_back(
-    s: System, base: np.ndarray, vertices: np.ndarray, x: np.ndarray, before: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """The vertices moved rigidly so that the base (its points marked) lies where it was; how far it is off [m].
-
-    A base of a single point hangs on known directions: it is only shifted.
-    """
-    as_one = np.full(s.kind.size, -1)
-    as_one[vertices] = 0
-    columns = Columns(s, vertices, np.zeros(0, np.int64), as_one)
-    i = s.root[base][:, None] + np.arange(2)
-    a, b = (y[i] - y[i].mean(axis=0) for y in (x, before))
-    turn = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
-    x = columns.moved(x, np.array([0.0, 0.0, turn]))
-    x = columns.moved(x, np.array([*(before[i].mean(axis=0) - x[i].mean(axis=0)), 0.0]))
-    return x, float(np.abs(x[i] - before[i]).max(initial=0.0))

@@ -130,58 +130,23 @@ def root_of(square: float, scale: float) -> float:
     return 0.0 if square >= -GRAZING * scale else -1.0
 
 
-class _Chord(NamedTuple):
-    """The two common points f + h t and f - h t of two loci, and the side of the drawn point.
+class _Cut(NamedTuple):
+    """The chord that a locus cuts off a circle: across (dx, dy) of length d, `along` from the centre that way."""
 
-    Attributes:
-        fx, fy: [m] the foot. tx, ty: the unit vector along. h: [m] half the length, -1 where there are none.
-        side: above 0 where the point in the sketch lies towards t.
-    """
-
-    fx: float
-    fy: float
-    tx: float
-    ty: float
-    h: float
-    side: float
+    dx: float
+    dy: float
+    d: float
+    along: float
 
 
-def _chord(first: Locus, second: Locus, drawn: tuple[Locus, Locus], p: Place) -> _Chord | None:
-    """The common chord of a circle and another locus; `drawn` are the same in the sketch, p the point there."""
-    match first, second, *drawn:
-        case Round() as one, Round() as other, Round() as a, Round() as b:
-            return _two_circles(one, other, (a, b), p)
-        case Round() as circle, Straight() as line, Round() as a, Straight() as b:
-            return _line_and_circle(line, circle, (b, a), p)
-    return None
-
-
-def _two_circles(
-    first: Round, second: Round, drawn: tuple[Round, Round], p: Place
-) -> _Chord | None:
-    """The common chord of two circles."""
-    dx, dy = second.x - first.x, second.y - first.y
+def _cut(circle: Round, other: Locus) -> _Cut | None:
+    """See `_Cut`; None for circles about one centre."""
+    if isinstance(other, Straight):
+        gap = other.nx * circle.x + other.ny * circle.y - other.c
+        return _Cut(other.nx, other.ny, 1.0, -gap)
+    dx, dy, r = other.x - circle.x, other.y - circle.y, circle.r
     d = math.hypot(dx, dy)
-    if d == 0.0 or first.r < 0.0 or second.r < 0.0:
-        return None
-    along = 0.5 * (d + (first.r - second.r) * (first.r + second.r) / d)
-    h = root_of((first.r - along) * (first.r + along), first.r * first.r + d * d)
-    ux, uy = dx / d, dy / d
-    ox, oy = drawn[0].x, drawn[0].y
-    side = (drawn[1].x - ox) * (p[1] - oy) - (drawn[1].y - oy) * (p[0] - ox)
-    return _Chord(first.x + along * ux, first.y + along * uy, -uy, ux, h, side)
-
-
-def _line_and_circle(
-    line: Straight, circle: Round, drawn: tuple[Straight, Round], p: Place
-) -> _Chord | None:
-    """The chord that a line cuts off a circle."""
-    if circle.r < 0.0:
-        return None
-    gap = line.nx * circle.x + line.ny * circle.y - line.c
-    h = root_of((circle.r - gap) * (circle.r + gap), circle.r * circle.r)
-    side = -drawn[0].ny * (p[0] - drawn[1].x) + drawn[0].nx * (p[1] - drawn[1].y)
-    return _Chord(circle.x - gap * line.nx, circle.y - gap * line.ny, -line.ny, line.nx, h, side)
+    return None if d == 0.0 else _Cut(dx, dy, d, 0.5 * (d + (r - other.r) * (r + other.r) / d))
 
 
 def _two_lines(first: Straight, second: Straight) -> Place | None:
@@ -204,11 +169,19 @@ def meet(
         return _two_lines(first, second)
     if isinstance(first, Straight):
         first, second, drawn = second, first, drawn[::-1]
-    chord = _chord(first, second, drawn, p)
-    if chord is None or chord.h < 0.0:
+    circle, (a, b) = first, drawn
+    if not (isinstance(circle, Round) and isinstance(a, Round) and type(b) is type(second)):
         return None
-    fx, fy, tx, ty, h, side = chord
-    plus = fx + h * tx, fy + h * ty
-    minus = fx - h * tx, fy - h * ty
+    cut, was, r = _cut(circle, second), _cut(a, b), circle.r
+    if cut is None or r < 0.0 or (isinstance(second, Round) and second.r < 0.0):
+        return None
+    far = cut.d if isinstance(second, Round) else 0.0
+    h = root_of((r - cut.along) * (r + cut.along), r * r + far * far)
+    if h < 0.0:
+        return None
+    nx, ny = cut.dx / cut.d, cut.dy / cut.d
+    fx, fy = circle.x + cut.along * nx, circle.y + cut.along * ny
+    plus, minus = (fx - h * ny, fy + h * nx), (fx + h * ny, fy - h * nx)
+    side = 0.0 if was is None else was.dx * (p[1] - a.y) - was.dy * (p[0] - a.x)
     ahead = side > 0.0 or (side == 0.0 and math.dist(plus, p) <= math.dist(minus, p))
     return plus if ahead == (turned > 0.0) else minus

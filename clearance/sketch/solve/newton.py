@@ -27,12 +27,14 @@ class StoppingRule(NamedTuple):
     Attributes:
         floor: [m] the residual that it aims at. tolerance: [m] the residual at which the equations hold.
         attempts: how often it is tried. limit: when it is stopped.
+        settled: [m] a step of a plan whose equations hold to this is skipped.
     """
 
     floor: float
     tolerance: float
     attempts: int
     limit: TimeLimit
+    settled: float = 0.0
 
 
 def newton(columns: Columns, x: np.ndarray, rule: StoppingRule) -> np.ndarray | None:
