@@ -1,26 +1,23 @@
 """What a batch comes to: the rows of all cases in their order, what is counted of them, and the exit code.
 
-It is made of the rows alone, so that it has the same bytes however often the batch was interrupted, and by
-whomever its cases were measured. No more than some thousand rows are held at a time. Not for: the files that are
-written of it (`output`).
+It is made of the rows alone, so that it is the same however often the batch was interrupted, and by whomever its
+cases were measured. Not for: the files that are written of it (`output`).
 """
 
 from __future__ import annotations
 
-import heapq
 from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import zip_longest
-from operator import itemgetter
+from itertools import islice, zip_longest
 from typing import Any
 
 import pyarrow as pa
 
-from clearance.batch.case_rows import VIOLATED, CaseRows, StoredRows
-from clearance.batch.cases import Cases
+from clearance.batch.item import Item
 from clearance.batch.outcome import Outcome
-from clearance.batch.rows import ERROR
+from clearance.batch.rows import ERROR, TABLE, error_row
 from clearance.batch.shared_waivers import (
     any_of_cells,
     expired_waivers,
@@ -45,9 +42,16 @@ BASES = {
 MOST_WORST = 10
 """Failing cases that a summary names."""
 
+PART = 512
+"""Rows that are read from a store at a time."""
 
-_Standing = tuple[tuple[float, int], dict[str, Any]]
-"""Reach and number of a case, and its row."""
+FAULT = 70
+"""The exit code where this program is at fault, as of `clearance check`."""
+
+VIOLATED, BAD_INPUT = 1, 2
+
+CASE = pa.schema([field for field in TABLE if field.name != "findings"])
+"""The columns of an answer; the findings stay in the store."""
 
 
 def reach_of(clearance: float | None, penetration: float | None) -> float | None:
@@ -60,36 +64,44 @@ class BatchAnswer:
     """All cases of a batch.
 
     Attributes:
-        rows: of the cases, in order. Where a case has no answer, its status is "error", its text says why, and
-            most columns are null.
+        rows: of the cases, in order, with the columns of `CASE`. Where a case has no answer, its status is
+            "error", its text says why, and most columns are null.
         stale: what is wrong with waivers that the cases share, one line each.
     """
 
-    rows: CaseRows
+    rows: pa.Table
     stale: tuple[str, ...] = ()
 
-    @cached_property
-    def _summary(self) -> _Summary:
-        made = _Summary()
-        for part in self.rows.parts(_Summary.COLUMNS):
-            made.add(part)
-        return made
+    def column(self, name: str) -> list[Any]:
+        """A column, a value a case."""
+        found: list[Any] = self.rows[name].to_pylist()
+        return found
+
+    def row(self, i: int) -> dict[str, Any]:
+        """The columns of a case."""
+        found: list[dict[str, Any]] = self.rows.slice(i, 1).to_pylist()
+        return found[0]
 
     @property
     def n_cases(self) -> int:
         """How many there are."""
-        return len(self.rows)
+        return int(self.rows.num_rows)
 
-    @property
+    @cached_property
+    def reached(self) -> list[float | None]:
+        """[m] Of each case `reach_of`."""
+        return [*map(reach_of, self.column("clearance"), self.column("penetration"))]
+
+    @cached_property
     def counts(self) -> dict[str, int]:
         """How many cases have each status that occurs, the better before the worse."""
-        found = self._summary.statuses
+        found = Counter(self.column("status"))
         return {status: found[status] for status in STATUSES if found[status]}
 
     @property
     def exit_code(self) -> int:
         """The greatest of all cases, and 1 for a waiver that should go."""
-        return max(self._summary.exit_code, VIOLATED if self.stale else 0)
+        return max([0, *self.column("exit_code"), VIOLATED if self.stale else 0])
 
     @property
     def status(self) -> str:
@@ -97,120 +109,52 @@ class BatchAnswer:
         worst = next(reversed(self.counts), "clear")
         return STALE if self.stale and worst in ("clear", "near") else worst
 
-    @property
+    @cached_property
     def bases(self) -> dict[str, int]:
         """What verdicts rest on: how many on the motion, on the samples only, on a single pose."""
-        found = self._summary.bases
+        found = Counter(self.column("basis"))
         return {basis: found[basis] for basis in BASES if found[basis]}
 
     @property
     def n_waived(self) -> int:
         """How many cases have something that a waiver lets pass."""
-        return self._summary.n_waived
+        return sum(map(bool, self.column("waived")))
 
     @property
     def n_warned(self) -> int:
         """How many cases have warnings."""
-        return self._summary.n_warned
+        return sum(map(bool, self.column("warnings")))
 
     @property
     def n_failing(self) -> int:
         """How many cases do not pass."""
-        return self._summary.n_failing
+        return sum(map(bool, self.column("exit_code")))
 
     @property
     def least(self) -> dict[str, Any] | None:
         """The first case of least clearance, or deepest in contact, as columns of its row; None where none is
         measured."""
-        return self._summary.least
+        known = [(reach, i) for i, reach in enumerate(self.reached) if reach is not None]
+        return self.row(min(known)[1]) if known else None
 
-    @property
+    @cached_property
     def worst(self) -> list[dict[str, Any]]:
         """Some of the cases that do not pass: the first of each status in turn, so that none hides another; the
         worst status first, then by clearance, the deepest contact first.
         """
-        return self._summary.listed
+        by_status = defaultdict[str, list[int]](list)
+        failing = zip(self.column("status"), self.column("exit_code"), strict=True)
+        for i, (status, code) in enumerate(failing):
+            if code:
+                by_status[status].append(i)
+        order = [status for status in reversed(STATUSES) if status in by_status]
+        turns = zip_longest(*(self._worst_first(by_status[status]) for status in order))
+        taken = islice((i for turn in turns for i in turn if i is not None), MOST_WORST)
+        rows = [self.row(i) for i in taken]
+        return sorted(rows, key=lambda row: order.index(row["status"]))
 
-
-@dataclass(eq=False)
-class _Summary:
-    """What is counted of rows as they pass."""
-
-    statuses: Counter[str] = field(default_factory=Counter)
-    bases: Counter[str] = field(default_factory=Counter)
-    exit_code: int = 0
-    n_waived: int = 0
-    n_warned: int = 0
-    n_failing: int = 0
-    least: dict[str, Any] | None = None
-    worst: dict[str, list[_Standing]] = field(default_factory=dict)
-    _n: int = 0
-    _reach: float | None = None
-
-    COLUMNS = (
-        "case",
-        "status",
-        "exit_code",
-        "text",
-        "basis",
-        "clearance",
-        "penetration",
-        "time",
-        "body_a",
-        "body_b",
-        "reasons",
-        "warnings",
-        "waived",
-    )
-
-    @property
-    def listed(self) -> list[dict[str, Any]]:
-        """What `BatchAnswer.worst` says."""
-        statuses = [status for status in reversed(STATUSES) if status in self.worst]
-        turns = zip_longest(*(self.worst[status] for status in statuses))
-        taken = [one for turn in turns for one in turn if one is not None][:MOST_WORST]
-        by_status = sorted(taken, key=lambda one: statuses.index(one[1]["status"]))
-        return [row for _, row in by_status]
-
-    def add(self, part: pa.Table) -> None:
-        """Takes some rows in, which come after those before."""
-        found = (part[name].to_pylist() for name in ("clearance", "penetration"))
-        reached = [reach_of(*row) for row in zip(*found, strict=True)]
-        self.statuses.update(part["status"].to_pylist())
-        self.bases.update(basis for basis in part["basis"].to_pylist() if basis)
-        self.n_waived += sum(map(bool, part["waived"].to_pylist()))
-        self.n_warned += sum(map(bool, part["warnings"].to_pylist()))
-        self._add_least(part, reached)
-        self._add_worst(part, part["exit_code"].to_pylist(), reached)
-        self._n += part.num_rows
-
-    def _add_least(self, part: pa.Table, reached: list[float | None]) -> None:
-        known = [one for one in reached if one is not None]
-        if known and (self._reach is None or min(known) < self._reach):
-            self._reach = min(known)
-            self.least = _row(part, reached.index(self._reach))
-
-    def _add_worst(self, part: pa.Table, exit_code: list[int], reached: list[float | None]) -> None:
-        failing = [i for i, code in enumerate(exit_code) if code]
-        self.n_failing += len(failing)
-        self.exit_code = max([self.exit_code, *(exit_code[i] for i in failing)])
-        for status, numbers in _by_status(part, failing).items():
-            standing = [(reached[i] or 0.0, self._n + i) for i in numbers]
-            least = heapq.nsmallest(MOST_WORST, standing)
-            found = [(one, _row(part, one[1] - self._n)) for one in least]
-            before = self.worst.get(status, [])
-            self.worst[status] = sorted([*before, *found], key=itemgetter(0))[:MOST_WORST]
-
-
-def _by_status(part: pa.Table, numbers: list[int]) -> dict[str, list[int]]:
-    statuses, found = part["status"].to_pylist(), defaultdict[str, list[int]](list)
-    for i in numbers:
-        found[statuses[i]].append(i)
-    return found
-
-
-def _row(part: pa.Table, i: int) -> dict[str, Any]:
-    return part.slice(i, 1).to_pylist()[0]
+    def _worst_first(self, cases: Iterable[int]) -> list[int]:
+        return sorted(cases, key=lambda i: (self.reached[i] or 0.0, i))
 
 
 def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchAnswer:
@@ -219,25 +163,44 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
     Args:
         strict: a case that cannot be read or answered is bad input of the batch.
     """
-    rows = StoredRows(outcome, store, outcome.tried, strict)
-    return BatchAnswer(rows, _stale(outcome, rows) if outcome.whole else ())
+    items = outcome.tried
+    parts = [
+        pa.Table.from_pylist([*_rows(some, outcome, store, strict)], schema=CASE)
+        for some in in_parts(items)
+    ]
+    rows = pa.concat_tables([CASE.empty_table(), *parts]).combine_chunks()
+    return BatchAnswer(rows, _stale(outcome, items, rows) if outcome.whole else ())
 
 
-def _stale(outcome: Outcome, rows: StoredRows) -> tuple[str, ...]:
-    """What is wrong with waivers that cases share; rows are read only where there are some. While a case has no
-    row it may be the one that needs a waiver: then only those that are expired are wrong.
+def in_parts(values: Sequence[Item]) -> Iterator[Sequence[Item]]:
+    """The cases, `PART` at a time."""
+    return (values[start : start + PART] for start in range(0, len(values), PART))
+
+
+def _rows(
+    items: Sequence[Item], outcome: Outcome, store: Store, strict: bool
+) -> Iterator[dict[str, Any]]:
+    known = store.rows(outcome.keys[one.number] for one in items if one.number in outcome.keys)
+    for item in items:
+        if item.number in outcome.keys:
+            yield next(known) | {"case": item.name}
+        else:
+            fault = outcome.faults[item.number]
+            of_input = BAD_INPUT if strict else VIOLATED
+            row = error_row(fault.text, FAULT if fault.trace else of_input)
+            yield row | {"case": item.name, "key": None}
+
+
+def _stale(outcome: Outcome, items: Sequence[Item], rows: pa.Table) -> tuple[str, ...]:
+    """What is wrong with waivers that cases share. While a case has no row it may be the one that needs a waiver:
+    then only those that are expired are wrong.
     """
-    items = outcome.items
-    assert isinstance(items, Cases)  # a part has no answer
     if not outcome.is_answered:
-        return expired_waivers(items, outcome.waivers)
+        return expired_waivers(outcome.items, outcome.waivers)
     if not outcome.waivers and not any_of_cells(items):
         return ()
-    needed = (
-        tuple(own or ()) for part in rows.parts(["waivers"]) for own in part["waivers"].to_pylist()
-    )
+    needed = [tuple(own or ()) for own in rows["waivers"].to_pylist()]
     among, told = stale_waivers_of_cells(items, needed)
     if not outcome.waivers:
         return tuple(told)
-    day = items[0].options.day
-    return (*told, *stale_waivers(items, outcome.waivers, among, day))
+    return (*told, *stale_waivers(items, outcome.waivers, among, items[0].options.day))

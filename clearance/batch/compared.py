@@ -19,25 +19,14 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from clearance.batch.answer import BatchAnswer
-from clearance.batch.mark import is_store
 from clearance.batch.rows import ERROR
-from clearance.batch.tables import CASES, FINDINGS, written_answer
+from clearance.batch.store_files import FINDINGS, is_store, require_no_older
+from clearance.batch.tables import written_answer
 from clearance.errors import BadInput, Incomplete
 from clearance.findings.comparison import Comparison, FindingChange, compared
 from clearance.findings.doubts import Doubt
 from clearance.findings.finding import AppliedWaiver, Finding
 from clearance.findings.findings_file import FindingList, conditions_in
-
-_COLUMNS = (
-    "case",
-    "status",
-    "exit_code",
-    "text",
-    "n_findings",
-    "incomplete",
-    "conditions",
-    "doubts",
-)
 
 
 @dataclass(frozen=True)
@@ -96,24 +85,19 @@ def require_answer(place: Path) -> BatchAnswer:
     """The answer of a store that can be held against another's.
 
     Raises:
-        BadInput: that is no store, or its answer is of a version that compared none. Incomplete: it has no answer.
+        BadInput, Unwritable: that is no store, or of another version. Incomplete: it has no answer.
     """
     if not is_store(place):
         raise BadInput(
             "not a store", where=str(place), valid="the folder that a `clearance batch --out` wrote"
         )
+    require_no_older(place)
     answer = written_answer(place)
     if answer is None or not (place / FINDINGS).is_file():
         raise Incomplete(
             "this batch has no answer yet",
             where=str(place),
             valid="`clearance batch` without --shard writes it once all cases are tried",
-        )
-    if "conditions" not in pq.read_schema(place / CASES).names:
-        raise BadInput(
-            "an answer of another version",
-            where=str(place),
-            valid="the same `clearance batch` writes it anew",
         )
     return answer
 
@@ -122,7 +106,7 @@ def compared_batches(before: Path, now: Path) -> BatchComparison:
     """The answer of a store held against that of another one.
 
     Raises:
-        Incomplete: one has no answer. BadInput: one's is of a version that compared none.
+        Incomplete: one has no answer. BadInput, Unwritable: one is of another version.
     """
     old, new = _Answer.of(before), _Answer.of(now)
     cases = [_compared_case(name, old, new) for name in new.numbers]
@@ -131,7 +115,7 @@ def compared_batches(before: Path, now: Path) -> BatchComparison:
         for name in old.numbers
         if name not in new.numbers
     ]
-    stale = tuple(line for line in new.stale if line not in old.stale)
+    stale = tuple(line for line in new.answer.stale if line not in old.answer.stale)
     return BatchComparison((*cases, *gone), stale)
 
 
@@ -160,9 +144,8 @@ class _Answer:
         numbers: of the cases, by name. begins: of each case's findings, and the end of the last.
     """
 
-    cases: pa.Table
+    answer: BatchAnswer
     findings: pa.Table
-    stale: tuple[str, ...]
     numbers: dict[str, int] = field(default_factory=dict)
     begins: np.ndarray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
 
@@ -170,19 +153,15 @@ class _Answer:
     def of(place: Path) -> _Answer:
         """That of a store's folder."""
         answer = require_answer(place)
-        cases = pq.read_table(place / CASES, columns=[*_COLUMNS])
         findings = pq.read_table(place / FINDINGS)
-        names = cases["case"].to_pylist()
+        names = answer.column("case")
         whose = pc.index_in(findings["case"], pa.array(names, type=pa.string())).to_numpy()
         begins = np.searchsorted(whose, np.arange(len(names) + 1))
-        return _Answer(
-            cases, findings, answer.stale, {name: i for i, name in enumerate(names)}, begins
-        )
+        return _Answer(answer, findings, {name: i for i, name in enumerate(names)}, begins)
 
     def row(self, name: str) -> dict[str, Any]:
         """The columns of a case."""
-        found: list[dict[str, Any]] = self.cases.slice(self.numbers[name], 1).to_pylist()
-        return found[0]
+        return self.answer.row(self.numbers[name])
 
     def list_of(self, row: dict[str, Any]) -> FindingList:
         """The findings of a case that has an answer, by its row, and what is needed to compare them."""

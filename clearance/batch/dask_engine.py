@@ -1,4 +1,4 @@
-"""Cases spread over processes by Dask: a cluster of this machine's own, or one that is there already.
+"""Cases spread over machines by Dask: the workers of a scheduler that runs already.
 
 This is the one file that imports Dask. Two tasks a worker are handed out at a time, each result is taken and let
 go at once, so the scheduler never holds more than the tasks in flight. What a worker that is lost had begun is
@@ -10,11 +10,9 @@ from __future__ import annotations
 
 import logging
 import math
-import signal
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
 from clearance.batch.engine import Queue
@@ -23,81 +21,16 @@ from clearance.errors import BadInput, Incomplete
 from clearance.extras import importing
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, LocalCluster
+    from distributed import Client, Future
 
 AHEAD = 2
 """Tasks a worker that are handed out at a time: one is measured, one waits."""
-
-LOST_WITH = 2
-"""Workers that a task may take with it before it is cut into its cases."""
-
-STARTS = 3
-"""Times that workers are tried to be started."""
 
 RECOUNTING = 1.0
 """[s] After which workers are counted again."""
 
 CONNECTING = 20
 """[s] In which a scheduler must answer."""
-
-LOGGED = 100
-"""Entries of each log that Dask keeps for people who look into it; its own 1,000 to 10,000 take 12 MB."""
-
-
-@contextmanager
-def local_cluster(jobs: int) -> Iterator[DaskEngine]:
-    """So many worker processes on this machine.
-
-    Raises:
-        Unavailable: Dask is not installed. Incomplete: no workers can be started.
-    """
-    with importing("batch", "more than one job"):
-        import distributed
-    with (
-        _settings(),
-        _workers(jobs) as cluster,
-        distributed.Client(cluster, direct_to_workers=True) as client,
-    ):
-        yield DaskEngine(client)
-
-
-def _workers(jobs: int) -> LocalCluster:
-    """A cluster with its workers; where one dies as it starts, all are started anew."""
-    from distributed import LocalCluster
-
-    for left in reversed(range(STARTS)):
-        try:
-            with _deaf_to_interrupts():
-                return LocalCluster(
-                    n_workers=jobs,
-                    threads_per_worker=1,
-                    processes=True,
-                    dashboard_address="127.0.0.1:0",
-                    memory_limit=0,
-                    silence_logs=logging.CRITICAL,
-                )
-        except Exception as error:  # whatever is raised in the worker is raised here
-            if not left:
-                raise Incomplete(
-                    f"no worker processes can be started ({type(error).__name__}: {error})",
-                    valid="--jobs 1 needs none",
-                ) from None
-    raise AssertionError
-
-
-@contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """Threads and processes that are started inside never see an interrupt from the terminal: this one ends
-    them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    resource_tracker.ensure_running()  # which would hear of interrupts again as it starts
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -126,28 +59,13 @@ def cluster_at(address: str) -> Iterator[DaskEngine]:
 
 @contextmanager
 def _settings() -> Iterator[None]:
-    """What Dask is told: say nothing by itself, remember little, and lose few workers to one task."""
+    """What Dask is told: say nothing by itself, and wait no longer than asked."""
     import dask
-    import distributed  # noqa: F401 - sets up its loggers as it is imported
 
     for name in [*logging.root.manager.loggerDict, "tornado.application"]:
         if name.startswith(("distributed", "tornado.application")):
             logging.getLogger(name).setLevel(logging.CRITICAL)
-    with dask.config.set(
-        {
-            "distributed.scheduler.allowed-failures": LOST_WITH,
-            "distributed.comm.timeouts.connect": f"{CONNECTING}s",
-            "distributed.scheduler.work-stealing": False,
-            "distributed.scheduler.active-memory-manager.start": False,
-            "distributed.worker.profile.enabled": False,
-            "distributed.admin.tick.interval": "1s",
-            "distributed.admin.log-length": LOGGED,
-            "distributed.admin.low-level-log-length": LOGGED,
-            "distributed.admin.system-monitor.log-length": LOGGED,
-            "distributed.diagnostics.computations.max-history": 1,
-            "distributed.admin.system-monitor.interval": "10s",
-        }
-    ):
+    with dask.config.set({"distributed.comm.timeouts.connect": f"{CONNECTING}s"}):
         yield
 
 
@@ -216,7 +134,7 @@ class DaskEngine:
         except KilledWorker:
             if len(task.items) == 1:
                 text = "the worker processes that measured it have all died, of memory perhaps"
-                return TaskResult((), (Fault(task.items[0].number, text),), b"", (), ())
+                return TaskResult((), (Fault(task.items[0].number, text),), (), ())
             queue.give_back(task.items, alone=True)
             return None
         except (FutureCancelledError, OSError) as error:

@@ -1,7 +1,7 @@
 """What hands cases to whoever measures them: tasks are cut from a queue, and what comes back in part goes on it.
 
-`LocalEngine` does all here and needs no library; `dask_engine` has workers. Which engine it was shows in no byte
-of the answer. Not for: what a task is (`measuring`).
+`LocalEngine` does all here; `workers` has processes of this machine, `dask_engine` those of others. The answer
+does not depend on which engine it was. Not for: what a task is (`measuring`).
 """
 
 from __future__ import annotations

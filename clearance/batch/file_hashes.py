@@ -12,19 +12,17 @@ from __future__ import annotations
 import hashlib
 import os
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.batch.known_hashes import KnownHashes
 from clearance.load.files.input_files import regular_file
 
 RACY = 2_000_000_000
 """[ns] The coarsest clock of a file system that is in use (FAT) counts two seconds."""
 
-
-MOST_NOW = 4000
-"""Files of which it is kept what they are now."""
+Marks = tuple[int, int, int, int, int]
+"""What tells a file from what it was: device, inode, size, [ns] times of content and of status."""
 
 
 class FileStamp(NamedTuple):
@@ -43,7 +41,7 @@ class FileStamp(NamedTuple):
     sha256: str
 
     @property
-    def marks(self) -> tuple[int, int, int, int, int]:
+    def marks(self) -> Marks:
         """What tells it from what it was."""
         return self.device, self.inode, self.n_bytes, self.changed, self.status_changed
 
@@ -53,40 +51,40 @@ class FileStamp(NamedTuple):
         return max(self.changed, self.status_changed) + RACY < self.read
 
 
+def _nothing(path: str, marks: Marks) -> None:
+    """Knows of no earlier run."""
+
+
 class FileHashes:
     """The hashes of files by absolute path.
 
     Args:
-        known: of an earlier run.
+        known: the sha256 of a file that had some marks in an earlier run, or None.
     """
 
-    def __init__(self, known: KnownHashes | None = None) -> None:
-        self._known = KnownHashes() if known is None else known
+    def __init__(self, known: Callable[[str, Marks], str | None] = _nothing) -> None:
+        self._known = known
         self._now: dict[str, str | None] = {}
-        self.is_new = False
-
-    @property
-    def known(self) -> KnownHashes:
-        """All that can be believed later on."""
-        return self._known
+        self._new: dict[str, FileStamp] = {}
 
     def of(self, path: str) -> str | None:
-        """The sha256 of a file; None if it cannot be read. What was looked at lately is not looked at again."""
+        """The sha256 of a file; None if it cannot be read. Each is looked at once."""
         if path not in self._now:
-            if len(self._now) >= MOST_NOW:
-                self._now.clear()
             self._now[path] = self._found(path)
         return self._now[path]
 
     def learn(self, read: Iterable[tuple[str, FileStamp]]) -> None:
         """Takes over what others have read."""
-        for path, seen in read:
-            if seen.is_settled and self._known.learn(path, seen.marks, seen.sha256):
-                self.is_new = True
+        self._new.update((path, one) for path, one in read if one.is_settled)
+
+    def taken(self) -> list[tuple[str, FileStamp]]:
+        """What was read since this was last asked, and can be believed later on."""
+        new, self._new = list(self._new.items()), {}
+        return new
 
     def _found(self, path: str) -> str | None:
         try:
-            known = self._known.find(path, _marks(os.stat(path)))
+            known = self._known(path, _marks(os.stat(path)))
             if known is not None:
                 return known
             read = time.time_ns()
@@ -107,5 +105,5 @@ def seen(path: str, sha256: str, read: int) -> FileStamp | None:
         return None
 
 
-def _marks(found: os.stat_result) -> tuple[int, int, int, int, int]:
+def _marks(found: os.stat_result) -> Marks:
     return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns

@@ -12,8 +12,7 @@ from itertools import accumulate, islice, takewhile
 from typing import Any
 from xml.sax.saxutils import escape, quoteattr
 
-from clearance.batch.answer import BatchAnswer
-from clearance.batch.case_rows import FAULT
+from clearance.batch.answer import FAULT, BatchAnswer
 from clearance.batch.rows import ERROR
 
 MOST_BYTES = 29_000_000
@@ -24,7 +23,7 @@ MOST_TEXT = 2000
 
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
-_COLUMNS = ("case", "status", "exit_code", "text", "reasons", "waived")
+_COLUMNS = ["case", "status", "exit_code", "text", "reasons", "waived"]
 
 
 def junit_of(answer: BatchAnswer, name: str) -> Iterator[str]:
@@ -70,8 +69,7 @@ def _failing_first(answer: BatchAnswer) -> Iterator[str]:
 
 
 def _rows(answer: BatchAnswer) -> Iterator[dict[str, Any]]:
-    for part in answer.rows.parts(_COLUMNS):
-        yield from part.to_pylist()
+    yield from answer.rows.select(_COLUMNS).to_pylist()
 
 
 def _case(row: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""The list of a store's last batch as JSON: which cases there are, for whoever asks about one of them later.
+"""The list of a store's last batch: which cases there are, for whoever asks about one of them later.
 
 Not for: what became of them (`store`).
 """
@@ -7,92 +7,61 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, fields
-from datetime import date
+from dataclasses import asdict, replace
 from pathlib import Path
 
-from clearance.batch.cases import Cases
+from pydantic import TypeAdapter
+
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
+from clearance.batch.store import Store
 from clearance.errors import BadInput, MissingFile, nearest_name
 from clearance.load.tolerance.tolerance_file import tolerance_digest
-from clearance.report.folder import written_file
-from clearance.world.waiver import Waiver
 
-FILE_NAME = "batch.json"
-
-_CASES = '"cases": ['
-"""Where the cases begin; no text within holds it, since its quotes would be escaped."""
+_OPTIONS = TypeAdapter(CaseOptions)
 
 
-def write_list(place: Path, cases: Cases) -> None:
-    """Writes the list of a batch; what all cases have in common is there once.
+def write_list(store: Store, items: Sequence[Item]) -> None:
+    """Keeps the list of a batch; what cases have in common is there once.
 
     Raises:
-        Unwritable: it cannot be written.
+        Incomplete: there is no room.
     """
-    options = cases.options
-    number = {one: i for i, one in enumerate(options)}
-    waivers = list(dict.fromkeys(waiver for one in options for waiver in one.waivers))
-    index = {waiver: i for i, waiver in enumerate(waivers)}
-    content = {
-        "waivers": [_waiver_told(waiver) for waiver in waivers],
-        "options": [_options_told(one, index) for one in options],
-        "cases": [],
-    }
-    head, _, tail = json.dumps(content, indent=0).rpartition("]")
-    with written_file(place / FILE_NAME) as file:
-        file.write(head.encode())
-        for item in cases:
-            row = _told(item) | {"options": number[item.options]}
-            file.write(((",\n" if item.number else "\n") + _object(row)).encode())
-        file.write(f"\n]{tail}\n".encode())
+    number = {one: i for i, one in enumerate(dict.fromkeys(item.options for item in items))}
+    options = (json.dumps(asdict(one), default=str) for one in number)
+    store.write_list(options, _told(items, number))
 
 
-def read_list(place: Path) -> Cases:
+def _told(
+    items: Sequence[Item], number: dict[CaseOptions, int]
+) -> Iterator[tuple[int, str, str, int]]:
+    for item in items:
+        given = None if item.trajectory is None else asdict(item.trajectory)
+        yield item.number, item.name, json.dumps([item.file, given]), number[item.options]
+
+
+def read_list(store: Store) -> list[Item]:
     """The cases of the last batch.
 
     Raises:
         MissingFile: there was none. BadInput: it is damaged; the batch writes it anew.
     """
-    path = place / FILE_NAME
-    try:
-        head, begin, rows = path.read_text(encoding="utf-8").partition(_CASES)
-        told = json.loads(f"{head}{begin}]}}")
-        waivers = [_waiver(one) for one in told["waivers"]]
-        options = [_options(one, waivers) for one in told["options"]]
-        return Cases.of(_item(i, row, options) for i, row in enumerate(_rows(rows)))
-    except FileNotFoundError:
+    asked, rows = store.read_list()
+    if not rows:
         raise MissingFile(
-            "no batch was begun here", where=str(place), valid="`clearance batch … --out` first"
-        ) from None
-    except (OSError, ValueError, KeyError, TypeError, IndexError, BadInput):
+            "no batch was begun here",
+            where=str(store.place),
+            valid="`clearance batch … --out` first",
+        )
+    try:
+        options = [_as_now(_OPTIONS.validate_python(json.loads(one))) for one in asked]
+        return [_item(i, name, told, options[n]) for i, (name, told, n) in enumerate(rows)]
+    except (ValueError, TypeError, IndexError, BadInput):
         raise BadInput(
-            "the list of cases is damaged", where=str(path), valid="`clearance batch` once more"
+            "the list of cases is damaged",
+            where=str(store.path),
+            valid="`clearance batch` once more",
         ) from None
-
-
-def _object(told: dict[str, object]) -> str:
-    """A JSON object as `json.dumps(told, indent=0)` writes it, in a third of the time."""
-    members = (
-        f"{json.dumps(name)}: {_object(one) if isinstance(one, dict) else json.dumps(one)}"
-        for name, one in told.items()
-    )
-    return "{\n" + ",\n".join(members) + "\n}"
-
-
-def _rows(text: str) -> Iterator[dict]:
-    """The cases of a list, one after another, from where the first begins.
-
-    Raises:
-        ValueError: it is damaged.
-    """
-    decoder, at = json.JSONDecoder(), 0
-    while (begin := text.find("{", at, at + 3)) >= 0:
-        row, at = decoder.raw_decode(text, begin)
-        yield row
-    if text[at:].split() != ["]", "}"]:
-        raise ValueError(f"{text[at:]:.9} goes on no list")
 
 
 def item_called(items: Sequence[Item], name: str) -> Item:
@@ -108,45 +77,16 @@ def item_called(items: Sequence[Item], name: str) -> Item:
     return found
 
 
-def _told(item: Item) -> dict[str, object]:
-    told: dict[str, object] = {"name": item.name, "file": item.file}
-    return told if item.trajectory is None else told | {"trajectory": asdict(item.trajectory)}
+def _item(number: int, name: str, told: str, options: CaseOptions) -> Item:
+    file, given = json.loads(told)
+    return Item(number, name, file, given and GivenTrajectory(**given), options)
 
 
-def _item(number: int, row: dict, options: Sequence[CaseOptions]) -> Item:
-    given = row.get("trajectory")
-    trajectory = None if given is None else GivenTrajectory(**given)
-    return Item(number, row["name"], row["file"], trajectory, options[row["options"]])
-
-
-def _options_told(one: CaseOptions, index: dict[Waiver, int]) -> dict[str, object]:
-    told = {field.name: getattr(one, field.name) for field in fields(one)}
-    return told | {"waivers": [index[waiver] for waiver in one.waivers]}
-
-
-def _options(told: dict, waivers: Sequence[Waiver]) -> CaseOptions:
-    own = tuple(waivers[i] for i in told["waivers"])
-    key = _key_now(told["tolerance"])
-    return CaseOptions(
-        **told | {"accept": tuple(told["accept"]), "waivers": own, "tolerance_key": key}
-    )
-
-
-def _key_now(tolerance: str) -> str:
-    """The key of a file of tolerances as it is now: what was measured with another content is missing."""
+def _as_now(asked: CaseOptions) -> CaseOptions:
+    """The options with the key of their tolerances as the file is now."""
+    if not asked.tolerance:
+        return asked
     try:
-        return tolerance_digest(Path(tolerance)) if tolerance else ""
+        return replace(asked, tolerance_key=tolerance_digest(Path(asked.tolerance)))
     except BadInput:
-        return "none"
-
-
-_WAIVER = ("between", "at_least", "reason", "by", "case", "rule", "where", "shared")
-
-
-def _waiver_told(waiver: Waiver) -> dict[str, object]:
-    return {name: getattr(waiver, name) for name in _WAIVER} | {"until": waiver.until.isoformat()}
-
-
-def _waiver(told: dict) -> Waiver:
-    one, other = told["between"]
-    return Waiver(**told | {"between": (one, other), "until": date.fromisoformat(told["until"])})
+        return replace(asked, tolerance_key="none")

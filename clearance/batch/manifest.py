@@ -13,8 +13,6 @@ from dataclasses import dataclass, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 
-from clearance.batch.cases import Cases
-from clearance.batch.digest_table import TEXT_WIDTH, DigestTable, digest_of_text
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
@@ -43,7 +41,7 @@ class Changes:
     tolerance: Path | None = None
 
 
-def items_of(arguments: Sequence[str], changes: Changes) -> Cases:
+def items_of(arguments: Sequence[str], changes: Changes) -> tuple[Item, ...]:
     """All cases, in the order in which they are given, those of a pattern by name.
 
     Args:
@@ -56,7 +54,8 @@ def items_of(arguments: Sequence[str], changes: Changes) -> Cases:
     if changes.certify_gap == 0.0:
         raise BadInput("certify: a gap of 0 m", valid="a length above 0")
     items = _with_tolerance(_once(_given(arguments, changes)), changes.tolerance)
-    cases = Cases.of(_waived(items, changes.waivers) if changes.waivers else items)
+    waived = _waived(items, changes.waivers) if changes.waivers else items
+    cases = tuple(replace(item, number=i) for i, item in enumerate(waived))
     _require_own_names(cases)
     return cases
 
@@ -76,13 +75,11 @@ def _given(arguments: Sequence[str], changes: Changes) -> Iterator[Item]:
 
 def _once(items: Iterable[Item]) -> Iterator[Item]:
     """The items without those of which the same was measured already."""
-    seen, asked = DigestTable(TEXT_WIDTH), dict[CaseOptions, int]()
+    seen: set[object] = set()
     for item in items:
-        n_before = len(seen)
-        number = asked.setdefault(item.options, len(asked))
-        told = repr((item.file, item.trajectory, number))
-        seen.enter(digest_of_text(told))
-        if len(seen) > n_before:
+        same = (item.file, item.trajectory, item.options)
+        if same not in seen:
+            seen.add(same)
             yield item
 
 
@@ -213,12 +210,11 @@ def _common_folder(paths: Sequence[str]) -> Path:
     )
 
 
-def _require_own_names(cases: Cases) -> None:
-    seen = DigestTable(TEXT_WIDTH)
+def _require_own_names(cases: Sequence[Item]) -> None:
+    seen: dict[str, Item] = {}
     for item in cases:
-        number = seen.enter(digest_of_text(item.name))
-        if number != item.number:
-            other = cases[number]
+        other = seen.setdefault(item.name, item)
+        if other is not item:
             files = dict.fromkeys([_file(other), _file(item)])
             told = " and ".join(files) if len(files) > 1 else f"{_file(item)}, asked in two ways"
             raise DuplicateName(

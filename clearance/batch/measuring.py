@@ -1,4 +1,4 @@
-"""Reads and answers cases, in whichever process: a task in, the rows of its cases out as a segment.
+"""Reads and answers cases, in whichever process: a task in, the rows of its cases out.
 
 A cell is read once in a process and stays for the next case in it. Not for: which process does what (`engine`).
 """
@@ -17,7 +17,6 @@ from clearance.batch.file_hashes import FileStamp, seen
 from clearance.batch.item import Item
 from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
-from clearance.batch.segments import segment_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.errors import ClearanceError, Incomplete
 from clearance.load.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
@@ -53,14 +52,17 @@ class Task:
 
 
 class ItemResult(NamedTuple):
-    """What became of an item: its key, and what is told of it at once."""
+    """What became of an item.
+
+    Attributes:
+        inputs: the files that its case file was read with, as `rows.inputs_text` writes them.
+        row: the columns of `rows.VERDICT`.
+    """
 
     number: int
     key: str
-    status: str
-    exit_code: int
-    clearance: float | None
-    reason: str
+    inputs: str
+    row: dict[str, Any]
 
 
 class Fault(NamedTuple):
@@ -80,13 +82,11 @@ class TaskResult:
     """What a task came to.
 
     Attributes:
-        segment: the rows of `measured`, as `segments` writes them; empty without any.
         read: the files that were read, as they were found. left: what was not begun.
     """
 
     measured: tuple[ItemResult, ...]
     faults: tuple[Fault, ...]
-    segment: bytes
     read: tuple[tuple[str, FileStamp], ...]
     left: tuple[Item, ...]
 
@@ -151,7 +151,6 @@ class _Work:
         self.batch = batch
         self.measured: list[ItemResult] = []
         self.faults: list[Fault] = []
-        self.rows: list[dict[str, Any]] = []
         self.read: dict[str, FileStamp] = {}
 
     def add(self, items: Sequence[Item], until: float) -> int:
@@ -186,14 +185,11 @@ class _Work:
         one.question = one.item.options.question(one.found.case)
 
     def _keep(self, one: _StagedCase) -> None:
-        item, found, row, read = one.item, one.found, one.row, one.read
+        item, found, read = one.item, one.found, one.read
         case, others = found.case, conditions_of(item, found.case)
         key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
         inputs = inputs_text((*found.kept, *others))
-        self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
-        reason = row["reasons"][0] if row["reasons"] else ""
-        told = (row["status"], row["exit_code"], row["clearance"], reason)
-        self.measured.append(ItemResult(item.number, key, *told))
+        self.measured.append(ItemResult(item.number, key, inputs, one.row))
         self._note(found.kept, found.since or read)
         self._note(case.sources, read)
 
@@ -205,10 +201,7 @@ class _Work:
                     self.read[one.read_from] = marks
 
     def done(self, left: tuple[Item, ...]) -> TaskResult:
-        segment = segment_of(self.rows) if self.rows else b""
-        return TaskResult(
-            tuple(self.measured), tuple(self.faults), segment, tuple(self.read.items()), left
-        )
+        return TaskResult(tuple(self.measured), tuple(self.faults), tuple(self.read.items()), left)
 
 
 def _answer(one: _StagedCase) -> None:

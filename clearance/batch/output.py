@@ -1,7 +1,7 @@
 """The files that a store holds of its last batch: tables, JUnit and the page, each written in one step.
 
 While a batch is not finished the answer of an older one does not stand there: its tables are gone, which the rows
-give again, and JUnit and page say what is missing. Page and JUnit are made of the tables.
+give again, and JUnit and page say what is missing.
 
 Not for: what is in them (`answer`, `tables`, `junit`, `page`).
 """
@@ -13,7 +13,8 @@ from pathlib import Path
 
 from clearance.batch.answer import BatchAnswer
 from clearance.batch.store import Store
-from clearance.batch.tables import CASES, FINDINGS, write_tables, written_answer
+from clearance.batch.store_files import CASES, FINDINGS
+from clearance.batch.tables import write_tables, written_answer
 from clearance.errors import unwritable
 from clearance.record.wording import count
 from clearance.report.folder import write_file, written_file
@@ -37,47 +38,41 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     told = (
         f"{UNFINISHED}: of {count(n_cases, 'case')} some are not measured; the same command goes on"
     )
-    with store.locked():
-        with unwritable(store.place):
-            for name in ANSWER:
-                (store.place / name).unlink(missing_ok=True)
-        write_file(store.place / JUNIT, unfinished_junit(clean(store.place.name), told))
-        write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
+    with unwritable(store.place):
+        for name in ANSWER:
+            (store.place / name).unlink(missing_ok=True)
+    write_file(store.place / JUNIT, unfinished_junit(clean(store.place.name), told))
+    write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
 
 
-def write_answer(answer: BatchAnswer, store: Store) -> BatchAnswer:
-    """Writes the answer into the store's folder; it, as its tables hold it.
+def write_answer(answer: BatchAnswer, store: Store) -> None:
+    """Writes the answer into the store's folder.
 
     Raises:
         Unwritable: there is no way or no room.
     """
     from clearance.batch.junit import junit_of
 
-    with store.locked():
-        write_tables(answer, store.place)
-        written = written_answer(store.place)
-        assert written is not None
-        _write_texts(store.place / JUNIT, junit_of(written, store.place.name))
-        _write_page(written, store)
-    return written
+    write_tables(answer, store)
+    _write_texts(store.place / JUNIT, junit_of(answer, store.place.name))
+    _write_page(answer, store.place)
 
 
-def rewrite_page(store: Store) -> None:
+def rewrite_page(place: Path) -> None:
     """Writes the page of the last answer once more, with links to the pages of cases that are there by now.
 
     Raises:
         Unwritable: there is no way or no room.
     """
-    with store.locked():
-        written = written_answer(store.place)
-        if written is not None:
-            _write_page(written, store)
+    written = written_answer(place)
+    if written is not None:
+        _write_page(written, place)
 
 
-def _write_page(answer: BatchAnswer, store: Store) -> None:
+def _write_page(answer: BatchAnswer, place: Path) -> None:
     from clearance.batch.page import page_of
 
-    _write_texts(store.place / PAGE, page_of(answer, store.place))
+    write_file(place / PAGE, page_of(answer, place).encode())
 
 
 def _write_texts(path: Path, texts: Iterable[str]) -> None:

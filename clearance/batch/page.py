@@ -6,8 +6,8 @@ Numbers go as columns, curves as one byte a number, and only the rows that are i
 
 from __future__ import annotations
 
+import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from string import Template
 
@@ -15,7 +15,7 @@ from markupsafe import escape
 
 from clearance import __version__
 from clearance.batch.answer import BASES, BatchAnswer
-from clearance.batch.page_data import object_of, page_data
+from clearance.batch.page_data import page_data
 from clearance.findings.finding import NOT_PROVEN
 from clearance.record.wording import count
 from clearance.report.head import head_of
@@ -24,17 +24,15 @@ _HERE = Path(__file__).parent
 
 _NOT_PROVEN = ".tag.not { background: var(--violated); }\n"
 
-_DATA = "\0data\0"
-"""Stands where the data goes."""
 
-
-def page_of(answer: BatchAnswer, place: Path) -> Iterator[str]:
-    """The whole page, part by part.
+def page_of(answer: BatchAnswer, place: Path) -> str:
+    """The whole page.
 
     Args:
         place: the store's folder; a case whose own page lies in it is linked.
     """
-    page = Template(_own("page.html")).substitute(
+    data = json.dumps(page_data(answer, place), allow_nan=False)
+    return Template(_own("page.html")).substitute(
         head=head_of(
             f"{place.name}: {_counted(answer)}",
             _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
@@ -44,14 +42,9 @@ def page_of(answer: BatchAnswer, place: Path) -> Iterator[str]:
         worst=answer.status.split()[0],
         basis=escape("; ".join([_basis(answer), *answer.stale])),
         version=escape(__version__),
-        data=_DATA,
+        data=data.replace("<", "\\u003c"),
         script=re.sub(r"</(?=script)", r"<\\/", _own("page.js"), flags=re.IGNORECASE),
     )
-    before, _, after = page.rpartition(_DATA)
-    yield before
-    for text in object_of(page_data(answer, place)):
-        yield text.replace("<", "\\u003c")
-    yield after
 
 
 def unfinished_page(name: str, text: str) -> str:

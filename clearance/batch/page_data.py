@@ -1,4 +1,4 @@
-"""What the page of a batch shows, as one JSON object of columns that is written part by part.
+"""What the page of a batch shows, as one JSON object of columns.
 
 Numbers go as they are, texts that many cases share by number, curves as one byte a number. Not for: the page
 around it (`page`).
@@ -7,15 +7,15 @@ around it (`page`).
 from __future__ import annotations
 
 import base64
-import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from clearance.batch.answer import STATUSES, BatchAnswer, reach_of
+from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
 from clearance.findings.finding import NOT_PROVEN
@@ -26,67 +26,36 @@ TOPS = 4.0
 ABOVE = 255
 """The byte of a clearance at the top or above."""
 
-Members = Iterator[tuple[str, Iterable[str]]]
-"""Names and values of a JSON object, the parts of each value in order."""
 
-
-def object_of(members: Members) -> Iterator[str]:
-    """A JSON object, part by part; a member is asked for once all of the one before is there."""
-    for i, (name, parts) in enumerate(members):
-        yield f"{', ' if i else '{'}{_json(name)}: "
-        yield from parts
-    yield "}"
-
-
-def page_data(answer: BatchAnswer, place: Path) -> Members:
+def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     """The data of a page.
 
     Args:
         place: the store's folder; a case whose own page lies in it is linked.
     """
-    rows, statuses = _Columns(answer), _statuses(answer)
-    bodies, rules = _Texts(), _Texts()
-    yield "store", [_json(place.name)]
-    yield "statuses", [_json(statuses)]
-    yield "names", rows.listed(list, "case")
-    yield "status", rows.listed(lambda found: [*map(statuses.index, found)], "status")
-    yield "clearance", rows.listed(_reached, "clearance", "penetration")
-    yield "bound", rows.listed(_millimetres, "lower_bound")
-    yield "time", rows.listed(_seconds, "time")
-    yield "steps", rows.listed(list, "n_steps")
-    yield "a", rows.listed(bodies.numbers, "body_a")
-    yield "b", rows.listed(bodies.numbers, "body_b")
-    yield "rule", rows.listed(rules.numbers, "rule")
-    yield "bodies", [_json(bodies.texts)]
-    yield "rules", [_json(rules.texts)]
-    yield "reasons", rows.listed(lambda found: [lines or [] for lines in found], "reasons")
-    yield "beside", rows.listed(lambda *both: [*map(_beside, *both)], "warnings", "waived")
-    yield "waived", rows.listed(lambda found: [int(bool(lines)) for lines in found], "waived")
-    yield "levels", rows.listed(_levels, "fail", "warn")
-    yield "curves", _base64(map(_curves, rows.parts("curve", "warn")))
-    yield "n_curve", [_json(CURVE)]
-    yield "pages", rows.listed(_Pages(place).folders, "case", "key")
-
-
-class _Columns:
-    """Columns of the rows of an answer."""
-
-    def __init__(self, answer: BatchAnswer) -> None:
-        self._rows = answer.rows
-
-    def parts(self, *columns: str) -> Iterator[pa.Table]:
-        """Some columns of all rows, some rows after others."""
-        return self._rows.parts(columns)
-
-    def listed(self, made: Callable[..., list], *columns: str) -> Iterator[str]:
-        """What is made of some columns, as one JSON array."""
-        before = "["
-        for part in self.parts(*columns):
-            told = _json(made(*(part[name].to_pylist() for name in columns)))[1:-1]
-            if told:
-                yield before + told
-                before = ", "
-        yield "]" if before == ", " else "[]"
+    column, statuses, bodies, rules = answer.column, _statuses(answer), _Texts(), _Texts()
+    return {
+        "store": place.name,
+        "statuses": statuses,
+        "names": column("case"),
+        "status": [*map(statuses.index, column("status"))],
+        "clearance": _millimetres(answer.reached),
+        "bound": _millimetres(column("lower_bound")),
+        "time": [None if time is None else round(time, 3) for time in column("time")],
+        "steps": column("n_steps"),
+        "a": bodies.numbers(column("body_a")),
+        "b": bodies.numbers(column("body_b")),
+        "rule": rules.numbers(column("rule")),
+        "bodies": bodies.texts,
+        "rules": rules.texts,
+        "reasons": [lines or [] for lines in column("reasons")],
+        "beside": [*map(_beside, column("warnings"), column("waived"))],
+        "waived": [int(bool(lines)) for lines in column("waived")],
+        "levels": _levels(column("fail"), column("warn")),
+        "curves": base64.b64encode(_curves(answer.rows)).decode(),
+        "n_curve": CURVE,
+        "pages": _Pages(place).folders(column("case"), column("key")),
+    }
 
 
 class _Pages:
@@ -100,22 +69,6 @@ class _Pages:
         pairs = zip(names, keys, strict=True) if self._written else ()
         found = [folder_of(name, key) if key else "" for name, key in pairs]
         return [folder if folder.rpartition("/")[2] in self._written else "" for folder in found]
-
-
-def _json(value: object) -> str:
-    return json.dumps(value, allow_nan=False)
-
-
-def _base64(parts: Iterable[bytes]) -> Iterator[str]:
-    """Bytes as a JSON string."""
-    yield '"'
-    left = b""
-    for part in parts:
-        left += part
-        n_whole = len(left) // 3 * 3
-        yield base64.b64encode(left[:n_whole]).decode()
-        left = left[n_whole:]
-    yield base64.b64encode(left).decode() + '"'
 
 
 def _statuses(answer: BatchAnswer) -> list[str]:
@@ -143,17 +96,6 @@ class _Texts:
         """The number of each text; -1 for none."""
         of = self._numbers
         return [-1 if text is None else of.setdefault(text, len(of)) for text in texts]
-
-
-def _seconds(values: Sequence[float | None]) -> list[float | None]:
-    return [None if value is None else round(value, 3) for value in values]
-
-
-def _reached(
-    clearances: Sequence[float | None], penetrations: Sequence[float | None]
-) -> list[float | None]:
-    """[mm] The clearances, below 0 by how deep bodies in contact are."""
-    return _millimetres([*map(reach_of, clearances, penetrations)])
 
 
 def _millimetres(lengths: Sequence[float | None]) -> list[float | None]:

@@ -8,18 +8,16 @@ from __future__ import annotations
 
 import json
 import os
-from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from clearance.batch.cases import SomeCases
-from clearance.batch.digest_table import NONE
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
+from clearance.batch.measuring import Fault
 from clearance.batch.outcome import Outcome
-from clearance.batch.store import MOST_TEXTS, Store
+from clearance.batch.store import Store
 from clearance.load.files.input_files import InputFiles
 from clearance.load.files.lookups import leads_to
 from clearance.load.motion.bag_files import files_of
@@ -31,23 +29,37 @@ Files = tuple[tuple[str, str], ...]
 
 def planned(
     outcome: Outcome, store: Store, hashes: FileHashes, *, fresh: bool = False
-) -> SomeCases:
+) -> list[Item]:
     """Notes what the store has answered; the other cases, those of a cell together.
 
     Args:
         fresh: all are to be done.
     """
-    look = _Look(store, hashes)
-    todo, files = array("I"), list[str]()
-    for place, item in enumerate(outcome.items):
-        row = NONE if fresh else look.row(item)
-        if row == NONE:
-            todo.append(place)
-            files.append(item.file)
+    look, todo = _Look(store, hashes), []
+    for item in outcome.items:
+        key = None if fresh else look.key(item)
+        if key is None:
+            todo.append(item)
         else:
-            outcome.note(item.number, row)
-    order = sorted(range(len(todo)), key=files.__getitem__)
-    return outcome.items.among(todo[i] for i in order)
+            outcome.keys[item.number] = key
+    return sorted(todo, key=lambda item: item.file)
+
+
+def faults_as_before(store: Store, items: Iterable[Item], hashes: FileHashes) -> dict[int, Fault]:
+    """The faults of cases when they were last tried, by number, of those whose own files are what they were."""
+    found: dict[int, Fault] = {}
+    for item in items:
+        told = store.fault(item.name)
+        if told is not None and told[2] == files_text(item, hashes):
+            found[item.number] = Fault(item.number, told[0], told[1])
+    return found
+
+
+def files_text(item: Item, hashes: FileHashes) -> str:
+    """The sha256 of the case file and of the trajectory it is given, as text; null where one cannot be read."""
+    given = item.trajectory
+    paths = [item.file] if given is None else [item.file, given.path]
+    return json.dumps([hashes.of(path) for path in paths])
 
 
 @dataclass(eq=False)
@@ -56,22 +68,25 @@ class _Look:
 
     store: Store
     hashes: FileHashes
+    _inputs: dict[str, list[str]] = field(default_factory=dict)
     _shared: dict[str, Files | None] = field(default_factory=dict)
     _of_folder: dict[str, InputFiles] = field(default_factory=dict)
     _led_to: dict[str, str] = field(default_factory=dict)
 
-    def row(self, item: Item) -> int:
-        """The number of an item's row; `NONE` where the store has none, or a file is another."""
+    def key(self, item: Item) -> str | None:
+        """The key of an item's row; None where the store has none, or a file is another."""
         own = self._own(item)
         if own is None:
-            return NONE
-        for inputs in self.store.inputs(item.file):
+            return None
+        if item.file not in self._inputs:
+            self._inputs[item.file] = self.store.inputs(item.file)
+        for inputs in self._inputs[item.file]:
             shared = self._as_before(inputs, item.options.today)
             if shared is not None:
-                row = self.store.find(key_of(item, (*shared, *own)))
-                if row != NONE:
-                    return row
-        return NONE
+                key = key_of(item, (*shared, *own))
+                if self.store.has(key):
+                    return key
+        return None
 
     def _own(self, item: Item) -> Files | None:
         """The files of the trajectory that a cell is given."""
@@ -89,18 +104,18 @@ class _Look:
         searches that it depends on.
         """
         if inputs not in self._shared:
-            if len(self._shared) > MOST_TEXTS:
-                self._shared.clear()
-            told = json.loads(inputs)
-            searches = [row for row in told if row[0].startswith(LOOKUP)]
-            rest = [row for row in told if not row[0].startswith(LOOKUP)]
-            found = self._hashed((shown, path) for shown, path, _ in rest if path)
-            files = tuple((shown, sha256) for shown, path, sha256 in rest if path)
-            others = tuple((shown, value) for shown, path, value in rest if not path)
-            same = found == files and all(_is_so(*one, today) for one in others)
-            same = same and all(self._leads_to(asked) == value for _, asked, value in searches)
-            self._shared[inputs] = (*files, *others) if same else None
+            self._shared[inputs] = self._checked(json.loads(inputs), today)
         return self._shared[inputs]
+
+    def _checked(self, told: list[list[str]], today: str) -> Files | None:
+        searches = [row for row in told if row[0].startswith(LOOKUP)]
+        rest = [row for row in told if not row[0].startswith(LOOKUP)]
+        found = self._hashed((shown, path) for shown, path, _ in rest if path)
+        files = tuple((shown, sha256) for shown, path, sha256 in rest if path)
+        others = tuple((shown, value) for shown, path, value in rest if not path)
+        same = found == files and all(_is_so(*one, today) for one in others)
+        same = same and all(self._leads_to(asked) == value for _, asked, value in searches)
+        return (*files, *others) if same else None
 
     def _leads_to(self, asked: str) -> str:
         if asked not in self._led_to:

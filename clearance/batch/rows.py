@@ -102,10 +102,10 @@ VERDICT = pa.schema(
         ("findings", pa.list_(pa.struct(FINDING))),
     ]
 )
-"""Columns that follow from the case: what the room's notes say of `cases.parquet`."""
+"""Columns that follow from the case; the guide explains them."""
 
-STORED = pa.schema([("key", pa.string()), ("file", pa.string()), ("inputs", pa.string()), *VERDICT])
-"""Those of a segment: the key, the case file, and what was read beside the trajectory that it was given."""
+TABLE = pa.schema([("case", pa.string()), ("key", pa.string()), *VERDICT])
+"""Columns of a case: its name, its key, and what follows from it."""
 
 
 def row_of(run: Run) -> dict[str, Any]:
@@ -140,7 +140,7 @@ def row_of(run: Run) -> dict[str, Any]:
         "not_checked": list(verdict.not_checked),
         "waived": list(verdict.waived),
         "waivers": _needed(run),
-        "curve": curve_of(record),
+        "curve": curve_of(record).tolist(),
         "n_findings": len(findings),
         "incomplete": _incomplete(run, len(findings)),
         "conditions": conditions_text(conditions_of(record)),

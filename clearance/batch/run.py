@@ -6,17 +6,16 @@ Not for: where cases are measured (`engine`), and what is written of the rows (`
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from clearance.batch.cases import Cases, SomeCases
 from clearance.batch.engine import Engine, Queue
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import Item
 from clearance.batch.measuring import Fault, ItemResult, TaskResult
 from clearance.batch.outcome import Outcome
-from clearance.batch.plan import planned
+from clearance.batch.plan import files_text, planned
 from clearance.batch.store import Store
 
 
@@ -34,7 +33,7 @@ Opener = Callable[[int], AbstractContextManager[Engine]]
 """Opens an engine for so many cases."""
 
 
-def shard_of(items: Cases, shard: tuple[int, int]) -> SomeCases:
+def shard_of(items: Sequence[Item], shard: tuple[int, int]) -> Sequence[Item]:
     """The part `i` of `n` of the cases, from 1: every n-th, so that each part has some of every cell."""
     i, n = shard
     return items[i - 1 :: n]
@@ -58,25 +57,38 @@ def run_batch(
     Raises:
         Incomplete: a full disk, or nobody is left to measure; what was kept before is kept.
     """
-    hashes = FileHashes(None if rehash else store.hashes())
+    hashes = FileHashes() if rehash else FileHashes(store.known_hash)
     todo = planned(outcome, store, hashes, fresh=fresh)
-    outcome.n_cached = outcome.n_known
+    outcome.n_cached = len(outcome.keys)
     watch.begin(todo, outcome.n_cached)
-    try:
-        if todo:
-            with opened(len(todo)) as engine:
-                for done in engine.results(Queue(todo, uuid.uuid4().hex)):
-                    _keep(done, store, hashes, outcome)
-                    watch.tell(done.measured, done.faults)
-    finally:
-        if hashes.is_new:
-            store.keep_hashes(hashes.known)
+    if todo:
+        items = {item.number: item for item in todo}
+        with opened(len(todo)) as engine:
+            for done in engine.results(Queue(todo, uuid.uuid4().hex)):
+                _keep(done, items, store, hashes)
+                outcome.keys.update((one.number, one.key) for one in done.measured)
+                outcome.faults.update((one.number, one) for one in done.faults)
+                watch.tell(done.measured, done.faults)
+    stamps = hashes.taken()
+    if stamps:
+        store.put(stamps=stamps)
 
 
-def _keep(done: TaskResult, store: Store, hashes: FileHashes, outcome: Outcome) -> None:
-    if done.segment:
-        store.put(done.segment)
+def _keep(done: TaskResult, items: dict[int, Item], store: Store, hashes: FileHashes) -> None:
     hashes.learn(done.read)
-    for one in done.measured:
-        outcome.note(one.number, store.find(one.key))
-    outcome.faults.update((one.number, one) for one in done.faults)
+    faults = list(_told(done.faults, items))
+    store.put(
+        rows=((one.key, one.row) for one in done.measured),
+        inputs=dict.fromkeys((items[one.number].file, one.inputs) for one in done.measured),
+        stamps=hashes.taken(),
+        faults=faults,
+        answered=(items[one.number].name for one in done.measured),
+    )
+
+
+def _told(faults: Sequence[Fault], items: dict[int, Item]) -> Iterator[tuple[str, str, str, str]]:
+    """Name, text, trace and files of each; the files as they are now."""
+    hashes = FileHashes()
+    for one in faults:
+        item = items[one.number]
+        yield item.name, one.text, one.trace, files_text(item, hashes)

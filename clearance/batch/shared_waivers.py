@@ -10,7 +10,6 @@ from contextlib import suppress
 from dataclasses import replace
 from datetime import date
 
-from clearance.batch.cases import Cases
 from clearance.batch.item import Item
 from clearance.errors import ClearanceError, nearest_name
 from clearance.findings.waiver_names import unknown_among
@@ -24,13 +23,23 @@ def as_shared(waivers: Iterable[Waiver]) -> tuple[Waiver, ...]:
     return tuple(replace(waiver, shared=True) for waiver in waivers)
 
 
-def any_of_cells(items: Cases) -> bool:
+def any_of_cells(items: Sequence[Item]) -> bool:
     """True if a cell names waivers, which its motions share."""
-    return any(waivers_of_cell(file) for file in items.cells)
+    return any(waivers_of_cell(file) for file in _cells(items))
+
+
+def _cells(items: Iterable[Item]) -> list[str]:
+    """The files of cells, in the order in which the cases come to them."""
+    return list(dict.fromkeys(item.file for item in items if item.trajectory is not None))
+
+
+def _of_cell(items: Iterable[Item], file: str) -> list[Item]:
+    """The motions in a cell."""
+    return [item for item in items if item.trajectory is not None and item.file == file]
 
 
 def stale_waivers_of_cells(
-    items: Cases, needed: Iterable[Collection[str]]
+    items: Sequence[Item], needed: Iterable[Collection[str]]
 ) -> tuple[set[str], list[str]]:
     """The shared waivers that some case needs, as texts, and why those that cells name fail a batch of which all
     cases are answered, as `stale_waivers` tells.
@@ -43,10 +52,10 @@ def stale_waivers_of_cells(
         cell = None if item.trajectory is None else item.file
         among.setdefault(cell, set()).update(own)
     told: list[str] = []
-    for file in items.cells:
+    for file in _cells(items):
         given = as_shared(waivers_of_cell(file))
         if given:
-            own_items = items.of_cell(file)
+            own_items = _of_cell(items, file)
             told += stale_waivers(own_items, given, among[file], own_items[0].options.day)
     return set().union(*among.values()), list(dict.fromkeys(told))
 
@@ -69,14 +78,14 @@ def stale_waivers(
     return tuple(told)
 
 
-def expired_waivers(items: Cases, given: Iterable[Waiver]) -> tuple[str, ...]:
+def expired_waivers(items: Sequence[Item], given: Iterable[Waiver]) -> tuple[str, ...]:
     """Of the waivers that cells name, and of those given beside, why the expired ones fail a batch, one line each;
     a cell that cannot be read fails its cases by itself.
     """
     told = []
-    for file in items.cells:
+    for file in _cells(items):
         with suppress(ClearanceError):
-            day = items.of_cell(file)[0].options.day
+            day = _of_cell(items, file)[0].options.day
             told += [_expired(waiver, day) for waiver in waivers_of_cell(file)]
     day = items[0].options.day if items else None
     told += [_expired(waiver, day) for waiver in given]

@@ -8,14 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from clearance.batch.answer import BatchAnswer, answer_of
-from clearance.batch.faults import faults_in
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.listed import read_list
 from clearance.batch.outcome import Outcome
-from clearance.batch.plan import planned
+from clearance.batch.plan import faults_as_before, planned
 from clearance.batch.rows import ERROR
 from clearance.batch.store import Store
-from clearance.batch.tables import CASES
+from clearance.batch.store_files import CASES, parts_in
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +23,14 @@ class BatchStatus:
 
     Attributes:
         n_cases: of the batch. n_rows: all that the store keeps, of other batches and versions too.
-        has_answer: whether page and tables of it are there.
+        has_answer: whether page and tables of it are there. n_parts: files of parts that are not merged yet.
         answered: those that are done, and those that could not be read or answered when they were last tried.
     """
 
     n_cases: int
     n_rows: int
     has_answer: bool
+    n_parts: int
     answered: BatchAnswer
 
     @property
@@ -55,10 +55,11 @@ def status_of(store: Store) -> BatchStatus:
     Raises:
         MissingFile: there was none.
     """
-    items, hashes = read_list(store.place), FileHashes(store.hashes())
+    items, hashes = read_list(store), FileHashes(store.known_hash)
     outcome = Outcome(items)
     todo = planned(outcome, store, hashes)
-    outcome.faults.update(faults_in(store.place, todo, hashes))
+    outcome.faults.update(faults_as_before(store, todo, hashes))
     answered = answer_of(outcome, store)
     has_answer = (store.place / CASES).is_file()
-    return BatchStatus(len(items), len(store), has_answer, answered)
+    n_parts = len(parts_in(store.place))
+    return BatchStatus(len(items), len(store), has_answer, n_parts, answered)

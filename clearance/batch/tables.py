@@ -1,4 +1,4 @@
-"""The tables of an answer as parquet files, written some thousand rows at a time. Not for: when (`output`)."""
+"""The tables of an answer as parquet files. Not for: when they are written (`output`)."""
 
 from __future__ import annotations
 
@@ -6,98 +6,69 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from clearance.batch.answer import BatchAnswer
-from clearance.batch.case_rows import TABLE, WrittenRows
+from clearance.batch.answer import CASE, PART, BatchAnswer
 from clearance.batch.rows import FINDING
+from clearance.batch.store import Store
+from clearance.batch.store_files import CASES, FINDINGS
+from clearance.errors import BadInput
 from clearance.report.folder import written_file
-
-CASES, FINDINGS = "cases.parquet", "findings.parquet"
-
-GROUP = 1024
-"""Rows that a table is written by."""
 
 _STALE = b"stale waivers"
 """Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
 
-
-def _as_read(field: pa.Field) -> pa.Field:
-    """A field as a parquet file gives it back: entries of lists have another name there."""
-    if pa.types.is_list(field.type):
-        return field.with_type(pa.list_(pa.field("element", field.type.value_type)))
-    return field
+_FINDING = pa.schema([pa.field("case", pa.string()), *FINDING])
 
 
-_CASE = pa.schema([_as_read(field) for field in TABLE if field.name != "findings"])
-_FINDING = pa.schema([pa.field("case", pa.string()), *map(_as_read, FINDING)])
-
-
-def write_tables(answer: BatchAnswer, place: Path) -> None:
+def write_tables(answer: BatchAnswer, store: Store) -> None:
     """Writes one row a case and one row a finding, the worst of a case first.
 
     Raises:
         Unwritable: there is no way or no room.
     """
-    marked = _CASE.with_metadata({_STALE: json.dumps(answer.stale)})
-    with _table(place / CASES, marked) as cases, _table(place / FINDINGS, _FINDING) as findings:
-        for part in answer.rows.parts(TABLE.names):
-            cases.add(part.select(_CASE.names).replace_schema_metadata(marked.metadata))
-            findings.add(_findings(part))
+    marked = answer.rows.replace_schema_metadata({_STALE: json.dumps(answer.stale)})
+    with _writer(store.place / CASES, marked.schema) as cases:
+        cases.write_table(marked)
+    with _writer(store.place / FINDINGS, _FINDING) as findings:
+        for part in _finding_parts(answer, store):
+            findings.write_table(pa.Table.from_pylist(part, schema=_FINDING))
 
 
 def written_answer(place: Path) -> BatchAnswer | None:
-    """The answer that the tables hold; None where they are not there."""
+    """The answer that the tables hold; None where they are not there.
+
+    Raises:
+        BadInput: it is of another version.
+    """
     if not (place / CASES).is_file():
         return None
-    found = pq.read_metadata(place / CASES)
-    stale = (found.metadata or {}).get(_STALE, b"[]")
-    return BatchAnswer(WrittenRows(place / CASES, found.num_rows), tuple(json.loads(stale)))
+    rows = pq.read_table(place / CASES)
+    if rows.column_names != CASE.names:
+        raise BadInput(
+            "an answer of another version",
+            where=str(place),
+            valid="the same `clearance batch` writes it anew",
+        )
+    stale = (rows.schema.metadata or {}).get(_STALE, b"[]")
+    return BatchAnswer(rows, tuple(json.loads(stale)))
 
 
 @contextmanager
-def _table(path: Path, schema: pa.Schema) -> Iterator[_Table]:
+def _writer(path: Path, schema: pa.Schema) -> Iterator[pq.ParquetWriter]:
     """A parquet file that is there once it is whole."""
     with written_file(path) as file, pq.ParquetWriter(file, schema, compression="zstd") as writer:
-        table = _Table(writer, schema)
-        yield table
-        table.end()
+        yield writer
 
 
-class _Table:
-    """Rows that go into a file by groups of `GROUP` or somewhat more."""
-
-    def __init__(self, writer: pq.ParquetWriter, schema: pa.Schema) -> None:
-        self._writer, self._schema = writer, schema
-        self._waiting: list[pa.Table] = []
-        self._n_waiting, self._is_begun = 0, False
-
-    def add(self, rows: pa.Table) -> None:
-        """Adds rows after those before."""
-        self._waiting.append(rows)
-        self._n_waiting += rows.num_rows
-        if self._n_waiting >= GROUP:
-            self._write()
-
-    def end(self) -> None:
-        """Writes what waits, an empty group where there is nothing at all."""
-        if self._n_waiting or not self._is_begun:
-            self._write()
-
-    def _write(self) -> None:
-        table = pa.concat_tables([self._schema.empty_table(), *self._waiting]).combine_chunks()
-        self._writer.write_table(table, row_group_size=2**16)
-        self._waiting, self._n_waiting, self._is_begun = [], 0, True
-
-
-def _findings(part: pa.Table) -> pa.Table:
-    """The findings of some cases, a row each."""
-    column = part["findings"].combine_chunks()
-    if isinstance(column, pa.ChunkedArray):
-        column = pa.concat_arrays(column.chunks)
-    whose = pc.list_parent_indices(column)
-    flat = pa.Table.from_struct_array(pc.list_flatten(column))
-    return flat.add_column(0, "case", part["case"].combine_chunks().take(whose))
+def _finding_parts(answer: BatchAnswer, store: Store) -> Iterator[list[dict[str, Any]]]:
+    """The findings of some cases after others, a row each; at least one part, which may be empty."""
+    names, keys = answer.column("case"), answer.column("key")
+    known = [(name, key) for name, key in zip(names, keys, strict=True) if key is not None]
+    for start in range(0, max(1, len(known)), PART):
+        some = known[start : start + PART]
+        rows = zip(some, store.rows(key for _, key in some), strict=True)
+        yield [{"case": name} | one for (name, _), row in rows for one in row["findings"]]

@@ -1,4 +1,4 @@
-"""`clearance batch`: many cases in, one verdict for all; `clearance batch status` asks how far one is."""
+"""`clearance batch`: many cases in, one verdict for all; `status` asks how far one is, `merge` joins its parts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,9 @@ class _Commands(click.Group):
         self.format_commands(ctx, formatter)
 
 
-@click.group(cls=_Commands, options_metavar="", subcommand_metavar="[check] … | status STORE")
+@click.group(
+    cls=_Commands, options_metavar="", subcommand_metavar="[check] … | status STORE | merge STORE"
+)
 def batch() -> None:
     """Many cases, measured once each and answered together.
 
@@ -156,7 +158,7 @@ def check(
     """
     from clearance.batch.manifest import Changes, items_of
     from clearance.batch.output import ANSWER
-    from clearance.batch.store import open_store
+    from clearance.batch.store_files import FILE
     from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
     from clearance.load.case.waiver_file import load_waivers
@@ -174,9 +176,9 @@ def check(
     )
     items = items_of(arguments, changes)
     own = waiver_files if tolerance is None else (*waiver_files, tolerance)
-    refuse_inputs([place / name for name in ANSWER], own)
+    refuse_inputs([place / name for name in (*ANSWER, FILE)], own)
     asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers, baseline)
-    return run_asked(items, open_store(place, fresh=fresh), asked)
+    return run_asked(items, place, asked)
 
 
 def _require_baseline(baseline: Path, place: Path, shard: tuple[int, int] | None) -> None:
@@ -209,6 +211,25 @@ def status(place: Path) -> int:
     from clearance.batch.store import open_store
     from clearance.cli.batch_verdict import print_status
 
-    found = status_of(open_store(place, make=False))
+    with open_store(place, make=False) as store:
+        found = status_of(store)
     print_status(found)
     return max(ExitCode.INCOMPLETE if found.n_missing else 0, found.answered.exit_code)
+
+
+@batch.command()
+@click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
+@click.argument("others", metavar="[PART]…", nargs=-1, type=click.Path(path_type=Path))
+def merge(place: Path, others: tuple[Path, ...]) -> int:
+    """Takes into STORE what parts of a batch (--shard) have measured.
+
+    PART is the folder or the file of a part that was measured elsewhere. The parts in STORE itself
+    need not be named. The same `clearance batch` without --shard then writes the answer.
+    """
+    from clearance.batch.store import merge, open_store
+    from clearance.cli.batch_run import say
+
+    with open_store(place) as store, store.locked(say):
+        n_files, n_rows = merge(store, others, say)
+    click.echo(f"{n_rows:,} rows of {n_files:,} parts are in {place}")
+    return ExitCode.CLEAR

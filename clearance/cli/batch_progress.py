@@ -1,25 +1,32 @@
-"""How far a batch is, in a terminal: cases done, rate and time left, the worst so far, failures as they come.
+"""How far a batch is, on stderr: cases done, rate and time left, the worst so far, failures as they come.
 
-Silent where stderr is no terminal: then only the answer is printed. Not for: the answer (`batch_verdict`).
+In a terminal one line is drawn again and again; on a pipe a line is printed every `EVERY` seconds, so that a log
+shows that work goes on. Not for: the answer (`batch_verdict`).
 """
 
 from __future__ import annotations
 
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from clearance.batch.answer import reach_of
 from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.run import Watch
 from clearance.errors import shown
-from clearance.record.wording import mm
+from clearance.record.wording import depth_mm, mm
 
 if TYPE_CHECKING:
     from rich.progress import Progress
 
 MOST_TOLD = 50
 """Failures that are told as they come; the answer lists the worst, and the page has all."""
+
+EVERY = 10.0
+"""[s] Between two lines on a pipe."""
 
 
 class SilentWatch:
@@ -34,13 +41,17 @@ class SilentWatch:
 
 @contextmanager
 def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
-    """Who is told how far a batch is: a line in the terminal, or nobody.
+    """Who is told how far a batch is: a terminal, a pipe, or nobody.
 
     Args:
         name: of a case by its number.
     """
-    if quiet or not sys.stderr.isatty():
+    if quiet:
         yield SilentWatch()
+        return
+    if not sys.stderr.isatty():
+        with _every(EVERY, PipeWatch(name)) as watch:
+            yield watch
         return
     from rich.console import Console
     from rich.progress import (
@@ -62,14 +73,84 @@ def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
         yield TerminalWatch(bar, name)
 
 
+class _Worst:
+    """The worst case so far: of those in contact the deepest.
+
+    Args:
+        name: of a case by its number.
+    """
+
+    def __init__(self, name: Callable[[int], str]) -> None:
+        self._name = name
+        self._least: ItemResult | None = None
+
+    def take(self, measured: Sequence[ItemResult]) -> None:
+        """Takes some cases into account."""
+        before = () if self._least is None else (self._least,)
+        self._least = min((*before, *measured), key=_standing, default=None)
+
+    def __str__(self) -> str:
+        one = self._least
+        if one is None or one.row["clearance"] is None:
+            return ""
+        return f"worst {one.row['status']} {_length(one.row)}, {shown(self._name(one.number))}"
+
+
+class PipeWatch:
+    """Counts, and says in one line how far it is."""
+
+    def __init__(self, name: Callable[[int], str]) -> None:
+        self._worst = _Worst(name)
+        self._n, self._done, self._n_failing = 0, 0, 0
+        self._begun = time.monotonic()
+
+    def begin(self, items: Sequence[object], n_cached: int) -> None:
+        """Begins to count what is to be measured."""
+        self._n, self._begun = len(items), time.monotonic()
+
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+        """Counts."""
+        self._done += len(measured) + len(faults)
+        self._n_failing += sum(bool(one.row["exit_code"]) for one in measured) + len(faults)
+        self._worst.take(measured)
+
+    @property
+    def line(self) -> str:
+        """How far it is."""
+        if not self._done:
+            return f"0 of {self._n:,} cases measured"
+        rate = self._done / max(time.monotonic() - self._begun, 1e-9)
+        left = f"{rate:,.1f} cases/s, {(self._n - self._done) / rate:,.0f} s left"
+        parts = (left, f"{self._n_failing:,} failed", str(self._worst))
+        told = ", ".join(part for part in parts if part)
+        return f"{self._done:,} of {self._n:,} cases measured, {told}"
+
+
+@contextmanager
+def _every(seconds: float, watch: PipeWatch) -> Iterator[PipeWatch]:
+    """Prints how far a batch is so often, until it is done."""
+    ended = threading.Event()
+
+    def work() -> None:
+        while not ended.wait(seconds):
+            print(watch.line, file=sys.stderr, flush=True)
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    try:
+        yield watch
+    finally:
+        ended.set()
+        thread.join()
+
+
 class TerminalWatch:
     """Draws one line, and prints failures above it."""
 
     def __init__(self, bar: Progress, name: Callable[[int], str]) -> None:
         self._bar = bar
         self._task = bar.add_task("", total=None, rate="", worst="")
-        self._name = name
-        self._least: ItemResult | None = None
+        self._name, self._worst = name, _Worst(name)
         self._n_told = 0
 
     def begin(self, items: Sequence, n_cached: int) -> None:
@@ -81,24 +162,14 @@ class TerminalWatch:
         for fault in faults:
             self._print(f"error     {self._name(fault.number)}: {fault.text}")
         for one in measured:
-            if one.exit_code:
-                self._print(f"{one.status:<9} {self._name(one.number)}: {one.reason}")
-            self._take(one)
+            if one.row["exit_code"]:
+                why = (one.row["reasons"] or [""])[0]
+                self._print(f"{one.row['status']:<9} {self._name(one.number)}: {why}")
+        self._worst.take(measured)
         self._bar.update(self._task, advance=len(measured) + len(faults))
         speed = self._bar.tasks[0].speed
         rate = f"{speed:,.0f} cases/s" if speed else ""
-        self._bar.update(self._task, rate=rate, worst=self._worst())
-
-    def _take(self, one: ItemResult) -> None:
-        least = self._least
-        if least is None or _standing(one) < _standing(least):
-            self._least = one
-
-    def _worst(self) -> str:
-        one = self._least
-        if one is None or one.clearance is None:
-            return ""
-        return f"worst {one.status} {mm(one.clearance)} mm, {shown(self._name(one.number))}"
+        self._bar.update(self._task, rate=rate, worst=str(self._worst))
 
     def _print(self, line: str) -> None:
         self._n_told += 1
@@ -109,4 +180,11 @@ class TerminalWatch:
 
 
 def _standing(one: ItemResult) -> tuple[int, float]:
-    return -one.exit_code, float("inf") if one.clearance is None else one.clearance
+    reach = reach_of(one.row["clearance"], one.row["penetration"])
+    return -one.row["exit_code"], float("inf") if reach is None else reach
+
+
+def _length(row: dict[str, Any]) -> str:
+    """The clearance of a case, or how deep its contact is, as far as that is known."""
+    depth = row["penetration"]
+    return f"{mm(row['clearance'])} mm" if depth is None else f"{depth_mm(depth)} mm deep"

@@ -41,6 +41,10 @@ def print_status(status: BatchStatus) -> None:
     click.echo(f"  unreadable  {status.n_unreadable:,}{tried}")
     click.echo(f"  failed      {answer.n_failing - status.n_unreadable:,}")
     click.echo(f"  kept        {count(status.n_rows, 'row')} in all")
+    if status.n_parts:
+        click.echo(
+            f"  parts       {count(status.n_parts, 'file')} not merged yet; `clearance batch merge` does"
+        )
     if not status.has_answer:
         click.echo(
             "  answer      not written yet; the same `clearance batch` does, without --shard"

@@ -91,7 +91,7 @@ def _are_stores(before: Path, now: Path) -> bool:
     Raises:
         click.UsageError: one is.
     """
-    from clearance.batch.mark import is_store
+    from clearance.batch.store_files import is_store
 
     both = [is_store(place) for place in (before, now)]
     if any(both) and not all(both):

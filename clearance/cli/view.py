@@ -34,9 +34,9 @@ def _write_case(place: Path, name: str) -> None:
     from clearance.extras import require
 
     require("report", "the page of a case")
-    store = open_store(place, make=False)
-    item = item_called(read_list(place), name)
+    with open_store(place, make=False) as store:
+        item = item_called(read_list(store), name)
     with shown_progress(False, ["measuring", "certifying"]) as progress:
         run, folder = write_case_page(place, item, progress)
-    rewrite_page(store)
+    rewrite_page(place)
     print_verdict(run, folder)

@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.engine import LocalEngine
+from clearance.batch.listed import write_list
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
@@ -66,12 +67,13 @@ def run_here(
     manifest: Path, place: Path, *, strict: bool = False, engine=None, changes=None, **options
 ):
     """Runs a batch in this process and writes its answer; what was measured, and the answer."""
-    items = items_of([str(manifest)], changes or Changes())
-    store, told = open_store(place, fresh=options.get("fresh", False)), Told()
+    items, told = items_of([str(manifest)], changes or Changes()), Told()
     outcome = Outcome(items)
-    run_batch(outcome, store, lambda n: nullcontext(engine or LocalEngine()), told, **options)
-    answer = answer_of(outcome, store, strict=strict)
-    write_answer(answer, store)
+    with open_store(place) as store:
+        write_list(store, items)
+        run_batch(outcome, store, lambda n: nullcontext(engine or LocalEngine()), told, **options)
+        answer = answer_of(outcome, store, strict=strict)
+        write_answer(answer, store)
     return told, answer
 
 
@@ -87,7 +89,7 @@ def statuses(answer: BatchAnswer) -> dict[str, str]:
 
 def column(answer: BatchAnswer, name: str) -> list:
     """A column of the cases."""
-    return [one for part in answer.rows.parts([name]) for one in part[name].to_pylist()]
+    return answer.column(name)
 
 
 def cases(place: Path) -> list[dict]:
@@ -98,3 +100,9 @@ def cases(place: Path) -> list[dict]:
 def findings(place: Path) -> list[dict]:
     """The rows of the table of findings in a store."""
     return pq.read_table(place / "findings.parquet").to_pylist()
+
+
+def n_rows(place: Path) -> int:
+    """How many rows the store in a folder has, whoever is writing there."""
+    with open_store(place, make=False) as store:
+        return len(store)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -34,8 +34,15 @@ def started(*arguments: str, module: tuple[str, ...] = ("clearance", "batch")) -
 def finished(*arguments: str) -> tuple[int, str, str]:
     """Exit code, output and errors of the program."""
     process = started(*arguments)
-    out, err = process.communicate(timeout=LONGEST)
+    out, err = ended(process)
     return process.returncode, out, err
+
+
+def ended(process: subprocess.Popen) -> tuple[str, str]:
+    """Output and errors of a program once it has ended; how far it was is left out, which a busy machine tells."""
+    out, err = process.communicate(timeout=LONGEST)
+    lines = err.splitlines(keepends=True)
+    return out, "".join(line for line in lines if " cases measured" not in line)
 
 
 def until(what: Callable[[], object]) -> object:
@@ -49,10 +56,14 @@ def until(what: Callable[[], object]) -> object:
     raise AssertionError("it has not come to be")
 
 
-def segments(place: Path) -> list[Path]:
-    """What a store keeps."""
-    folder = place / "segments"
-    return sorted(folder.glob("*.parquet")) if folder.is_dir() else []
+def n_kept(place: Path) -> int:
+    """How many rows a store has by now; 0 where there is none yet."""
+    path = place / "store.sqlite"
+    if not path.is_file():
+        return 0
+    with closing(sqlite3.connect(path, timeout=60)) as db, suppress(sqlite3.OperationalError):
+        return db.execute("SELECT count(*) FROM cases").fetchone()[0]
+    return 0
 
 
 def below(process: int) -> list[int]:
@@ -91,8 +102,3 @@ def is_gone(process: int) -> bool:
     except OSError:
         return True
     return text.rsplit(")", 1)[1].split()[0] == "Z"
-
-
-def told(place: Path) -> dict:
-    """The list of the last batch."""
-    return json.loads((place / "batch.json").read_text())

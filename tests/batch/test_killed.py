@@ -15,10 +15,11 @@ import pytest
 from tests.batch.batches import answer_bytes, run_here, write_cell
 from tests.batch.clusters import (
     ROOT,
+    ended,
     finished,
     is_gone,
     kill,
-    segments,
+    n_kept,
     started,
     until,
     workers_of,
@@ -63,18 +64,15 @@ def test_two_workers_write_what_one_process_does(undisturbed, tmp_path):
 
 
 FULL = """
-import errno
 import clearance.batch.store as store
 from clearance.cli import main
-from clearance.errors import unwritable
-kept, write = [], store.write_file
-def full(path, content):
-    with unwritable(path):
-        if path.parent.name == "segments" and kept:
-            raise OSError(errno.ENOSPC, "No space left on device")
-    kept.append(path) if path.parent.name == "segments" else None
-    write(path, content)
-store.write_file = full
+kept, put = [], store.Store.put
+def full(self, *given, **told):
+    pages = self._db.execute("PRAGMA page_count").fetchone()[0]
+    self._db.execute(f"PRAGMA max_page_count = {pages if kept else 10**6}")
+    put(self, *given, **told)
+    kept.append(self)
+store.Store.put = full
 if __name__ == "__main__":
     main()
 """
@@ -90,8 +88,8 @@ def test_a_full_disk_ends_a_batch_of_workers_and_keeps_what_was_kept(undisturbed
     )  # fmt: skip
     assert (done.returncode, done.stdout) == (4, "")
     told = done.stderr.splitlines()
-    assert told[-1].startswith("incomplete: ") and "No space left on device" in told[-1]
-    assert len(segments(tmp_path / "out")) == 1
+    assert told[-1].startswith("incomplete: ") and "database or disk is full" in told[-1]
+    assert 0 < n_kept(tmp_path / "out") < N_CASES - 1
     assert set(answer_bytes(tmp_path / "out")) == {"batch.html", "junit.xml"}  # "not finished"
     code, out, err = finished(*asked[:-1], "1")
     assert (code, err) == (1, "") and "cached      0 of" not in out
@@ -103,39 +101,39 @@ def test_what_a_killed_worker_had_begun_is_done_again(undisturbed, tmp_path):
     batch = started(*arguments(manifest, tmp_path / "out"))
     first = until(lambda: workers_of(batch.pid))[0]
     kill(first)  # as it starts
-    until(lambda: segments(tmp_path / "out") or batch.poll() is not None)
+    until(lambda: n_kept(tmp_path / "out") or batch.poll() is not None)
     for worker in workers_of(batch.pid)[:1]:
         kill(worker)  # as it measures
-    out, err = batch.communicate(timeout=300)
+    out, err = ended(batch)
     assert (batch.returncode, err) == (1, ""), out
     assert answer_bytes(tmp_path / "out") == expected
 
 
-@pytest.mark.parametrize("n_segments", [0, 2])
-def test_after_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path, n_segments):
-    """The scheduler is in its process; its workers end with it."""
+@pytest.mark.parametrize("least", [0, 40])
+def test_after_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path, least):
+    """Its workers end with it."""
     manifest, expected = undisturbed
     batch = started(*arguments(manifest, tmp_path / "out"))
-    until(lambda: workers_of(batch.pid) and len(segments(tmp_path / "out")) >= n_segments)
+    until(lambda: workers_of(batch.pid) and n_kept(tmp_path / "out") >= least)
     workers = workers_of(batch.pid)
     kill(batch.pid)
-    batch.communicate(timeout=300)
-    kept = len(segments(tmp_path / "out"))
-    assert kept >= n_segments
+    ended(batch)
+    kept = n_kept(tmp_path / "out")
+    assert kept >= least
     until(lambda: all(map(is_gone, workers)))
     code, out, err = finished(*arguments(manifest, tmp_path / "out"))
     assert (code, err) == (1, "")
     assert answer_bytes(tmp_path / "out") == expected
     cached = int(next(line for line in out.splitlines() if "cached" in line).split()[1])
-    assert (cached > 0) == (kept > 0)
+    assert cached == kept
 
 
 def test_an_interrupt_keeps_what_is_done_and_is_one_line(undisturbed, tmp_path):
     manifest, expected = undisturbed
     batch = started(*arguments(manifest, tmp_path / "out"))
-    until(lambda: segments(tmp_path / "out"))
+    until(lambda: n_kept(tmp_path / "out"))
     os.killpg(batch.pid, signal.SIGINT)  # as a terminal does: all of them
-    out, err = batch.communicate(timeout=300)
+    out, err = ended(batch)
     if batch.returncode == 1:
         pytest.skip("it was done before")
     assert batch.returncode == 130 and out == ""
@@ -150,10 +148,10 @@ def test_without_its_scheduler_a_batch_is_incomplete_and_goes_on(undisturbed, tm
     address = until(lambda: (tmp_path / "address").exists() and (tmp_path / "address").read_text())
     asked = [str(manifest), "--out", str(tmp_path / "out"), "--scheduler", str(address)]
     batch = started(*asked)
-    until(lambda: segments(tmp_path / "out"))
+    until(lambda: n_kept(tmp_path / "out"))
     kill(host.pid)
-    host.communicate(timeout=300)
-    out, err = batch.communicate(timeout=300)
+    ended(host)
+    out, err = ended(batch)
     if batch.returncode == 1:
         pytest.skip("it was done before")
     assert (batch.returncode, out) == (4, "")
@@ -164,12 +162,15 @@ def test_without_its_scheduler_a_batch_is_incomplete_and_goes_on(undisturbed, tm
     assert answer_bytes(tmp_path / "out") == expected
 
 
-def test_two_commands_on_one_store_at_once_both_answer(undisturbed, tmp_path):
+def test_of_two_commands_on_one_store_the_second_waits_and_both_answer(undisturbed, tmp_path):
     manifest, expected = undisturbed
     both = [started(*arguments(manifest, tmp_path / "out")[:-1], "1") for _ in range(2)]
-    for one in both:
-        _, err = one.communicate(timeout=300)
-        assert (one.returncode, err) == (1, "")
+    said = [ended(one) for one in both]
+    assert [one.returncode for one in both] == [1, 1]
+    waits = "store.sqlite: another batch writes here; this one goes on when that has ended"
+    assert sorted(waits in err for _, err in said) == [False, True]
+    cached = sorted(out[out.index("cached") :].split()[1] for out, _ in said)
+    assert cached == ["0", str(N_CASES - 1)]
     assert answer_bytes(tmp_path / "out") == expected
 
 
@@ -178,6 +179,7 @@ def test_parts_by_other_queues_make_the_same_answer(undisturbed, tmp_path):
     for part in ("1/2", "2/2"):
         code, out, _ = finished(*arguments(manifest, tmp_path / "out")[:-1], "1", "--shard", part)
         assert code == 1 and f"(part {part.replace('/', ' of ')})" in out
+        assert (tmp_path / "out" / f"part-{part.replace('/', '-of-')}.sqlite").is_file()
         assert set(answer_bytes(tmp_path / "out")) == {"batch.html", "junit.xml"}  # "not finished"
     code, out, _ = finished(*arguments(manifest, tmp_path / "out"))
     assert code == 1 and f"cached      {N_CASES - 1} of {N_CASES}" in out

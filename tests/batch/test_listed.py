@@ -1,16 +1,14 @@
-"""The list of a batch: JSON as any tool reads it, read back as it was, and refused wherever it is cut off."""
+"""The list of a batch comes back from its store as it was, and is refused where it is damaged."""
 
-import json
 from datetime import date
-from pathlib import Path
 
 import pytest
 
-from clearance.batch.cases import Cases
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.listed import FILE_NAME, read_list, write_list
+from clearance.batch.listed import read_list, write_list
 from clearance.batch.options import CaseOptions
-from clearance.errors import BadInput
+from clearance.batch.store import open_store
+from clearance.errors import BadInput, MissingFile
 from clearance.world.waiver import Waiver
 
 UNTIL = {"at_least": 0.01, "by": "me", "until": date(2027, 3, 31)}
@@ -22,31 +20,34 @@ def cases():
     waiver = Waiver(("a", "b"), reason='says "cases": [ and ]}', **UNTIL)
     waived = plain.waived_by((waiver,))
     given = GivenTrajectory("/in/t0.csv", '{"period":0.5}', "left")
-    return Cases.of(
-        [
-            Item(0, "t0", "/in/cell.yaml", given, plain),
-            Item(1, 'a {"quoted"} name', "/in/whole.yaml", None, waived),
-            Item(2, "tü", "/in/cell.yaml", GivenTrajectory("/in/tü.csv", "{}"), waived),
-        ]
-    )
+    return [
+        Item(0, "t0", "/in/cell.yaml", given, plain),
+        Item(1, 'a {"quoted"} name', "/in/whole.yaml", None, waived),
+        Item(2, "tü", "/in/cell.yaml", GivenTrajectory("/in/tü.csv", "{}"), waived),
+        Item(3, "no text", "/in/cell.yaml", GivenTrajectory("/in/\udcff.csv", "{}"), plain),
+    ]
 
 
-def test_it_is_json_and_comes_back(cases, tmp_path):
-    write_list(tmp_path, cases)
-    text = (tmp_path / FILE_NAME).read_text()
-    told = json.loads(text)
-    assert text == json.dumps(told, indent=0) + "\n"
-    assert [row["name"] for row in told["cases"]] == [item.name for item in cases]
-    found = read_list(tmp_path)
-    assert list(found) == list(cases)
+def test_it_comes_back(cases, tmp_path):
+    with open_store(tmp_path) as store:
+        write_list(store, cases[:1])
+        write_list(store, cases)
+        found = read_list(store)
+    assert found == cases
     assert [one.options.waivers for one in found] == [one.options.waivers for one in cases]
 
 
-@pytest.mark.slow
-def test_one_that_is_cut_off_is_damaged(cases, tmp_path: Path):
-    write_list(tmp_path, cases)
-    content = (tmp_path / FILE_NAME).read_bytes()
-    for n in range(len(content.rstrip())):
-        (tmp_path / FILE_NAME).write_bytes(content[:n])
+def test_a_store_without_one_says_so(tmp_path):
+    with open_store(tmp_path) as store, pytest.raises(MissingFile, match="no batch was begun"):
+        read_list(store)
+
+
+@pytest.mark.parametrize(
+    ("options", "item"),
+    [("{", "[1"), ('{"need": 3}', '["/in/cell.yaml", null]'), ("{}", '["/in/cell.yaml"]')],
+)
+def test_one_that_is_damaged_is_told_in_one_line(options, item, tmp_path):
+    with open_store(tmp_path) as store:
+        store.write_list([options], [(0, "t0", item, 0)])
         with pytest.raises(BadInput, match="the list of cases is damaged"):
-            read_list(tmp_path)
+            read_list(store)

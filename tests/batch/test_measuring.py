@@ -8,7 +8,6 @@ from clearance.batch import measuring
 from clearance.batch.keys import program
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import GROUP, Task, TaskResult, measure
-from clearance.batch.segments import rows_in
 from tests.batch.batches import write_cell
 
 NEAREST = [0.5, 0.02, 0.2, 0.4, 0.01, 0.3, 0.25, 0.6, 0.1]
@@ -26,7 +25,7 @@ def done(items, seconds: float = 1e9) -> TaskResult:
 
 
 def rows(found: TaskResult) -> list[dict]:
-    return rows_in(found.segment).to_pylist() if found.segment else []
+    return [one.row for one in found.measured]
 
 
 @pytest.mark.parametrize("together", [1, 2, GROUP])

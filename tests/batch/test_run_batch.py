@@ -1,7 +1,6 @@
 """A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
 
 import hashlib
-import os
 from datetime import date
 
 import numpy as np
@@ -15,8 +14,6 @@ from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import Task, measure
-from clearance.batch.store import open_store
-from clearance.errors import Incomplete, Unwritable
 from clearance.load.case.case_file import load_cell, with_trajectory_file
 from clearance.load.schema.pose import TrajectoryFile
 from clearance.run import Question, answer
@@ -27,6 +24,7 @@ from tests.batch.batches import (
     cases,
     column,
     findings,
+    n_rows,
     run_here,
     statuses,
     write_cell,
@@ -38,14 +36,8 @@ NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
 
 @pytest.fixture
 def manifest(tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        engine, "SECONDS", 1e9
-    )  # one task, and one segment, however slow the machine
+    monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, however slow the machine
     return write_cell(tmp_path / "in", NEAREST)
-
-
-def segments(place):
-    return sorted((place / "segments").glob("*.parquet"))
 
 
 def test_each_case_has_the_verdict_of_its_check(manifest, tmp_path):
@@ -103,7 +95,7 @@ def test_fresh_measures_all_again(manifest, tmp_path):
     first = answer_bytes(tmp_path / "out")
     told, _ = run_here(manifest, tmp_path / "out", fresh=True)
     assert len(told.measured) == 5 and answer_bytes(tmp_path / "out") == first
-    assert [path.name[:6] for path in segments(tmp_path / "out")] == ["000000", "000001"]
+    assert n_rows(tmp_path / "out") == 5
 
 
 def test_bad_input_among_others_is_told_and_the_others_are_done(manifest, tmp_path):
@@ -121,54 +113,6 @@ def test_bad_input_among_others_is_told_and_the_others_are_done(manifest, tmp_pa
     assert strict.exit_code == 2 and told.measured == ["t001", "t003"]
 
 
-def test_a_damaged_segment_is_dropped_and_its_cases_are_measured_again(manifest, tmp_path):
-    run_here(manifest, tmp_path / "out")
-    first = answer_bytes(tmp_path / "out")
-    (path,) = segments(tmp_path / "out")
-    content = bytearray(path.read_bytes())
-    content[len(content) // 2] ^= 1
-    path.write_bytes(content)
-    assert open_store(tmp_path / "out").n_damaged == 1
-    told, _ = run_here(manifest, tmp_path / "out")
-    assert len(told.measured) == 5 and answer_bytes(tmp_path / "out") == first
-
-
-def test_a_segment_that_is_cut_off_is_dropped(manifest, tmp_path):
-    run_here(manifest, tmp_path / "out")
-    (path,) = segments(tmp_path / "out")
-    os.truncate(path, 100)
-    assert len(run_here(manifest, tmp_path / "out")[0].measured) == 5
-
-
-def test_known_hashes_that_are_damaged_are_done_without(manifest, tmp_path):
-    run_here(manifest, tmp_path / "out")
-    (tmp_path / "out" / "files.parquet").write_bytes(b"PAR1")
-    assert run_here(manifest, tmp_path / "out")[0].measured == []
-
-
-def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
-    import clearance.batch.store as room
-
-    kept, write = [], room.write_file
-
-    def full(path, content):
-        if path.parent.name == "segments":
-            if kept:
-                raise Unwritable("cannot write here: No space left on device", where=str(path))
-            kept.append(path)
-        write(path, content)
-
-    monkeypatch.setattr(room, "write_file", full)
-    monkeypatch.setattr("clearance.batch.engine.MOST", 2)
-    with pytest.raises(Incomplete, match="No space left on device") as caught:
-        run_here(manifest, tmp_path / "out")
-    assert "the same command goes on" in str(caught.value)
-    assert len(open_store(tmp_path / "out")) == 2
-    monkeypatch.setattr(room, "write_file", write)
-    told, found = run_here(manifest, tmp_path / "out")
-    assert told.measured == ["t002", "t003", "t004"] and found.n_cases == 5
-
-
 def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
     """One that begins and ends while the other measures."""
 
@@ -182,18 +126,6 @@ def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
     assert list(statuses(found).values()) == ["clear", "near", "violated", "clear", "contact"]
     assert run_here(other, tmp_path / "out")[0].measured == []
     assert run_here(manifest, tmp_path / "out")[0].measured == []
-
-
-def test_a_folder_of_something_else_is_no_store(tmp_path):
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "thesis.tex").write_text("…")
-    with pytest.raises(Unwritable, match="is a folder of something else"):
-        open_store(tmp_path / "mine")
-    (tmp_path / "mine" / "store.json").write_text('{"format": 99}')
-    with pytest.raises(Unwritable, match="is a store of format 99"):
-        open_store(tmp_path / "mine")
-    with pytest.raises(Unwritable, match="there is no such folder"):
-        open_store(tmp_path / "nothing", make=False)
 
 
 def test_the_key_is_of_all_that_decides_a_row(manifest):

@@ -7,6 +7,7 @@ import pytest
 
 from clearance.batch.listed import read_list
 from clearance.batch.manifest import Changes, items_of
+from clearance.batch.store import open_store
 from clearance.cli import run
 from clearance.load.case.waiver_file import load_waivers
 from tests.batch.batches import answer_bytes, write_cell
@@ -159,7 +160,8 @@ def test_the_list_keeps_them(folder):
     batch("--quiet")
     given = load_waivers(folder / "waivers.yaml")
     items = items_of(["batch.yaml"], Changes(today=date.fromisoformat(DAY), waivers=given))
-    found = read_list(folder / "store")
+    with open_store(folder / "store") as store:
+        found = read_list(store)
     assert list(found) == list(items)
     assert [one.options.waivers for one in found] == [one.options.waivers for one in items]
     assert [len(one.options.waivers) for one in found] == [1, 2, 1]

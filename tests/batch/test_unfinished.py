@@ -1,8 +1,6 @@
 """A batch that has not come to its end: no older answer stands in the store, and `status` tells what is missing
 from what cannot be read."""
 
-import json
-
 import pytest
 
 from clearance.batch import engine
@@ -65,7 +63,8 @@ def test_a_part_of_a_batch_leaves_no_older_answer(folder, capsys):
     first = answer_bytes(folder / "store")
     assert batch("--shard", "1/2") == 0 and is_withdrawn(folder / "store")
     assert run(["batch", "status", "store"]) == 0
-    assert "answer      not written yet" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "answer      not written yet" in told and "parts       1 file not merged yet" in told
     assert batch() == 0 and answer_bytes(folder / "store") == first
 
 
@@ -86,7 +85,6 @@ def test_status_tells_missing_from_unreadable(folder, capsys):
     assert run(["batch", "status", "store"]) == 4
     assert "missing     1\n  unreadable  0\n" in capsys.readouterr().out
     assert batch() == 0 and run(["batch", "status", "store"]) == 0
-    assert json.loads((folder / "store" / "faults.json").read_text()) == {}
 
 
 def test_a_part_keeps_what_another_found_unreadable(folder, capsys):
@@ -94,8 +92,11 @@ def test_a_part_keeps_what_another_found_unreadable(folder, capsys):
         (folder / f"{name}.csv").write_text("time,rail\n0,x\n")
     assert batch("--shard", "1/2") == 1 and batch("--shard", "2/2") == 1
     capsys.readouterr()
+    assert run(["batch", "status", "store"]) == 4
+    told = capsys.readouterr().err
+    assert told.startswith("incomplete: store: only parts of a batch are here")
+    assert run(["batch", "merge", "store"]) == 0
+    assert capsys.readouterr().out == "2 rows of 2 parts are in store\n"
     assert run(["batch", "status", "store"]) == 1
     assert "2 of 4 cases done\n  missing     0\n  unreadable  2" in capsys.readouterr().out
-    (folder / "store" / "faults.json").write_text("[")
-    assert run(["batch", "status", "store"]) == 4
-    assert "missing     2\n  unreadable  0\n" in capsys.readouterr().out
+    assert list((folder / "store").glob("part-*")) == []

@@ -1,11 +1,9 @@
 """What of a batch stands first: of cases in contact the deepest, in the summary, the table and on the page."""
 
-import json
-
 from pytest import approx
 
 from clearance.batch import engine
-from clearance.batch.page_data import object_of, page_data
+from clearance.batch.page_data import page_data
 from clearance.batch.store import open_store
 from clearance.cli.batch_verdict import print_answer
 from tests.batch.batches import cases, run_here, write_cell
@@ -20,9 +18,10 @@ def test_of_cases_in_contact_the_deepest_is_worst(tmp_path, capsys, monkeypatch)
     depths = {row["case"]: row["penetration"] for row in cases(tmp_path / "out")}
     right = {"t000": approx(0.01), "t001": approx(0.03), "t002": None, "t003": approx(0.02)}
     assert depths == right
-    page = json.loads("".join(object_of(page_data(found, tmp_path / "out"))))
+    page = page_data(found, tmp_path / "out")
     assert page["clearance"] == approx([-10.0, -30.0, 400.0, -20.0], abs=0.002)
-    print_answer(found, open_store(tmp_path / "out"), 0, None)
+    with open_store(tmp_path / "out") as store:
+        print_answer(found, store, 0, None)
     told = capsys.readouterr().out
     assert "least       t001: contact, at most 30.00 mm deep, slider - wall" in told
     assert "contact     t001: contact 30.00 mm deep: slider - wall" in told

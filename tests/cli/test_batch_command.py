@@ -1,5 +1,7 @@
 """`clearance batch` in this process: exit codes, what is printed, options, one line for every mistake."""
 
+import sys
+
 import pytest
 
 from clearance.cli import run
@@ -102,8 +104,8 @@ def test_no_kind_of_failure_hides_another(folder, capsys):
 
 def test_a_store_that_cannot_be_written_is_one_line(folder, capsys, monkeypatch):
     batch("batch.yaml", "--out", "store", "--quiet")
-    (folder / "store" / ".lock").unlink()
-    (folder / "store" / ".lock").mkdir()
+    (folder / "store" / ".store.lock").unlink()
+    (folder / "store" / ".store.lock").mkdir()
     assert batch("batch.yaml", "--out", "store") == 2
     told = capsys.readouterr().err
     assert told.startswith("error: store: cannot write here: ") and told.count("\n") == 1
@@ -165,11 +167,8 @@ def test_status_of_no_store_is_one_line(folder, capsys):
     assert capsys.readouterr().err.startswith("error: nothing: there is no such folder")
 
 
-def test_without_dask_one_job_does(folder, capsys, monkeypatch):
-    from clearance.cli import batch_run
-
-    monkeypatch.setattr(batch_run, "is_installed", lambda name: False)
-    monkeypatch.setattr(batch_run, "FEW", 0)
-    monkeypatch.setattr(batch_run, "usable_cores", lambda: 2)
-    assert run(["batch", "batch.yaml", "--out", "store"]) == 1
-    assert "pip install 'clearance[batch]' brings more" in capsys.readouterr().err
+def test_a_scheduler_needs_dask(folder, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert run(["batch", "batch.yaml", "--out", "store", "--scheduler", "tcp://host:8786"]) == 2
+    err = capsys.readouterr().err
+    assert "--scheduler needs distributed" in err and "pip install 'clearance[batch]'" in err

@@ -1,0 +1,253 @@
+"""The database of a batch: what is committed comes back, what is damaged or of something else is one line."""
+
+import os
+import shutil
+import sqlite3
+from contextlib import closing
+
+import pytest
+
+from clearance.batch import engine
+from clearance.batch.rows import VERDICT, error_row
+from clearance.batch.store import FILE, FORMAT, Store, merge, open_store
+from clearance.cli import run
+from clearance.errors import BadInput, Incomplete, Unwritable
+from tests.batch.batches import ANSWER, answer_bytes, n_rows, run_here, write_cell
+
+NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
+
+
+@pytest.fixture
+def manifest(tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "SECONDS", 1e9)  # one task, however slow the machine
+    monkeypatch.setattr(engine, "MOST", 2)
+    monkeypatch.setattr(engine, "LEAST", 1)
+    return write_cell(tmp_path / "in", NEAREST)
+
+
+ODD = {
+    "clearance": -0.0,
+    "lower_bound": float("nan"),
+    "proven": float("-inf"),
+    "expected": 5e-324,
+    "time": 3,
+    "step": 2**62,
+    "text": "a\0b\n'\"ü",
+    "reasons": ["x", ""],
+    "curve": [0.1, float("inf")],
+}
+
+
+def row(**told):
+    return error_row("none", 1) | told
+
+
+def test_a_row_of_odd_values_comes_back(tmp_path):
+    with open_store(tmp_path) as store:
+        store.put(rows=[("k", row(**ODD))])
+        assert store.has("k") and store.n_damaged == 0
+        (found,) = store.rows(["k"])
+    expected = {"key": "k"} | row(**ODD) | {"lower_bound": None}
+    assert found == expected and list(found) == ["key", *VERDICT.names]
+
+
+def test_a_row_that_is_kept_again_is_replaced(tmp_path):
+    with open_store(tmp_path) as store:
+        store.put(rows=[("k", row(text="one")), ("l", row())])
+        store.put(rows=[("k", row(text="two"))])
+        assert [one["text"] for one in store.rows(["l", "k"])] == ["none", "two"]
+        assert len(store) == 2
+
+
+def test_what_is_put_together_is_there_as_a_whole_or_not_at_all(tmp_path):
+    def broken():
+        yield "k", row()
+        raise KeyboardInterrupt
+
+    with open_store(tmp_path) as store:
+        with pytest.raises(KeyboardInterrupt):
+            store.put(rows=broken())
+        store.put(rows=[("l", row())])
+        assert not store.has("k") and store.has("l")
+
+
+def changed(place, asked, *values):
+    with closing(sqlite3.connect(place / FILE)) as db, db:
+        db.execute(asked, values)
+
+
+@pytest.mark.parametrize("column", ["status", "exit_code", "clearance", "findings", "digest"])
+def test_a_row_that_is_damaged_is_measured_again(column, manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    first = answer_bytes(tmp_path / "out")
+    changed(tmp_path / "out", f"UPDATE cases SET {column} = 'clear' WHERE status = 'violated'")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == ["t002"] and answer_bytes(tmp_path / "out") == first
+
+
+@pytest.mark.parametrize("read", ["[", "[[1]]", "null"])
+def test_what_is_damaged_of_the_lists_of_files_is_measured_again(read, manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    changed(tmp_path / "out", "UPDATE inputs SET read = ?", read)
+    assert len(run_here(manifest, tmp_path / "out")[0].measured) == 5
+
+
+def test_known_hashes_that_are_damaged_are_measured_again_and_never_believed(
+    manifest, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("clearance.batch.file_hashes.RACY", -(10**18))
+    run_here(manifest, tmp_path / "out")
+    changed(
+        tmp_path / "out", "UPDATE files SET sha256 = 'ff' WHERE CAST(path AS TEXT) LIKE '%t001.csv'"
+    )
+    assert run_here(manifest, tmp_path / "out")[0].measured == ["t001"]
+
+
+@pytest.mark.parametrize("content", [b"PAR1" * 500, b"SQLite format 3\0" + bytes(5000)])
+def test_a_file_of_something_else_is_one_line(content, manifest, tmp_path, capsys):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / FILE).write_bytes(content)
+    for asked in (["batch", str(manifest), "--out"], ["batch", "status"], ["batch", "merge"]):
+        assert run([*asked, str(tmp_path / "out")]) == 2
+        err = capsys.readouterr().err
+        assert err.startswith("error: ") and err.count("\n") == 1 and FILE in err
+        assert "damaged" in err or "no store" in err
+
+
+def test_a_database_of_something_else_is_one_line_and_stays(manifest, tmp_path, capsys):
+    (tmp_path / "out").mkdir()
+    changed(tmp_path / "out", "CREATE TABLE mine (x)")
+    assert run(["batch", str(manifest), "--out", str(tmp_path / "out")]) == 2
+    err = capsys.readouterr().err
+    assert "this is no store" in err and err.count("\n") == 1
+    changed(tmp_path / "out", "INSERT INTO mine VALUES (1)")
+
+
+def test_a_store_that_is_cut_off_is_one_line(manifest, tmp_path, capsys):
+    run_here(manifest, tmp_path / "out")
+    os.truncate(tmp_path / "out" / FILE, 9000)
+    assert run(["batch", str(manifest), "--out", str(tmp_path / "out"), "--jobs", "1"]) == 2
+    err = capsys.readouterr().err
+    assert "the store is damaged" in err and "a new folder" in err and err.count("\n") == 1
+
+
+def test_a_store_of_another_format_is_one_line(manifest, tmp_path, capsys):
+    run_here(manifest, tmp_path / "out")
+    changed(tmp_path / "out", f"PRAGMA user_version = {FORMAT + 1}")
+    assert run(["batch", "status", str(tmp_path / "out")]) == 2
+    assert f"a store of format {FORMAT + 1}; a new folder" in capsys.readouterr().err
+
+
+def test_a_store_of_an_older_version_says_what_to_do(manifest, tmp_path, capsys):
+    """It kept rows in segments of parquet; nothing of it is read."""
+    run_here(manifest, tmp_path / "new")
+    old = tmp_path / "old"
+    shutil.copytree(tmp_path / "new", old)
+    (old / FILE).unlink()
+    (old / ".store.lock").unlink(missing_ok=True)
+    (old / "store.json").write_text('{"format": 1}')
+    (old / "segments").mkdir()
+    before = sorted(path.name for path in old.iterdir())
+    for asked in (
+        ["batch", str(manifest), "--out", str(old)],
+        ["batch", "status", str(old)],
+        ["compare", str(old), str(tmp_path / "new")],
+        ["batch", str(manifest), "--out", str(tmp_path / "new"), "--baseline", str(old)],
+    ):
+        capsys.readouterr()
+        assert run(asked) == 2
+        err = capsys.readouterr().err
+        assert "a store of an older version, which is not read; a new folder" in err
+        assert err.count("\n") == 1
+    assert sorted(path.name for path in old.iterdir()) == before
+
+
+def test_a_folder_of_something_else_is_no_store(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").write_text("…")
+    with pytest.raises(Unwritable, match="is a folder of something else"):
+        open_store(tmp_path / "mine")
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["thesis.tex"]
+    with pytest.raises(Unwritable, match="there is no such folder"):
+        open_store(tmp_path / "nothing", make=False)
+
+
+def test_what_a_process_that_was_ended_left_at_the_beginning_is_no_hindrance(tmp_path):
+    (tmp_path / ".store.lock").write_text("")
+    (tmp_path / FILE).write_text("")
+    with open_store(tmp_path) as store:
+        assert len(store) == 0
+
+
+def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
+    put = Store.put
+
+    def nearly_full(self, *given, **told):
+        """Room for one task."""
+        n_pages = self._one("PRAGMA page_count")[0]
+        self._one(f"PRAGMA max_page_count = {n_pages + (0 if len(self) else 50)}")
+        put(self, *given, **told)
+
+    monkeypatch.setattr(Store, "put", nearly_full)
+    with pytest.raises(Incomplete, match="database or disk is full") as caught:
+        run_here(manifest, tmp_path / "out")
+    assert "the same command goes on once there is room" in str(caught.value)
+    monkeypatch.undo()
+    kept = n_rows(tmp_path / "out")
+    assert 0 < kept < 5
+    told, found = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == 5 - kept and found.n_cases == 5
+
+
+def test_a_store_that_cannot_be_written_can_be_asked(manifest, tmp_path, monkeypatch):
+    run_here(manifest, tmp_path / "out")
+    with open_store(tmp_path / "out", make=False) as store:
+        store._db.execute("PRAGMA query_only = 1")
+        assert len(store) == 5
+        with pytest.raises(Unwritable, match="cannot write here"):
+            store.put(rows=[("k", row())])
+
+
+def test_a_part_knows_what_the_store_has_and_is_merged(manifest, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    place = tmp_path / "out"
+    run_here(manifest, place)
+    first = answer_bytes(place)
+    (manifest.parent / "t001.csv").write_text("time,rail\n0,0\n1,0.7\n")
+    (manifest.parent / "t002.csv").write_text("time,rail\n0,0\n1,0.7\n")
+    asked = ["batch", str(manifest), "--out", "out", "--jobs", "1", "--quiet"]
+    assert run([*asked, "--shard", "2/2"]) == 0  # t001 and t003
+    with closing(sqlite3.connect(place / "part-2-of-2.sqlite")) as db:
+        assert db.execute("SELECT count(*) FROM cases").fetchone() == (1,)
+    assert n_rows(place) == 5 and set(answer_bytes(place)) == {"batch.html", "junit.xml"}
+    assert run(["batch", "merge", "out"]) == 0
+    assert n_rows(place) == 6 and not (place / "part-2-of-2.sqlite").exists()
+    assert run(asked) == 1
+    assert set(answer_bytes(place)) == set(ANSWER) and answer_bytes(place) != first
+    assert n_rows(place) == 7
+
+
+def test_parts_that_were_measured_elsewhere_are_merged_and_stay(manifest, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = ["batch", str(manifest), "--jobs", "1", "--quiet"]
+    for i in (1, 2):
+        run([*asked, "--out", f"part{i}", "--shard", f"{i}/2"])
+    assert run(["batch", "merge", "out", "part1", "part2"]) == 0
+    assert run([*asked, "--out", "out"]) == 1 and n_rows(tmp_path / "out") == 5
+    run([*asked, "--out", "alone"])
+    assert all(
+        (tmp_path / "out" / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
+        for name in ("cases.parquet", "findings.parquet")
+    )
+    assert (tmp_path / "part1" / "part-1-of-2.sqlite").is_file()
+
+
+def test_only_stores_are_merged(tmp_path, capsys):
+    (tmp_path / "none").mkdir()
+    (tmp_path / "cell.yaml").write_text("name: x\n")
+    for other in ("none", "cell.yaml", "gone"):
+        assert run(["batch", "merge", str(tmp_path / "out"), str(tmp_path / other)]) == 2
+        err = capsys.readouterr().err
+        assert other in err and err.startswith("error: ") and err.count("\n") == 1
+    with open_store(tmp_path / "out") as store, pytest.raises(BadInput, match="no store"):
+        merge(store, [tmp_path / "none"], print)

@@ -1,0 +1,49 @@
+"""How far a batch is, on a pipe: a line now and then, which names the worst, of contacts the deepest."""
+
+import io
+
+import pytest
+
+from clearance.batch.measuring import Fault, ItemResult
+from clearance.cli import batch_progress
+from clearance.cli.batch_progress import PipeWatch, shown_progress
+
+NAMES = ["a", "b", "c", "d"]
+
+
+def result(number, status, exit_code, clearance, penetration=None):
+    told = {"status": status, "exit_code": exit_code, "clearance": clearance}
+    return ItemResult(number, "key", "[]", told | {"penetration": penetration, "reasons": []})
+
+
+def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
+    watch = PipeWatch(NAMES.__getitem__)
+    watch.begin(NAMES, 3)
+    assert watch.line == "0 of 4 cases measured"
+    watch.tell([result(0, "clear", 0, 0.4)], [])
+    assert watch.line.endswith("0 failed, worst clear 400.0 mm, a")
+    watch.tell([result(1, "contact", 1, 0.0, 0.01), result(2, "contact", 1, 0.0, 0.03)], [])
+    watch.tell([], [Fault(3, "unreadable")])
+    assert watch.line.startswith("4 of 4 cases measured, ")
+    assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
+
+
+def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch):
+    told = io.StringIO()
+    monkeypatch.setattr("sys.stderr", told)
+    monkeypatch.setattr(batch_progress, "EVERY", 0.001)
+    with shown_progress(False, NAMES.__getitem__) as watch:
+        watch.begin(NAMES, 0)
+        while told.getvalue().count("\n") < 2:
+            pass
+    lines = told.getvalue().splitlines()
+    assert set(lines[1:]) == {"0 of 4 cases measured"}
+
+
+@pytest.mark.parametrize("every", [0.001, 10.0])
+def test_quiet_is_silent_and_a_short_batch_too(every, monkeypatch, capsys):
+    monkeypatch.setattr(batch_progress, "EVERY", every)
+    with shown_progress(every < 1, NAMES.__getitem__) as watch:
+        watch.begin(NAMES, 0)
+        watch.tell([result(0, "clear", 0, 0.4)], [])
+    assert capsys.readouterr().err == ""
