@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -23,15 +23,11 @@ from clearance.load.case.case_file import CellFile, load_case, load_cell, with_t
 from clearance.load.files.mesh_paths import variables_of
 from clearance.load.robot.urdf.xacro_variables import variables_asked
 from clearance.load.schema.manifest import TrajectoryOptions
-from clearance.run import Question, Resources, Run, answer
+from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 
 CELLS = 4
 """Cells that stay read in a process; work comes cell by cell."""
-
-GROUP, GROUP_SECONDS = 16, 0.1
-"""Short cases that go through each stage together: a processor's caches hold one stage, not all. As many as that
-time is enough for, so that no long case waits for another."""
 
 ONE_THREAD = Resources(jobs=1)
 
@@ -103,45 +99,11 @@ def measure(task: Task) -> TaskResult:
             valid="the same versions wherever the batch runs",
         )
     work, begun = _Work(task.batch), time.monotonic()
-    n_done = 0
-    while n_done < len(task.items):
-        passed = time.monotonic() - begun
-        if n_done and passed > task.seconds:
-            break
-        some = task.items[n_done : n_done + _group_size(n_done, passed)]
-        n_done += work.add(some, begun + task.seconds)
-    return work.done(task.items[n_done:])
-
-
-def _group_size(n_done: int, passed: float) -> int:
-    """How many cases go on together, after so many in [s]."""
-    if n_done == 0:
-        return 1
-    return max(1, min(GROUP, int(GROUP_SECONDS * n_done / max(passed, 1e-9))))
-
-
-class _StagedCase:
-    """A case that goes through the stages beside others, and what has become of it; after a fault no more does."""
-
-    def __init__(self, item: Item) -> None:
-        self.item, self.read = item, 0
-        self.fault: Fault | None = None
-        self.found: ReadItem
-        self.question: Question
-        self.run: Run
-        self.row: dict[str, Any]
-
-    def take(self, stage: Callable[[_StagedCase], None]) -> None:
-        """Goes through a stage."""
-        if self.fault is not None:
-            return
-        try:
-            stage(self)
-        except ClearanceError as error:
-            self.fault = Fault(self.item.number, str(error))
-        except Exception as error:
-            text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
-            self.fault = Fault(self.item.number, text, traceback.format_exc())
+    for i, item in enumerate(task.items):
+        if i and time.monotonic() - begun > task.seconds:
+            return work.done(task.items[i:])
+        work.take(item)
+    return work.done(())
 
 
 class _Work:
@@ -153,44 +115,25 @@ class _Work:
         self.faults: list[Fault] = []
         self.read: dict[str, FileStamp] = {}
 
-    def add(self, items: Sequence[Item], until: float) -> int:
-        """Takes items through all stages together; how many, since after a time [s] none but the first is begun.
+    def take(self, item: Item) -> None:
+        """Measures an item; a fault of one costs no other."""
+        try:
+            self._measure(item)
+        except ClearanceError as error:
+            self.faults.append(Fault(item.number, str(error)))
+        except Exception as error:
+            text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
+            self.faults.append(Fault(item.number, text, traceback.format_exc()))
 
-        What has been read of the others is read again by whoever takes them.
-        """
-        staged, begun = [], time.monotonic()
-        for item in items:
-            staged.append(_StagedCase(item))
-            staged[-1].take(self._read)
-            if time.monotonic() - begun > GROUP_SECONDS:
-                break  # what takes so long to read is large, and more of it would fill the memory
-        for i, one in enumerate(staged):
-            if i and time.monotonic() > until:
-                staged = staged[:i]
-                break
-            one.take(_answer)
-        for stage in (_find, _make_row):
-            for one in staged:
-                one.take(stage)
-        for one in staged:
-            if one.fault is None:
-                self._keep(one)
-            else:
-                self.faults.append(one.fault)
-        return len(staged)
-
-    def _read(self, one: _StagedCase) -> None:
-        one.read = time.time_ns()
-        one.found = read_item(one.item, self.batch)
-        one.question = one.item.options.question(one.found.case)
-
-    def _keep(self, one: _StagedCase) -> None:
-        item, found, read = one.item, one.found, one.read
-        case, others = found.case, conditions_of(item, found.case)
+    def _measure(self, item: Item) -> None:
+        read = time.time_ns()
+        case, kept, since = read_item(item, self.batch)
+        row = row_of(answer(item.options.question(case), ONE_THREAD))
+        others = conditions_of(item, case)
         key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
-        inputs = inputs_text((*found.kept, *others))
-        self.measured.append(ItemResult(item.number, key, inputs, one.row))
-        self._note(found.kept, found.since or read)
+        inputs = inputs_text((*kept, *others))
+        self.measured.append(ItemResult(item.number, key, inputs, row))
+        self._note(kept, since or read)
         self._note(case.sources, read)
 
     def _note(self, sources: Sequence[Source], read: int) -> None:
@@ -201,19 +144,8 @@ class _Work:
                     self.read[one.read_from] = marks
 
     def done(self, left: tuple[Item, ...]) -> TaskResult:
+        """What became of all."""
         return TaskResult(tuple(self.measured), tuple(self.faults), tuple(self.read.items()), left)
-
-
-def _answer(one: _StagedCase) -> None:
-    one.run = answer(one.question, ONE_THREAD)
-
-
-def _find(one: _StagedCase) -> None:
-    _ = one.run.findings  # which the row takes as they are then
-
-
-def _make_row(one: _StagedCase) -> None:
-    one.row = row_of(one.run)
 
 
 class ReadItem(NamedTuple):
