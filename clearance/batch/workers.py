@@ -71,6 +71,11 @@ class WorkerEngine:
         self._deaths: Counter[int] = Counter()
         self._starts_lost = 0
 
+    @property
+    def processes(self) -> list[int]:
+        """The numbers of the workers' processes."""
+        return [one.process.pid for one in self._workers if one.process.pid is not None]
+
     def results(self, queue: Queue) -> Iterator[TaskResult]:
         """What the tasks come to, as they come.
 
@@ -79,9 +84,9 @@ class WorkerEngine:
         """
         self._hand_out(queue)
         while len(queue) or any(one.task for one in self._workers):
-            by_pipe = {one.pipe: one for one in self._workers}
-            for pipe in wait(list(by_pipe)):
-                done = self._taken(by_pipe[pipe], queue)
+            told = wait([one.pipe for one in self._workers])
+            for one in [one for one in self._workers if one.pipe in told]:
+                done = self._taken(one, queue)
                 self._hand_out(queue)
                 if done is not None:
                     yield done

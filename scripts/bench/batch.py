@@ -17,7 +17,7 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
@@ -29,16 +29,16 @@ from rich.console import Console
 from rows import write_csv
 
 from clearance.batch.answer import answer_of
-from clearance.batch.cases import Cases
-from clearance.batch.dask_engine import DaskEngine, local_cluster
 from clearance.batch.engine import LocalEngine
+from clearance.batch.item import Item
 from clearance.batch.keys import program
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import Task, measure
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
-from clearance.batch.store import open_store
+from clearance.batch.store import FILE, open_store
+from clearance.batch.workers import WorkerEngine, local_workers
 from clearance.load.case.case_file import load_case
 
 COLUMNS = ("what", "value", "unit", "target")
@@ -104,7 +104,7 @@ def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     yield "the same, if two cores did nothing else", 2.0 * cpu_one / cpu_two, "x", ""
 
 
-def chunk_times(items: Cases) -> list[float]:
+def chunk_times(items: Sequence[Item]) -> list[float]:
     """[s] of processor time a case in each task, the first two left out."""
     times = []
     for start in range(0, len(items), CHUNK):
@@ -115,18 +115,18 @@ def chunk_times(items: Cases) -> list[float]:
     return times[2:]
 
 
-def overhead(place: Path, items: Cases) -> float:
+def overhead(place: Path, items: Sequence[Item]) -> float:
     """[s] a case of processor time in this process where two workers measure: all but measuring."""
-    with local_cluster(2) as engine:
+    with local_workers(2) as engine:
         _run(place / "warm", items[:64], engine)
         begun = time.process_time()
         _run(place / "all", items, engine)
         return (time.process_time() - begun) / len(items)
 
 
-def cost(place: Path, items: Cases, jobs: int) -> tuple[float, float]:
+def cost(place: Path, items: Sequence[Item], jobs: int) -> tuple[float, float]:
     """[s] a case by the wall, and of processor time of the command and all workers, after the first cases."""
-    with local_cluster(jobs) as engine:
+    with local_workers(jobs) as engine:
         _run(place / "warm", items[: 64 * jobs], engine)
         begun, used = time.perf_counter(), _processor_time(engine)
         _run(place / "all", items, engine)
@@ -134,29 +134,36 @@ def cost(place: Path, items: Cases, jobs: int) -> tuple[float, float]:
         return wall / len(items), spent / len(items)
 
 
-def _processor_time(engine: DaskEngine) -> float:
+def _processor_time(engine: WorkerEngine) -> float:
     """[s] of this process and its workers."""
-    return time.process_time() + sum(engine.client.run(time.process_time).values())
+    return time.process_time() + sum(map(_spent, engine.processes))
+
+
+def _spent(process: int) -> float:
+    """[s] of processor time of a process."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Memory over many cases, and the second run of the same manifest."""
     items = items_of([str(cart_batch(folder / "many", asked.many))], Changes())
-    with local_cluster(2) as engine:
+    with local_workers(2) as engine:
         resident = _Resident(engine, len(items))
         _run(folder / "kept", items, engine, resident)
     for name, (early, late) in resident.found().items():
         yield f"{name}: resident after {len(items) // 10:,} cases", early, "MB", ""
         yield f"{name}: resident after {len(items):,} cases", late, "MB", "flat"
-    n_bytes = sum(path.stat().st_size for path in (folder / "kept" / "segments").iterdir())
+    n_bytes = (folder / "kept" / FILE).stat().st_size
     yield "store a case", n_bytes / len(items), "bytes", ""
     for k in range(2):
         begun = time.process_time()
         items = items_of([str(folder / "many" / "batch.yaml")], Changes())
-        store, outcome = open_store(folder / "kept"), Outcome(items)
-        run_batch(outcome, store, _here, _Unseen())
-        known = time.process_time()
-        write_answer(answer_of(outcome, store), store)
+        outcome = Outcome(items)
+        with open_store(folder / "kept") as store:
+            run_batch(outcome, store, _here, _Unseen())
+            known = time.process_time()
+            write_answer(answer_of(outcome, store), store)
         ended = time.process_time()
         assert outcome.n_cached == len(items)
         name = "second run" if k == 0 else "third run"
@@ -185,10 +192,10 @@ class _Unseen:
 
 
 class _Resident(_Unseen):
-    """Notes the memory of this process, which holds the scheduler, and of its workers, on the way."""
+    """Notes the memory of this process, which writes, and of its workers, on the way."""
 
-    def __init__(self, engine: DaskEngine, n_items: int) -> None:
-        self._client, self._n = engine.client, n_items
+    def __init__(self, engine: WorkerEngine, n_items: int) -> None:
+        self._engine, self._n = engine, n_items
         self._done, self._early, self._late = 0, {}, {}
 
     def tell(self, measured, faults) -> None:
@@ -199,28 +206,29 @@ class _Resident(_Unseen):
             self._late = self._now()
 
     def _now(self) -> dict[str, float]:
-        workers = self._client.run(_resident)
-        return {"scheduler": _resident(), "workers, the greatest": max(workers.values())}
+        workers = map(_resident, map(str, self._engine.processes))
+        return {"parent": _resident(), "workers, the greatest": max(workers)}
 
     def found(self) -> dict[str, tuple[float, float]]:
         """[MB] early and late, by who."""
         return {name: (self._early[name], self._late[name]) for name in self._late}
 
 
-def _resident() -> float:
-    """[MB] of this process."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
+def _resident(process: str = "self") -> float:
+    """[MB] of a process."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def _run(place: Path, items: Cases, engine, watch=None) -> None:
+def _run(place: Path, items: Sequence[Item], engine, watch=None) -> None:
     shutil.rmtree(place, ignore_errors=True)
 
     @contextmanager
     def opened(n_cases: int):
         yield engine
 
-    run_batch(Outcome(items), open_store(place), opened, watch or _Unseen())
+    with open_store(place) as store:
+        run_batch(Outcome(items), store, opened, watch or _Unseen())
 
 
 PARTS = {"rates": _rates, "workers": _workers, "many": _bulk}
