@@ -132,8 +132,8 @@ def _settled_coarsely(surface, bodies, faces, moved, target, scratch):
 
 
 @inline
-def prove_in_rectangle(lent, surface, clocks, rectangle, pair, goal, state):
-    """The `PairInRectangle` of a pair; `lent` is `surface`, lent."""
+def prove_in_rectangle(surface, clocks, rectangle, pair, goal, state):
+    """The `PairInRectangle` of a pair; `surface` is lent."""
     r, world, tally = rectangle, clocks.world, state.tally
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     whole_a, whole_b = is_whole(r.low_a, r.high_a), is_whole(r.low_b, r.high_b)
@@ -149,7 +149,7 @@ def prove_in_rectangle(lent, surface, clocks, rectangle, pair, goal, state):
         surface, clocks, clocks.tree_b, body_b, r.node_b, whole_b, state.part_b
     )
     bodies = PosedPair(
-        lent, world.solids[body_a], lent, world.solids[body_b], frames_of(pose_a, pose_b)
+        surface, world.solids[body_a], surface, world.solids[body_b], frames_of(pose_a, pose_b)
     )
     faces = state.carried.faces[pair]
     one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)

@@ -122,7 +122,7 @@ def _note_seen(clocks, rectangle, pair, distance, bounds):
 
 
 @inline
-def _visit_pairs(lent, surface, clocks, rectangle, count, aim, bounds, state):
+def _visit_pairs(surface, clocks, rectangle, count, aim, bounds, state):
     """Visits the listed pairs in a rectangle: (how many stay open, True to halve it in a's time).
 
     The open pairs are listed.
@@ -139,7 +139,7 @@ def _visit_pairs(lent, surface, clocks, rectangle, count, aim, bounds, state):
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
             return 0, True
         pair = listed[place]
-        seen = prove_in_rectangle(lent, surface, clocks, r, pair, goal, state)
+        seen = prove_in_rectangle(surface, clocks, r, pair, goal, state)
         if seen.is_done:
             bound = seen.lower_bound
             state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
@@ -259,9 +259,7 @@ def _(search: RectangleProofs, place):
             r = clipped(tree_a, tree_b, r, clocks.band)
     _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
     _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
-    n_open, in_a = _visit_pairs(
-        search.surface, search.surface, clocks, r, count, aim, bounds, state
-    )
+    n_open, in_a = _visit_pairs(search.surface, clocks, r, count, aim, bounds, state)
     seen = _seen_at(clocks, r, in_a, bounds)
     return Visit(search, OpenRectangle(r, in_a, n_open, seen), n_open > 0)
 

@@ -261,7 +261,7 @@ def _measure_in_middle(surface, asked, seen_enough, state, tally):
 
 
 @inline
-def _visit_pairs(lent, surface, clocks, rectangle, count, state, found, tally):
+def _visit_pairs(surface, clocks, rectangle, count, state, found, tally):
     """Visits the listed pairs in a rectangle: (how many stay open, True to halve it in a's time).
 
     Many arguments: they are grouped in tuples already.
@@ -286,7 +286,9 @@ def _visit_pairs(lent, surface, clocks, rectangle, count, state, found, tally):
         if bound > within:
             tally[1] += 1
             continue
-        asked = StepsPair(pair, _bodies_at(lent, clocks, pair, row_a, row_b), bound > 0.0, within)
+        asked = StepsPair(
+            pair, _bodies_at(surface, clocks, pair, row_a, row_b), bound > 0.0, within
+        )
         seen_enough = found.clearance[leaf_a] if occurs else 0.0
         if one_a and one_b:
             seen_enough = np.inf
@@ -373,9 +375,7 @@ def _(search: RectanglesOfSteps, place):
     if not meets_band(tree_a, tree_b, r, clocks.band):
         return Visit(search, OpenRectangle(r, True, 0, 0.0), False)
     tally[0] += 1
-    n_open, in_a = _visit_pairs(
-        search.surface, search.surface, clocks, r, count, state, found, tally
-    )
+    n_open, in_a = _visit_pairs(search.surface, clocks, r, count, state, found, tally)
     row = middle_leaf(tree_a, r.node_a)
     step = tree_a.start + row if in_a else found.step_b[row]
     seen = clocks.path.times[step] if step >= 0 else -np.inf
