@@ -180,27 +180,3 @@ def place_each(links: Links, positions: Floats2, poses: Floats4):
     all_wanted = np.zeros(len(links.parents), dtype=np.int64)
     for step in range(len(positions)):
         place_links(links, positions[step], poses[step], all_wanted, 0)
-
-
-@kernel
-def forward(
-    world_from_base: Floats2,
-    parents: Integers,
-    kinds: Integers,
-    parent_from_joint: Floats3,
-    axes: Floats2,
-    positions: Floats2,
-    poses: Floats4,
-):
-    """Fills `poses` (n, n_links, 4, 4) from joint `positions` (n, n_links) in link order.
-
-    Link 0 is the root; link i > 0 hangs on link `parents[i]` < i by a joint of kind `kinds[i]` with the
-    fixed part `parent_from_joint[i]` (4, 4) and the unit axis `axes[i]`.
-    """
-    for step in range(poses.shape[0]):
-        _write(rigid(world_from_base), poses[step, 0])
-        for link in range(1, poses.shape[1]):
-            _place_link(
-                poses[step, parents[link]], parent_from_joint[link], kinds[link], axes[link],
-                positions[step, link], poses[step, link],
-            )  # fmt: skip
