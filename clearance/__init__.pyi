@@ -1,17 +1,17 @@
+from .case.case_file import load_case
+from .case.waiver_file import load_waivers
 from .errors import BadInput, ClearanceError
 from .findings.finding import Finding
+from .formats.cloud.formats import read_points
+from .formats.mesh.mesh_file import read_mesh
+from .formats.robot.formats import load_robot
+from .formats.robot.urdf.robot import load_urdf
 from .gains.answer import Gain, gain
 from .gains.turn import Turn
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
 from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
-from .load.case.case_file import load_case
-from .load.case.waiver_file import load_waivers
-from .load.cloud.formats import read_points
-from .load.mesh.mesh_file import read_mesh
-from .load.robot.formats import load_robot
-from .load.robot.urdf.robot import load_urdf
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
 from .planar.curve_file import read_curve

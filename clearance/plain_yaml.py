@@ -1,7 +1,7 @@
 """YAML text to plain data (YAML 1.2: `1e-3` is a number, `no` is text), in time and memory that follow its length.
 
 What an alias repeats is counted wherever it is met, before anything is made of it: eight lines can otherwise ask
-for 10^8 values. Not for: which keys are valid, nor messages as ROS prints them (`load.message.documents`).
+for 10^8 values. Not for: which keys are valid, nor messages as ROS prints them (`formats.message.documents`).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ import pytest
 import clearance as cl
 from clearance import extras
 from clearance.cli import ExitCode, run
-from clearance.load.files.input_files import resolved
+from clearance.formats.files.input_files import resolved
 from clearance.planar.dxf import read_dxf
 
 ROOT = Path(__file__).parents[1]

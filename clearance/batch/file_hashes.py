@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.load.files.input_files import regular_file
+from clearance.formats.files.input_files import regular_file
 
 RACY = 2_000_000_000
 """[ns] The coarsest clock of a file system that is in use (FAT) counts two seconds."""

@@ -15,8 +15,8 @@ from pydantic import TypeAdapter
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.store import Store
+from clearance.case.tolerance.tolerance_file import tolerance_digest
 from clearance.errors import BadInput, MissingFile, nearest_name
-from clearance.load.tolerance.tolerance_file import tolerance_digest
 
 _OPTIONS = TypeAdapter(CaseOptions)
 

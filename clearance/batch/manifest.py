@@ -16,10 +16,15 @@ from pathlib import Path
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.shared_waivers import as_shared
+from clearance.case.tolerance.tolerance_file import tolerance_digest
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
-from clearance.load.files.input_files import read_bytes
-from clearance.load.schema.manifest import Manifest, TrajectoryOptions, is_manifest, load_manifest
-from clearance.load.tolerance.tolerance_file import tolerance_digest
+from clearance.formats.files.input_files import read_bytes
+from clearance.formats.schema.manifest import (
+    Manifest,
+    TrajectoryOptions,
+    is_manifest,
+    load_manifest,
+)
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
 

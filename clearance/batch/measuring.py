@@ -18,11 +18,11 @@ from clearance.batch.item import Item
 from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.shared_waivers import as_shared
+from clearance.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.errors import ClearanceError, Incomplete
-from clearance.load.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
-from clearance.load.files.mesh_paths import variables_of
-from clearance.load.robot.urdf.xacro_variables import variables_asked
-from clearance.load.schema.manifest import TrajectoryOptions
+from clearance.formats.files.mesh_paths import variables_of
+from clearance.formats.robot.urdf.xacro_variables import variables_asked
+from clearance.formats.schema.manifest import TrajectoryOptions
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, date, datetime
 from pathlib import Path
 
+from clearance.case.tolerance.tolerance_file import tolerance_digest, with_tolerance
 from clearance.errors import BadInput
-from clearance.load.tolerance.tolerance_file import tolerance_digest, with_tolerance
 from clearance.run import Question
 from clearance.run.question import with_levels
 from clearance.tolerance import CERTIFY_GAP

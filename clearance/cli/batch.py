@@ -159,9 +159,9 @@ def check(
     from clearance.batch.manifest import Changes, items_of
     from clearance.batch.output import ANSWER
     from clearance.batch.store_files import FILE
+    from clearance.case.waiver_file import load_waivers
     from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
-    from clearance.load.case.waiver_file import load_waivers
 
     if samples_only and certify_mm is not None:
         raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")

@@ -222,7 +222,7 @@ def _require_file(case_file: Path) -> None:
     Raises:
         MissingFile: as when it is read.
     """
-    from clearance.load.files.input_files import require_file
+    from clearance.formats.files.input_files import require_file
 
     require_file(case_file, case_file.name)
 
@@ -241,8 +241,8 @@ def _case(
     waivers: tuple[Path, ...],
 ) -> Case:
     """The case with what the command line changes of it."""
-    from clearance.load.case.case_file import load_case
-    from clearance.load.case.waiver_file import with_waivers
+    from clearance.case.case_file import load_case
+    from clearance.case.waiver_file import with_waivers
     from clearance.run.question import with_levels
 
     case = load_case(case_file)

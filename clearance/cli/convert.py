@@ -12,7 +12,7 @@ from clearance.cli.options import INCLUDE_OPTION, OutputPath, package_dir_option
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.load.conversion.files import ConvertedFiles
+    from clearance.formats.conversion.files import ConvertedFiles
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -56,11 +56,11 @@ def convert(
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.written_files import refuse_there, write_files
-    from clearance.load.conversion.file_kind import FileKind, kind_of
-    from clearance.load.conversion.files import Conversion, converted
-    from clearance.load.files.input_files import InputFiles
-    from clearance.load.motion.trajectory_request import Choice
-    from clearance.load.scene.request import includes_of
+    from clearance.formats.conversion.file_kind import FileKind, kind_of
+    from clearance.formats.conversion.files import Conversion, converted
+    from clearance.formats.files.input_files import InputFiles
+    from clearance.formats.motion.trajectory_request import Choice
+    from clearance.formats.scene.request import includes_of
 
     _require_place(in_file, out_file)
     refuse_there([out_file], force=force)

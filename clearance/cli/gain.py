@@ -108,10 +108,10 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     each robot, and the obstacle of the worst pair. DIR gets the changed case, ready to be checked, gain.html and
     gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
+    from clearance.case.case_file import load_case
     from clearance.cli.places import require_folder_place
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.load.case.case_file import load_case
     from clearance.overwriting import refuse_inputs
 
     options = _with_turn(options) | {"robot": _robot(options["robot"])}

@@ -15,7 +15,7 @@ import click
 from clearance.cli.options import OutputPath
 
 if TYPE_CHECKING:
-    from clearance.load.motion.trajectory_writer import WrittenTrajectory
+    from clearance.formats.motion.trajectory_writer import WrittenTrajectory
     from clearance.run import Run
     from clearance.world.case import Case
 

@@ -16,7 +16,7 @@ from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
 
 if TYPE_CHECKING:
-    from clearance.load.new_case.files import NewCase
+    from clearance.case.new_case.files import NewCase
 
 _MOST_NOTES = 8
 
@@ -137,8 +137,8 @@ def new(
     each, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
     that of the check.
     """
-    from clearance.load.new_case.files import new_case
-    from clearance.load.new_case.robot import NewCaseRequest
+    from clearance.case.new_case.files import new_case
+    from clearance.case.new_case.robot import NewCaseRequest
 
     keys = {
         "urdf": robot,
@@ -199,10 +199,10 @@ def _proposing(made: NewCase) -> NewCase:
 
 def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
+    from clearance.case.new_case.files import CASE, TRAJECTORY
+    from clearance.case.new_case.scene import SCENE
     from clearance.cli.written_files import write_files
     from clearance.errors import Unwritable
-    from clearance.load.new_case.files import CASE, TRAJECTORY
-    from clearance.load.new_case.scene import SCENE
 
     if out_dir.exists() and not out_dir.is_dir():
         raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")

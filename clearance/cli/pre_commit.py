@@ -29,8 +29,8 @@ def pre_commit(files: tuple[Path, ...]) -> int:
     Says what is broken and nothing else. Exit code: the greatest of `clearance check --need
     limit` on each.
     """
+    from clearance.case.case_list import cases_in
     from clearance.errors import ClearanceError
-    from clearance.load.case.case_list import cases_in
 
     worst = ExitCode.CLEAR
     for file in files:

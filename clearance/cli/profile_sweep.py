@@ -49,10 +49,10 @@ def sweep(
     The motion between the samples is included, joints moving linearly, or on cubics where the
     trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
     """
+    from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices
     from clearance.cli.places import refuse_inputs_of_cases, require_file_place
     from clearance.cli.progress import shown_progress
-    from clearance.load.case.case_file import load_case
     from clearance.profiles.profile_file import require_suffix, write_profile
     from clearance.profiles.sweep import TOLERANCE, swept_profile
 

@@ -1,4 +1,4 @@
-"""Options of a recorded run: which file, whose, its clock. Not for: reading it (`load.case.recorded_run`)."""
+"""Options of a recorded run: which file, whose, its clock. Not for: reading it (`case.recorded_run`)."""
 
 from __future__ import annotations
 
@@ -89,6 +89,6 @@ def with_recording(
     """
     if path is None:
         return case
-    from clearance.load.case.recorded_run import with_recorded
+    from clearance.case.recorded_run import with_recorded
 
     return with_recorded(case, path, offset or 0.0, robot, gaps, columns)

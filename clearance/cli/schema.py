@@ -14,6 +14,6 @@ def schema() -> None:
     """
     import json
 
-    from clearance.load.schema.json_schema import case_schema
+    from clearance.formats.schema.json_schema import case_schema
 
     click.echo(json.dumps(case_schema(), indent=2))

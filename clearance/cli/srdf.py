@@ -67,7 +67,7 @@ def audit(
     all pairs excused as Never are proven apart, 1 one of them is not, 2 bad input.
     """
     from clearance.cli.progress import shown_progress
-    from clearance.load.robot.srdf import load_srdf
+    from clearance.formats.robot.srdf import load_srdf
     from clearance.report.output import json_text
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
     from clearance.simulate.answers.audit.srdf import audit as audited
@@ -134,7 +134,7 @@ def _robot(
     xacro: bool,
     xacro_args: dict[str, str],
 ) -> Robot:
-    from clearance.load.robot.formats import load_robot
+    from clearance.formats.robot.formats import load_robot
 
     return load_robot(
         urdf,

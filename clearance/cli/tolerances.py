@@ -1,4 +1,4 @@
-"""Options of a case's tolerances. Not for: reading them (`load.tolerance.tolerance_file`)."""
+"""Options of a case's tolerances. Not for: reading them (`case.tolerance.tolerance_file`)."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def with_tolerances(case: Case, path: Path | None) -> Case:
     """
     if path is None:
         return case
-    from clearance.load.tolerance.tolerance_file import with_tolerance
+    from clearance.case.tolerance.tolerance_file import with_tolerance
 
     return with_tolerance(case, path)
 

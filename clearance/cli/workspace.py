@@ -56,9 +56,9 @@ def workspace(
     What a robot carries belongs to it; what it shares with a robot that it stands on is not
     counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
+    from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices
     from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
-    from clearance.load.case.case_file import load_case
     from clearance.report.workspace import OWN
     from clearance.simulate.answers.workspace.workspace import WITHIN, shared_workspace
 

@@ -122,7 +122,7 @@ def gain(
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle, UnknownLink: with the nearest name.
     """
-    from clearance.load.case.case_file import load_case
+    from clearance.case.case_file import load_case
 
     request = request_of(kind, options)
     if isinstance(case, Case):

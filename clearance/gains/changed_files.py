@@ -13,22 +13,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from clearance.case.case_document import ScenePlace, read_schema, scene_request
+from clearance.case.case_file import read_case
+from clearance.case.rewritten_case import Node, rewritten_case, robot_node, robots_of
 from clearance.errors import BadInput
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.motion.pose_formats import read_samples
+from clearance.formats.motion.pose_table_request import PoseRequest
+from clearance.formats.motion.pose_writer import written_poses
+from clearance.formats.motion.trajectory_writer import written
+from clearance.formats.scene.request import SceneRequest
+from clearance.formats.scene.writer import rows_of, written_scene
+from clearance.formats.schema import case as schema
+from clearance.formats.schema.obstacle import Obstacle as ObstacleRow
 from clearance.gains.answer import Gain
 from clearance.gains.shift import first_pose
 from clearance.gains.turn import ARM, Pivot
-from clearance.load.case.case_document import ScenePlace, read_schema, scene_request
-from clearance.load.case.case_file import read_case
-from clearance.load.case.rewritten_case import Node, rewritten_case, robot_node, robots_of
-from clearance.load.files.input_files import InputFiles, resolved
-from clearance.load.motion.pose_formats import read_samples
-from clearance.load.motion.pose_table_request import PoseRequest
-from clearance.load.motion.pose_writer import written_poses
-from clearance.load.motion.trajectory_writer import written
-from clearance.load.scene.request import SceneRequest
-from clearance.load.scene.writer import rows_of, written_scene
-from clearance.load.schema import case as schema
-from clearance.load.schema.obstacle import Obstacle as ObstacleRow
 from clearance.run import Question, Run, answer
 from clearance.world.case import index_of_robot
 from clearance.world.notice import Severity
@@ -231,7 +231,7 @@ class _Files:
 
     @property
     def _scene_request(self) -> SceneRequest:
-        from clearance.load.text.yaml_file import parse_yaml
+        from clearance.formats.text.yaml_file import parse_yaml
 
         raw = parse_yaml(self.read.read(self.file), self.file.name)
         assert isinstance(raw, dict)

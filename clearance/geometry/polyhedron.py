@@ -3,7 +3,7 @@
 Faces are stored flat (`face_starts`, `face_vertices`), counter-clockwise as seen from outside where the
 surface is consistently oriented. A `Polyhedron` that exists is valid: finite, with at least one face, every
 index in range, every face flat and convex. Everything else is computed on first use, and then cached. Not
-for: reading files (room `load`) and making shapes (`shapes`).
+for: reading files (room `formats`) and making shapes (`shapes`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What pytest collects from `*.clearance.yaml`: rules and verdict of the case in it, or of each that it lists.
 
 Only names are read here; a case is measured when the first of its tests runs, once for all of them in a process.
-Not for: options and fixture (the package itself), nor lists of cases (`load.case.case_list`).
+Not for: options and fixture (the package itself), nor lists of cases (`case.case_list`).
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from clearance.case.case_list import CASES, cases_in, mapping_in
 from clearance.errors import ClearanceError, shown
-from clearance.load.case.case_list import CASES, cases_in, mapping_in
 
 if TYPE_CHECKING:
     from clearance.findings.finding import Finding

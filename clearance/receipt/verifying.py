@@ -171,9 +171,9 @@ def _cases(
     waivers: Paths,
 ) -> tuple[Case, Case]:
     """The case as it is in its own file, and with the files that were given beside it."""
-    from clearance.load.case.case_file import load_case
-    from clearance.load.case.waiver_file import with_waivers
-    from clearance.load.tolerance.tolerance_file import with_tolerance
+    from clearance.case.case_file import load_case
+    from clearance.case.tolerance.tolerance_file import with_tolerance
+    from clearance.case.waiver_file import with_waivers
 
     head = receipt.head
     if isinstance(case, Case):

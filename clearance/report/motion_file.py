@@ -1,5 +1,5 @@
 """The motion of the robots that was measured, as a file: a JointTrajectory message in YAML or JSON, one document a
-robot, or a CSV table. Not for: how it is written (`load.motion.trajectory_writer`).
+robot, or a CSV table. Not for: how it is written (`formats.motion.trajectory_writer`).
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import PurePath
 
 from clearance.errors import BadInput, at
-from clearance.load.motion.trajectory_writer import WRITERS, WrittenTrajectory, written
+from clearance.formats.motion.trajectory_writer import WRITERS, WrittenTrajectory, written
 from clearance.world.case import PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.notice import NOT_MEASURED

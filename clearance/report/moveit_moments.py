@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.load.message.times import split_time
+from clearance.formats.message.times import split_time
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status

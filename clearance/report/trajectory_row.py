@@ -1,6 +1,6 @@
 """Where in which trajectory file a finding is least: its file, and its line where that is a table.
 
-Not for: reading trajectories (`load`).
+Not for: reading trajectories (`formats`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.findings.finding import Finding
-from clearance.load.motion.trajectory_lines import line_of_sample
+from clearance.formats.motion.trajectory_lines import line_of_sample
 from clearance.record.record import Record
 from clearance.world.case import PlacedRobot
 

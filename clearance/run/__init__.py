@@ -66,7 +66,7 @@ def check(
     _require_options(options)
     asked = limited(case if isinstance(case, Case) else _loaded(case), limits)
     if tolerance is not None:
-        from clearance.load.tolerance.tolerance_file import with_tolerance
+        from clearance.case.tolerance.tolerance_file import with_tolerance
 
         asked = with_tolerance(asked, tolerance)
     given: dict[str, Any] = {**options}
@@ -118,13 +118,13 @@ def _with_recorded(
             f"motion {motion!r} and {'no' if path is None else 'a'} recording",
             valid="motion 'recorded' and recorded: the file",
         )
-    from clearance.load.case.recorded_run import with_recorded
+    from clearance.case.recorded_run import with_recorded
 
     return with_recorded(case, Path(path), offset, gaps=gaps, columns=columns)
 
 
 def _loaded(path: str | PathLike[str]) -> Case:
-    from clearance.load.case.case_file import load_case
+    from clearance.case.case_file import load_case
 
     if not isinstance(path, str | PathLike):
         raise BadInput(

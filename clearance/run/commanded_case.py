@@ -1,4 +1,4 @@
-"""A case as it was commanded, where its robots have done something else. Not for: reading recordings (`load`)."""
+"""A case as it was commanded, where its robots have done something else. Not for: reading those (`formats`)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Errors of a real machine, as plain data: patterns and presets are resolved.
 
 Each number is the greatest magnitude of one error, in any direction, at once with all others. Not for: reading it
-(`load`), nor the remaining clearance (`clearance.budget`).
+(`formats`), nor the remaining clearance (`clearance.budget`).
 """
 
 from __future__ import annotations

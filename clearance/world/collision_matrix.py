@@ -1,6 +1,6 @@
 """Which pairs of one robot's links are excused from self-clearance, and why: the allowed collision matrix.
 
-Not for: reading it from a file (`load.robot.srdf`), and whether an excuse is right (`simulate.answers.audit`).
+Not for: reading it from a file (`formats.robot.srdf`), and whether an excuse is right (`simulate.answers.audit`).
 """
 
 from __future__ import annotations

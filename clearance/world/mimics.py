@@ -1,6 +1,6 @@
 """Joints that follow others, to the joint that moves them all.
 
-Not for: what a file may say (`load.robot.urdf.joints`).
+Not for: what a file may say (`formats.robot.urdf.joints`).
 """
 
 from __future__ import annotations

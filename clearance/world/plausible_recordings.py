@@ -1,6 +1,6 @@
 """Notices on holes in recordings: suspect until the case says how joints move there; named where not measured.
 
-Not for: finding them (`load.motion.recording_gaps`).
+Not for: finding them (`formats.motion.recording_gaps`).
 """
 
 from __future__ import annotations

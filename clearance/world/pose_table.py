@@ -1,4 +1,4 @@
-"""How an obstacle moves: its pose over time. Not for: joints (`trajectory`), and files (room `load`)."""
+"""How an obstacle moves: its pose over time. Not for: joints (`trajectory`), and files (room `formats`)."""
 
 from __future__ import annotations
 

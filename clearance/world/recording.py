@@ -1,4 +1,4 @@
-"""A robot's measured motion, compared with the commanded one. Not for: reading one (`load.case.recorded_run`)."""
+"""A robot's measured motion, compared with the commanded one. Not for: reading one (`case.recorded_run`)."""
 
 from __future__ import annotations
 

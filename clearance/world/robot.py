@@ -1,4 +1,4 @@
-"""A robot as its kinematic tree: what moves with what. Not for: URDF (room `load`), poses (`kinematics`)."""
+"""A robot as its kinematic tree: what moves with what. Not for: URDF (room `formats`), poses (`kinematics`)."""
 
 from __future__ import annotations
 

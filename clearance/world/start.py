@@ -1,4 +1,4 @@
-"""Adds a start at 0 s to a trajectory. Not for: reading the start from a file (`load`)."""
+"""Adds a start at 0 s to a trajectory. Not for: reading the start from a file (`formats`)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Waivers: who lets which two bodies come nearer than a rule says, how near, why and until when.
 
-Not for: whether a run needs one and meets it (`findings.judgement`), nor their files (`load.case.waiver_file`).
+Not for: whether a run needs one and meets it (`findings.judgement`), nor their files (`case.waiver_file`).
 """
 
 from __future__ import annotations

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 import clearance as cl
-from clearance.load.robot.srdf import load_srdf
-from clearance.load.robot.urdf.robot import load_urdf
+from clearance.formats.robot.srdf import load_srdf
+from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources

@@ -39,7 +39,7 @@ from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
 from clearance.batch.store import FILE, open_store
 from clearance.batch.workers import WorkerEngine, local_workers
-from clearance.load.case.case_file import load_case
+from clearance.case.case_file import load_case
 
 COLUMNS = ("what", "value", "unit", "target")
 CHUNK = 20

@@ -26,10 +26,10 @@ from rich.console import Console  # noqa: E402
 from rich.table import Table  # noqa: E402
 
 from clearance.errors import ClearanceError  # noqa: E402
-from clearance.load.files.input_files import InputFiles  # noqa: E402
-from clearance.load.mesh_store import MeshStore  # noqa: E402
-from clearance.load.robot.formats import read_robot  # noqa: E402
-from clearance.load.robot.request import RobotRequest  # noqa: E402
+from clearance.formats.files.input_files import InputFiles  # noqa: E402
+from clearance.formats.mesh_store import MeshStore  # noqa: E402
+from clearance.formats.robot.formats import read_robot  # noqa: E402
+from clearance.formats.robot.request import RobotRequest  # noqa: E402
 from clearance.world.robot import Joint, Robot  # noqa: E402
 
 BROUGHT = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"

@@ -9,7 +9,7 @@ import functools
 import tempfile
 from pathlib import Path
 
-from tests.load.making_bags import planned, state, write_bag
+from tests.formats.making_bags import planned, state, write_bag
 
 
 @functools.cache

@@ -115,7 +115,7 @@ def glb() -> bytes:
 
 
 def step() -> bytes:
-    from tests.load.making_step import cylinder_step
+    from tests.formats.making_step import cylinder_step
 
     return cylinder_step().encode()
 

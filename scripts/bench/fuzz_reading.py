@@ -17,13 +17,13 @@ Read = Callable[[bytes, Path, str], object]
 
 
 def mesh(data: bytes, folder: Path, name: str) -> object:
-    from clearance.load.mesh.mesh_file import mesh_from_bytes
+    from clearance.formats.mesh.mesh_file import mesh_from_bytes
 
     return mesh_from_bytes(data, name).shape.vertices
 
 
 def points(data: bytes, folder: Path, name: str) -> object:
-    from clearance.load.cloud.formats import cloud_from_bytes
+    from clearance.formats.cloud.formats import cloud_from_bytes
 
     return cloud_from_bytes(data, name, 0.01).shape.vertices
 
@@ -42,7 +42,7 @@ def by_path(read_path: Callable[[Path], object]) -> Read:
 
 def case(data: bytes, folder: Path, name: str) -> object:
     """A case with its files, of which one is damaged."""
-    from clearance.load.case.case_file import load_case
+    from clearance.case.case_file import load_case
 
     valid = {"case.yaml": CASE, "arm.urdf": URDF, "path.csv": PATH, "m.stl": binary_stl()}
     for other, content in (valid | {name: data}).items():
@@ -52,10 +52,10 @@ def case(data: bytes, folder: Path, name: str) -> object:
 
 def robot_beside(data: bytes, folder: Path, name: str) -> object:
     """A robot with all the files that may stand beside it, of which one is damaged."""
-    from clearance.load.case.robots import RobotReader
-    from clearance.load.files.input_files import InputFiles
-    from clearance.load.mesh_store import MeshStore
-    from clearance.load.schema import case as schema
+    from clearance.case.robots import RobotReader
+    from clearance.formats.files.input_files import InputFiles
+    from clearance.formats.mesh_store import MeshStore
+    from clearance.formats.schema import case as schema
 
     valid = {"arm.urdf": BOXES, "m.stl": binary_stl(), "arm.srdf": SRDF}
     valid |= {"limits.yaml": LIMITS, "control.yaml": CONTROL}
@@ -67,7 +67,7 @@ def robot_beside(data: bytes, folder: Path, name: str) -> object:
 
 
 def robot(data: bytes, folder: Path, name: str) -> object:
-    from clearance.load.robot.formats import load_robot
+    from clearance.formats.robot.formats import load_robot
 
     (folder / "m.stl").write_bytes(binary_stl())
     (folder / name).write_bytes(data)
@@ -76,13 +76,13 @@ def robot(data: bytes, folder: Path, name: str) -> object:
 
 def scene(data: bytes, folder: Path, name: str) -> object:
     """A scene as a case would have it: its content, then the solids that it names."""
-    from clearance.load.files.input_files import InputFiles
-    from clearance.load.mesh_store import MeshStore
-    from clearance.load.scene.formats import read_scene
-    from clearance.load.scene.obstacles import make_obstacles
-    from clearance.load.scene.request import SceneRequest
-    from clearance.load.schema.errors import validated
-    from clearance.load.schema.obstacle import Scene
+    from clearance.formats.files.input_files import InputFiles
+    from clearance.formats.mesh_store import MeshStore
+    from clearance.formats.scene.formats import read_scene
+    from clearance.formats.scene.obstacles import make_obstacles
+    from clearance.formats.scene.request import SceneRequest
+    from clearance.formats.schema.errors import validated
+    from clearance.formats.schema.obstacle import Scene
 
     (folder / "m.stl").write_bytes(binary_stl())
     (folder / name).write_bytes(data)
@@ -93,14 +93,14 @@ def scene(data: bytes, folder: Path, name: str) -> object:
 
 
 def trajectory(data: bytes, folder: Path, name: str) -> object:
-    from clearance.load.motion.trajectory_file import parse_trajectory
+    from clearance.formats.motion.trajectory_file import parse_trajectory
 
     return parse_trajectory(data, name)
 
 
 def bag(path: Path) -> object:
-    from clearance.load.motion.trajectory_request import Choice
-    from clearance.load.timed_files import load_trajectory
+    from clearance.formats.motion.trajectory_request import Choice
+    from clearance.formats.timed_files import load_trajectory
 
     return load_trajectory(path, Choice())
 
@@ -114,8 +114,8 @@ def bag_folder(path: Path) -> object:
 
 
 def poses(data: bytes, folder: Path, name: str) -> object:
-    from clearance.load.motion.pose_formats import read_poses
-    from clearance.load.motion.pose_table_request import PoseRequest
+    from clearance.formats.motion.pose_formats import read_poses
+    from clearance.formats.motion.pose_table_request import PoseRequest
 
     return read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
 
@@ -123,8 +123,8 @@ def poses(data: bytes, folder: Path, name: str) -> object:
 def xacro(path: Path) -> object:
     """What is evaluated in the process that is started for it, and then read as URDF."""
     from clearance.errors import BadSyntax
-    from clearance.load.robot.urdf.elements import parse_document
-    from clearance.load.robot.urdf.xacro_process import ChildWatch, evaluated
+    from clearance.formats.robot.urdf.elements import parse_document
+    from clearance.formats.robot.urdf.xacro_process import ChildWatch, evaluated
 
     with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
         made = evaluated(path, {}, ChildWatch())
@@ -159,13 +159,13 @@ def sketch(path: Path) -> object:
 
 
 def waivers(path: Path) -> object:
-    from clearance.load.case.waiver_file import load_waivers
+    from clearance.case.waiver_file import load_waivers
 
     return load_waivers(path)
 
 
 def manifest(path: Path) -> object:
-    from clearance.load.schema.manifest import load_manifest
+    from clearance.formats.schema.manifest import load_manifest
 
     return load_manifest(path)
 
@@ -179,7 +179,7 @@ def batch_items(path: Path) -> object:
 
 
 def case_list(path: Path) -> object:
-    from clearance.load.case.case_list import cases_in
+    from clearance.case.case_list import cases_in
 
     (path.parent / "case.yaml").write_bytes(CASE)
     return cases_in(path)

@@ -1,6 +1,6 @@
 """One row for each kind of file that is read: a small valid file, what reads it, and how its structure is damaged.
 
-A format that is new is a row here; `tests/load/test_damaged_files.py` holds the suffixes in the tables of readers
+A new format is a row here; `tests/formats/test_damaged_files.py` holds the suffixes in the tables of readers
 against these rows. Not for: damaging (`fuzz_readers`, `fuzz_trees`, `fuzz_markup`, `fuzz_lines`, `fuzz_bytes`).
 """
 
@@ -20,9 +20,9 @@ from scripts.bench.fuzz_bytes import Damage, after_header, glb_damaged, parts_da
 from scripts.bench.fuzz_lines import lines_damaged, table_damaged
 from scripts.bench.fuzz_markup import xml_damaged
 from scripts.bench.fuzz_trees import json_damaged, yaml_damaged
-from tests.load.making_clouds import pcd, ply, table
-from tests.load.making_moveit import FIRST
-from tests.load.making_octree import octree
+from tests.formats.making_clouds import pcd, ply, table
+from tests.formats.making_moveit import FIRST
+from tests.formats.making_octree import octree
 
 CELLS = {(0, 0, 0): True, (1, 0, 0): True, (0, -1, 2): False, (-9, 4, 4): True}
 SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
@@ -68,7 +68,7 @@ def readers() -> dict[str, Reader]:
 
 def _meshes() -> dict[str, Reader]:
     pieces, words, text = parts_damaged, lines_damaged, after_header(b"end_header")
-    read, where = reading.mesh, "load.mesh.formats"
+    read, where = reading.mesh, "formats.mesh.formats"
     return {
         "STL binary": Reader("m.stl", shapes.binary_stl(), read, pieces, where),
         "STL text": Reader("m.stl", shapes.text_stl(), read, words, where),
@@ -87,7 +87,7 @@ def _meshes() -> dict[str, Reader]:
 
 
 def _scans() -> dict[str, Reader]:
-    read, where, body = reading.points, "load.cloud.formats", after_header(b"DATA")
+    read, where, body = reading.points, "formats.cloud.formats", after_header(b"DATA")
     in_mm, plain = table(POINTS, ",", "x [mm],y [mm],z [mm]"), table(POINTS, " ", "")
     return {
         "PCD ascii": Reader("s.pcd", pcd(POINTS, "ascii"), read, lines_damaged, where),
@@ -111,13 +111,13 @@ def _drawings() -> dict[str, Reader]:
 
 
 def _robots() -> dict[str, Reader]:
-    where, beside = "load.robot.formats", reading.robot_beside
+    where, beside = "formats.robot.formats", reading.robot_beside
     evaluated = reading.by_path(reading.xacro)
     return {
         "URDF": Reader("arm.urdf", texts.URDF, reading.robot, xml_damaged, where, (".xml",)),
         "MJCF": Reader("arm.xml", texts.MJCF, reading.robot, xml_damaged, where, (".mjcf",)),
         "xacro": Reader(
-            "arm.xacro", texts.XACRO, evaluated, xml_damaged, "load.robot.robot_element"
+            "arm.xacro", texts.XACRO, evaluated, xml_damaged, "formats.robot.robot_element"
         ),
         "SRDF": Reader("arm.srdf", texts.SRDF, beside, xml_damaged),
         "joint limits": Reader("limits.yaml", texts.LIMITS, beside, yaml_damaged),
@@ -126,7 +126,7 @@ def _robots() -> dict[str, Reader]:
 
 
 def _scenes() -> dict[str, Reader]:
-    read, where = reading.scene, "load.scene.formats"
+    read, where = reading.scene, "formats.scene.formats"
     return {
         "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where),
         "PlanningScene": Reader("cell.yaml", texts.PLANNING_SCENE, read, yaml_damaged, where),
@@ -141,8 +141,8 @@ def _scenes() -> dict[str, Reader]:
 
 
 def _motions() -> dict[str, Reader]:
-    read, where = reading.trajectory, "load.motion.trajectory_file"
-    poses, tables = reading.poses, "load.motion.pose_formats"
+    read, where = reading.trajectory, "formats.motion.trajectory_file"
+    poses, tables = reading.poses, "formats.motion.pose_formats"
     yml = (".yml",)
     return {
         "trajectory": Reader("path.csv", texts.PATH, read, table_damaged, where),
@@ -156,7 +156,7 @@ def _motions() -> dict[str, Reader]:
 
 
 def _bags() -> dict[str, Reader]:
-    read, where = reading.by_path(reading.bag), "load.motion.rosbag_file"
+    read, where = reading.by_path(reading.bag), "formats.motion.rosbag_file"
     folder = reading.by_path(reading.bag_folder)
     return {
         "bag bag": Reader("run.bag", bag("bag"), read, parts_damaged, where),

@@ -19,9 +19,9 @@ from inputs import ROOT
 from rows import write_csv
 
 import clearance as cl
+from clearance.case.rewritten_case import Node, rewritten_case
 from clearance.gains.answer import Gain, Request
 from clearance.gains.changed_files import case_files
-from clearance.load.case.rewritten_case import Node, rewritten_case
 from clearance.run import Question, answer
 
 INDEX = "index.csv"

@@ -25,8 +25,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))  # so that the script runs from the root without an installation
 
 from clearance.errors import NothingToMeasure  # noqa: E402
-from clearance.load.motion.trajectory_writer import written  # noqa: E402
-from clearance.load.robot.urdf.robot import load_urdf  # noqa: E402
+from clearance.formats.motion.trajectory_writer import written  # noqa: E402
+from clearance.formats.robot.urdf.robot import load_urdf  # noqa: E402
 from clearance.world.joint_positions import turns  # noqa: E402
 from clearance.world.robot import Joint  # noqa: E402
 from clearance.world.trajectory import Trajectory  # noqa: E402

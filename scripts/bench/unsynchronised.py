@@ -25,10 +25,10 @@ from rich.console import Console
 from rich.table import Table
 
 import clearance as cl
-from clearance.load.files.input_files import InputFiles
-from clearance.load.mesh_store import MeshStore
-from clearance.load.robot.formats import read_robot
-from clearance.load.robot.request import RobotRequest
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.formats import read_robot
+from clearance.formats.robot.request import RobotRequest
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.clocks.unsynchronised import (
     UnsynchronisedAnswers,

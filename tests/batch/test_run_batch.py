@@ -14,8 +14,8 @@ from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.measuring import Task, measure
-from clearance.load.case.case_file import load_cell, with_trajectory_file
-from clearance.load.schema.pose import TrajectoryFile
+from clearance.case.case_file import load_cell, with_trajectory_file
+from clearance.formats.schema.pose import TrajectoryFile
 from clearance.run import Question, answer
 from tests.batch.batches import (
     CELL,

@@ -8,8 +8,8 @@ import pytest
 from clearance.batch.listed import read_list
 from clearance.batch.manifest import Changes, items_of
 from clearance.batch.store import open_store
+from clearance.case.waiver_file import load_waivers
 from clearance.cli import run
-from clearance.load.case.waiver_file import load_waivers
 from tests.batch.batches import answer_bytes, write_cell
 from tests.report.junit_schema import valid_suite
 

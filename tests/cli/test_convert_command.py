@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
-from clearance.load.motion.trajectory_file import parse_trajectory
-from clearance.load.motion.trajectory_writer import WRITERS, written
+from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.motion.trajectory_writer import WRITERS, written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
-from tests.load.making_case import TWO_JOINTS, changed, load_small
-from tests.load.making_messages import MESSAGE, ROS2, dumped
+from tests.formats.making_case import TWO_JOINTS, changed, load_small
+from tests.formats.making_messages import MESSAGE, ROS2, dumped
 
 TABLE = (
     "time,shoulder,lift,shoulder/velocity,lift/velocity\n"

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 
 from clearance import check
 from clearance.cli import run
-from clearance.load.motion.pose_formats import read_samples
-from clearance.load.motion.pose_table_request import PoseRequest, PoseSamples
-from clearance.load.motion.pose_writer import SUFFIXES, written_poses
+from clearance.formats.motion.pose_formats import read_samples
+from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.formats.motion.pose_writer import SUFFIXES, written_poses
 from tests.examples import examples
-from tests.load.making_cell import load_cell
-from tests.load.motion.test_pose_formats import STAMPED, pose
+from tests.formats.making_cell import load_cell
+from tests.formats.motion.test_pose_formats import STAMPED, pose
 
 TABLE = (
     "time,x,y,z,qx,qy,qz,qw\n"

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from clearance import check
+from clearance.case.case_file import load_case
 from clearance.cli import run
-from clearance.load.case.case_file import load_case
 from clearance.world.notice import Severity
-from tests.load.making import CASE, cube_stl, write_case
-from tests.load.making_case import TWO_JOINTS
-from tests.load.making_mjcf import mjcf, tetrahedron_stl
-from tests.load.making_moveit import FIRST, LISTS, MESSAGE, SECOND
-from tests.load.making_octree import data_of, octree
-from tests.load.making_sdf import collision, link, model, pose, sdf, world
+from tests.formats.making import CASE, cube_stl, write_case
+from tests.formats.making_case import TWO_JOINTS
+from tests.formats.making_mjcf import mjcf, tetrahedron_stl
+from tests.formats.making_moveit import FIRST, LISTS, MESSAGE, SECOND
+from tests.formats.making_octree import data_of, octree
+from tests.formats.making_sdf import collision, link, model, pose, sdf, world
 
 MESH = "<mesh><uri>cube.stl</uri><scale>0.1 0.1 0.1</scale></mesh>"
 SDF = sdf(world(model(pose("2 0 0 0.1 0.2 0.3"), link(collision(), collision(MESH, name="d")))))

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from clearance.load.files.input_files import InputFiles
-from clearance.load.motion.trajectory_file import parse_trajectory, read_trajectory
-from clearance.load.motion.trajectory_request import TrajectoryRequest
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.motion.trajectory_file import parse_trajectory, read_trajectory
+from clearance.formats.motion.trajectory_request import TrajectoryRequest
 from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
 
 TIMES = 10
@@ -21,12 +21,12 @@ TIMES = 10
 LEAVING = """
 import json, os, sys
 import clearance.cli.check, clearance.cli.commands, clearance.cli.places
-import clearance.compile.calls, clearance.load.case.case_file
-import clearance.load.message.times, clearance.load.robot.urdf.robot
+import clearance.compile.calls, clearance.case.case_file
+import clearance.formats.message.times, clearance.formats.robot.urdf.robot
 import clearance.query.pair_query, clearance.report.folder, clearance.report.output, clearance.run
 import encodings.utf_8_sig, lxml.etree, markupsafe, pyarrow.csv, ruamel.yaml
 from clearance import cli
-from clearance.load.case import case_file
+from clearance.case import case_file
 ends = {}
 for name in sys.argv[2:]:
     found = set()

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from clearance import check
+from clearance.case.case_file import load_case
 from clearance.cli import run
-from clearance.load.case.case_file import load_case
 from tests.cli.test_check_command import CASE, PATH, URDF, files
 
 VELOCITIES = "time,rail,rail/velocity\n0,0,0.1\n0.3333,0.30000000000000004,1e-7\n2,0.7,0\n"
@@ -131,7 +131,7 @@ def test_a_simulated_motion_is_written_as_it_was(folder):
         run(["check", "case.yaml", "--motion", "simulated", "--trajectory", "back.yaml", "--quiet"])
         == 0
     )
-    from clearance.load.motion.trajectory_file import parse_trajectory
+    from clearance.formats.motion.trajectory_file import parse_trajectory
 
     simulated = check(load_case("case.yaml"), motion="simulated").record.motions[0]
     back = parse_trajectory(Path("back.yaml").read_bytes(), "back.yaml")

@@ -11,15 +11,15 @@ from ruamel.yaml import YAML
 
 from clearance import load_case
 from clearance.cli import run
-from clearance.load.files.written_paths import path_from
-from clearance.load.text.yaml_file import parse_yaml
-from clearance.load.text.yaml_text import flow
-from tests.load.making import CASE, CUBE, PATH, cube_stl
-from tests.load.making_case import TWO_JOINTS
-from tests.load.making_messages import ROS2
-from tests.load.making_moveit import FIRST, MESSAGE
-from tests.load.making_octree import data_of, octree
-from tests.load.making_sdf import collision, link, model, sdf, world
+from clearance.formats.files.written_paths import path_from
+from clearance.formats.text.yaml_file import parse_yaml
+from clearance.formats.text.yaml_text import flow
+from tests.formats.making import CASE, CUBE, PATH, cube_stl
+from tests.formats.making_case import TWO_JOINTS
+from tests.formats.making_messages import ROS2
+from tests.formats.making_moveit import FIRST, MESSAGE
+from tests.formats.making_octree import data_of, octree
+from tests.formats.making_sdf import collision, link, model, sdf, world
 
 ARM = TWO_JOINTS.replace(
     '<link name="tip"/>',
@@ -357,7 +357,7 @@ def test_what_is_written_is_read_back(value):
 def test_what_no_table_says_of_a_motion_stays_in_a_file_that_does(tmp_path):
     """A recording with a hole, and points with accelerations."""
     pytest.importorskip("rosbags", reason="bags are made by rosbags")
-    from tests.load.making_bags import state, write_bag
+    from tests.formats.making_bags import state, write_bag
 
     times = [i / 50 for i in range(201) if i <= 50 or i >= 150]
     bag = write_bag(

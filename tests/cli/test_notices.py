@@ -3,7 +3,7 @@
 import pytest
 
 from clearance.cli import run
-from tests.load.making import CASE, write_case
+from tests.formats.making import CASE, write_case
 
 
 @pytest.fixture

@@ -11,10 +11,10 @@ from ruamel.yaml import YAML
 
 from clearance.cli import run
 from clearance.errors import BadInput
-from clearance.load.schema import case as schema
-from clearance.load.schema.errors import validated
-from tests.load.making import CASE
-from tests.load.making_cell import CELL
+from clearance.formats.schema import case as schema
+from clearance.formats.schema.errors import validated
+from tests.formats.making import CASE
+from tests.formats.making_cell import CELL
 
 ROOT = Path(__file__).resolve().parents[2]
 

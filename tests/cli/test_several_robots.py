@@ -6,11 +6,11 @@ import json
 
 import pytest
 
+from clearance.case import case_file
 from clearance.cli import run
 from clearance.geometry import boolean
-from clearance.load.case import case_file
 from tests import cells
-from tests.load.making_cell import write_cell
+from tests.formats.making_cell import write_cell
 
 
 @pytest.fixture

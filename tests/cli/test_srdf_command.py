@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
-from clearance.load.robot.srdf import load_srdf
-from clearance.load.robot.urdf.robot import load_urdf
+from clearance.formats.robot.srdf import load_srdf
+from clearance.formats.robot.urdf.robot import load_urdf
 
 ROOT = Path(__file__).parents[2]
 

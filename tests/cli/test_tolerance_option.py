@@ -7,7 +7,7 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.world.budget import Budget
-from tests.load.making import CASE, write_case
+from tests.formats.making import CASE, write_case
 
 TOO_MUCH = "base: {xyz: 0.4}\n"
 

@@ -75,7 +75,11 @@ def test_a_check_imports_no_compiler(tmp_path):
     case = tmp_path / "case" / "case.yaml"
     found = imported_by(check(case), tmp_path)
     assert {"numpy", "pydantic"} <= found
-    other = {"clearance.query.contact", "clearance.load.scene.sdf.scene", "clearance.report.page"}
+    other = {
+        "clearance.query.contact",
+        "clearance.formats.scene.sdf.scene",
+        "clearance.report.page",
+    }
     compilers = {"numba", "llvmlite"}
     assert not found & {*OPTIONAL, *other, *compilers, "scipy", "filelock"}
     found = imported_by(check(case, "--out", "report"), tmp_path)

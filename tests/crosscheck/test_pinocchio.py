@@ -17,8 +17,8 @@ import pytest
 
 import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
-from clearance.load.robot.srdf import load_srdf
-from clearance.load.robot.urdf.robot import load_urdf
+from clearance.formats.robot.srdf import load_srdf
+from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources

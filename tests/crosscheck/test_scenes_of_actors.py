@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.load.robot.srdf import load_srdf
-from clearance.load.robot.urdf.robot import load_urdf
+from clearance.formats.robot.srdf import load_srdf
+from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.trajectory import Trajectory
 

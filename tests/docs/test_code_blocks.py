@@ -15,11 +15,11 @@ import click
 import pytest
 from ruamel.yaml import YAML
 
+from clearance.case.waiver_file import load_waivers
 from clearance.cli.commands import clearance
-from clearance.load.case.waiver_file import load_waivers
-from clearance.load.schema.case import Case
-from clearance.load.schema.manifest import Manifest
-from clearance.load.schema.tolerance import Tolerance
+from clearance.formats.schema.case import Case
+from clearance.formats.schema.manifest import Manifest
+from clearance.formats.schema.tolerance import Tolerance
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
 LANGUAGES = {"python", "bash", "console", "yaml", "csv", "dockerfile", "text"}

@@ -8,8 +8,8 @@ from datetime import date
 
 import pytest
 
+from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadInput
-from clearance.load.case.waiver_file import load_waivers
 from clearance.run import Question, Run, answer
 from clearance.simulate.measure import refine
 from clearance.world.waiver import Waiver

@@ -8,9 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 import clearance as cl
+from clearance.case.case_file import load_case
 from clearance.cli.commands import clearance as command
 from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
-from clearance.load.case.case_file import load_case
 from clearance.profiles.compare import as_data, compare
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, read_outline

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 import clearance as cl
+from clearance.case.case_list import cases_in
 from clearance.errors import BadInput
-from clearance.load.case.case_list import cases_in
 from clearance.pytest_plugin import assert_clear
 from clearance.simulate.measure import refine
 from clearance.world.notice import Notice, Severity

@@ -11,7 +11,7 @@ from clearance.record.record import Record
 from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from clearance.report.page import page_of
 from tests.findings.test_verdict import made
-from tests.load.making import CASE, write_case
+from tests.formats.making import CASE, write_case
 from tests.report.made import replay_of, run_of, summary_of, verdict_of
 
 

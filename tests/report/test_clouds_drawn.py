@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.load.mesh.mesh_file import mesh_from_bytes
+from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.report.still.glb import glb_of
 from clearance.report.still.picture import png_of
 from clearance.report.still.points import MOST, as_solids

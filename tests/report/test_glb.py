@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from clearance.load.mesh.mesh_file import mesh_from_bytes
+from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.report.still.glb import glb_of
 from clearance.report.still.scene import still_of
 from tests.report.made import replay_of

@@ -58,6 +58,6 @@ def test_without_tolerances_nothing_is_said_of_grasps():
 
 
 def test_the_json_of_a_case_file_knows_the_grasp():
-    from clearance.load.schema.json_schema import case_schema
+    from clearance.formats.schema.json_schema import case_schema
 
     assert "exact" in json.dumps(case_schema()["$defs"]["Carry"]["properties"]["grasp"])

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from clearance.case.case_file import load_case
 from clearance.errors import BadInput, MissingFile
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.formats import read_robot
+from clearance.formats.robot.request import RobotRequest
 from clearance.geometry.point_cloud import PointCloud
-from clearance.load.case.case_file import load_case
-from clearance.load.files.input_files import InputFiles
-from clearance.load.mesh_store import MeshStore
-from clearance.load.robot.formats import read_robot
-from clearance.load.robot.request import RobotRequest
 from clearance.simulate.physics.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.load.case.case_file import load_case
+from clearance.case.case_file import load_case
 from clearance.simulate.measure.checker import Checker
 from clearance.tolerance import CERTIFY_GAP, PATH_ERROR
 from clearance.world.cubic import positions_along

@@ -8,7 +8,7 @@ import pytest
 from clearance import check, load_case
 from clearance.report.summary import notes_of
 from clearance.simulate.answers.standing import standing_contacts, standing_hint
-from tests.load.making import CASE, write_case
+from tests.formats.making import CASE, write_case
 
 TABLES = CASE.replace(
     "trajectory:",

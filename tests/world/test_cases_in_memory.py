@@ -26,7 +26,7 @@ KUKA = "pybullet_data:kuka_iiwa/model.urdf"
 
 
 def kuka():
-    from clearance.load.files.input_files import resolved
+    from clearance.formats.files.input_files import resolved
 
     return cl.load_urdf(resolved(KUKA, "."))
 

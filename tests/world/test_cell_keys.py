@@ -8,7 +8,7 @@ import pytest
 from clearance.world.case import Limits
 from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.rules import Rule
-from tests.load.making_case import load_small
+from tests.formats.making_case import load_small
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from clearance.world.case import Clock
 from clearance.world.plausibility import notices_of
-from tests.load.making_cell import load_cell
+from tests.formats.making_cell import load_cell
 
 EPOCH = 1750851666.25
 PATH = "time,shoulder\n{0},0\n{1},0.5\n"

@@ -2,7 +2,7 @@
 
 Round shapes are faceted from outside: the true solid lies within the faceted one, and `excess` bounds by how
 much the faceted one is larger. A new shape is a file in this folder and a row here: case files, URDF files, the
-schema and the checks of units follow the table. Not for: shapes from files (room `load`).
+schema and the checks of units follow the table. Not for: shapes from files (room `formats`).
 """
 
 from clearance.geometry.shapes.box import box

@@ -1,6 +1,6 @@
 """A row of the table of shapes: a maker, and the names and valid values of its dimensions.
 
-Not for: the shapes themselves, nor how a file format writes them (room `load`).
+Not for: the shapes themselves, nor how a file format writes them (room `formats`).
 """
 
 from __future__ import annotations

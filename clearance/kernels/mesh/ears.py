@@ -3,7 +3,7 @@
 A corner that turns left is an ear if its triangle has no corner that does not turn left (Meisters, Polygons have
 ears, 1975). In a simple polygon, corners that turn left still do so after ears are cut. So the grid is made once
 and only loses corners. All triangles turn left or are flat, and their boundaries add up to the polygon's: they
-cover a simple polygon exactly. Not for: which polygons need this (`load.mesh.polygon_cut`).
+cover a simple polygon exactly. Not for: which polygons need this (`formats.mesh.polygon_cut`).
 """
 
 from __future__ import annotations

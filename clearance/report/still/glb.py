@@ -2,7 +2,7 @@
 
 glTF holds positions as float32 (off by 6e-8 of a length: 0.06 µm in 1 m), and is y up: the root node turns z up to
 y up, and all below it is as in the world of the case. The witness points stand in the line's `extras` as they were
-measured. Not for: reading GLB (`load.mesh.gltf_file`).
+measured. Not for: reading GLB (`formats.mesh.gltf_file`).
 
 Source: Khronos, glTF 2.0, 3.4 to 3.9 and 4.4.
 """

@@ -1,0 +1,237 @@
+"""A robot's file, its motion and its scene, in whatever formats they are, to the files of a new case.
+
+Everything is read by the readers that a case's own keys use; what the new case says is loaded once more before it
+is handed over. Not for: writing the files, nor the text of the case (`text`).
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from clearance.case.case_file import read_case
+from clearance.case.new_case.named_motion import PERIOD, motion_between
+from clearance.case.new_case.robot import NewCaseRequest, NewRobot, new_robot
+from clearance.case.new_case.scene import NewScene, new_scene
+from clearance.case.new_case.text import TOUCHING, CaseText, text_of
+from clearance.errors import MissingKey, NothingToMeasure, at
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.files.written_paths import path_from
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.motion.trajectory_writer import written
+from clearance.formats.robot.srdf_states import NamedStates, names_of, states_known
+from clearance.formats.text.notes import counted
+from clearance.formats.text.yaml_text import flow
+from clearance.world.case import Case, Source
+from clearance.world.names import checked_name
+from clearance.world.notice import START, Severity, listed
+from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.plausible_recordings import notices_on_holes
+from clearance.world.plausible_wrap import notices_on_wrap
+from clearance.world.trajectory import Trajectory
+
+CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
+MESSAGE = "trajectory.yaml"
+"""What has accelerations, which no table has."""
+
+
+@dataclass(frozen=True)
+class NewCase:
+    """A new case.
+
+    Attributes:
+        files: content by name. case: what they say. sources: the files that were read.
+        taken, assumed: a line each. notes: on what is read anew with each check. lost: notes that are not, but
+            stand in the files as comments. text: what the case file says.
+    """
+
+    files: Mapping[str, bytes]
+    case: Case
+    sources: tuple[Source, ...]
+    taken: tuple[str, ...]
+    assumed: tuple[str, ...]
+    notes: tuple[str, ...]
+    lost: tuple[str, ...]
+    text: CaseText
+
+    def proposing(self, touching: Sequence[tuple[str, str]]) -> NewCase:
+        """The same with pairs that touch at every step as a comment in the case file, to be allowed by hand."""
+        if not touching:
+            return self
+        text = replace(self.text, touching=touching)
+        pairs = listed([" - ".join(pair) for pair in touching], 6)
+        lost = (
+            f"{TOUCHING}: {pairs}; where that is meant, {CASE} has the rows of allow in a comment"
+        )
+        files = {**self.files, CASE: text_of(text).encode()}
+        return replace(self, files=files, text=text, lost=(*self.lost, lost))
+
+
+def new_case(given: NewCaseRequest, folder: Path) -> NewCase:
+    """The files of a case in `folder`, which need not be there.
+
+    Raises:
+        BadInput: something that was given cannot be used. MissingKey: nothing moves. NothingToMeasure: nothing is
+        left to measure.
+    """
+    folder = Path(os.path.abspath(folder))
+    files = InputFiles(Path())
+    meshes = MeshStore(files)
+    robot = new_robot(given, meshes)
+    trajectory, source = _motion(given, robot, files)
+    with at("scene"):
+        moving = replace(robot.placed, trajectory=trajectory)
+        scene = new_scene(given, moving, meshes, folder)
+    motion = _Motion(
+        trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
+    )
+    text = _text(given, robot, scene, motion, folder, files)
+    contents = {CASE: text_of(text).encode(), **scene.contents}
+    name = text.trajectory["file"]
+    if name in (TRAJECTORY, MESSAGE):
+        contents[name] = written(trajectory, name).content
+    try:
+        case = _read_back(contents, folder)
+    except NothingToMeasure:
+        if scene.name is not None:
+            raise
+        raise NothingToMeasure(
+            "no two links are left to measure against each other, and nothing stands around the robot",
+            valid="--scene FILE",
+        ) from None
+    return NewCase(
+        contents,
+        case,
+        files.sources,
+        (*robot.taken, f"trajectory {motion.source}", *scene.taken),
+        (*robot.assumed(trajectory, scene.name is None), *_assumed_of_motion(given)),
+        tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
+        (*motion.notes, *scene.notes),
+        text,
+    )
+
+
+class _Motion(NamedTuple):
+    """What the robot does, where that is from, and what was noted of its file."""
+
+    trajectory: Trajectory
+    source: str
+    notes: Sequence[str]
+
+
+def _notes_of(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> list[str]:
+    """The notes on the trajectory's file, which begin with its name."""
+    if given.trajectory is None:
+        return []
+    begins = f"{files.shown(Path(given.trajectory['file']))}: "
+    return [note for note in robot.notes if note.startswith(begins)]
+
+
+def _motion(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> tuple[Trajectory, str]:
+    """What the robot does, and where that is from."""
+    if robot.placed.trajectory is not None and given.trajectory is not None:
+        topic = given.trajectory.get("topic")
+        shown = files.shown(Path(given.trajectory["file"]))
+        return robot.placed.trajectory, shown + (f", topic {topic}" if topic else "")
+    if not given.states:
+        raise MissingKey(
+            "nothing moves: no trajectory is given",
+            valid="--trajectory FILE (a CSV of two rows will do: time and the joints), "
+            "or --srdf FILE and --states home,ready",
+        )
+    with at("states"):
+        known = _states(given, robot, files)
+        if given.srdf is None and not known.states:
+            raise MissingKey(f"state {given.states[0]!r} is in no file", valid="--srdf FILE")
+        trajectory = motion_between(known, given.states, robot.placed.robot)
+    return trajectory, f"{known.shown}, states {', '.join(given.states)}"
+
+
+def _told(trajectory: Trajectory) -> str:
+    start, end = trajectory.times[[0, -1]].tolist()
+    n_joints = counted(len(trajectory.joint_names), "joint")
+    return (
+        f"{counted(len(trajectory.written.times), 'sample')} of {n_joints}, {start:g} to {end:g} s"
+    )
+
+
+def _assumed_of_motion(given: NewCaseRequest) -> list[str]:
+    if given.trajectory is not None:
+        return []
+    return [
+        f"from state to state all joints move straight, {PERIOD:g} s each; a planner would do otherwise"
+    ]
+
+
+def _text(
+    given: NewCaseRequest,
+    robot: NewRobot,
+    scene: NewScene,
+    motion: _Motion,
+    folder: Path,
+    files: InputFiles,
+) -> CaseText:
+    """What the case file says."""
+    named = (given.keys["urdf"], (given.trajectory or {}).get("file"), given.scene, given.srdf)
+    resting = robot.resting(motion.trajectory)
+    states = [] if given.rest or not resting else names_of(_states(given, robot, files).states)
+    return CaseText(
+        name=checked_name(folder.name) or "case",
+        made_from=[files.shown(resolved(one, Path())) for one in named if one is not None],
+        robot=robot.written(folder, scene.name is None)
+        | ({"padding": scene.padding} if scene.padding else {}),
+        link=robot.first_body,
+        resting=resting,
+        states=states,
+        scene=scene.name,
+        includes=scene.includes,
+        trajectory=_trajectory_keys(given, motion.trajectory, folder),
+        motion=motion.source,
+        motion_notes=motion.notes,
+        motion_keys=_open_keys(robot, motion.trajectory),
+        carry=scene.carry,
+        allow=scene.allow,
+        remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
+    )
+
+
+def _trajectory_keys(given: NewCaseRequest, trajectory: Trajectory, folder: Path) -> dict[str, Any]:
+    """The keys of the trajectory: a file of the case's own, or the one given if no other can say its holes, or
+    that it comes to its first sample from elsewhere.
+    """
+    if (trajectory.holes or trajectory.has_way_in) and given.trajectory is not None:
+        keys = dict(given.trajectory)
+        return {**keys, "file": path_from(folder, keys["file"])}
+    return {"file": TRAJECTORY if trajectory.points is None else MESSAGE}
+
+
+def _open_keys(robot: NewRobot, trajectory: Trajectory) -> list[tuple[str, str]]:
+    """Keys of the trajectory that would answer what is suspect about it, and what that is."""
+    moving = replace(robot.placed, trajectory=trajectory)
+    found = [("wrap: shortest", f"or as_written: {one.text}") for one in notices_on_wrap(moving)]
+    found += [
+        ("gaps: hold", f"or linear, or not_measured: {one.text}")
+        for one in notices_on_holes(moving)
+        if one.severity is Severity.SUSPECT
+    ]
+    start = flow(dict.fromkeys(trajectory.joint_names, 0.0))
+    goals = (one for one in notices_on_motion(moving) if one.kind == START)
+    return [*found, *((f"start_state: {start}", f"or elsewhere: {one.text}") for one in goals)]
+
+
+def _states(given: NewCaseRequest, robot: NewRobot, files: InputFiles) -> NamedStates:
+    """The states of the SRDF or of the robot's own file."""
+    srdf = None if given.srdf is None else resolved(given.srdf, Path())
+    placed = robot.placed
+    return states_known(srdf, placed.robot, Path(placed.urdf_path), files)
+
+
+def _read_back(contents: Mapping[str, bytes], folder: Path) -> Case:
+    """What the files say, though they are not there yet."""
+    files = InputFiles(folder)
+    for name, content in contents.items():
+        files.hold(folder / name, content)
+    return read_case(folder / CASE, files)

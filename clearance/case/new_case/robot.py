@@ -1,0 +1,213 @@
+"""The robot of a new case: read as a case reads it, with what has to be assumed of it.
+
+Not for: its motion and its scene (`files`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from clearance.case.robots import RobotReader
+from clearance.errors import NothingToMeasure
+from clearance.formats.files.input_files import resolved
+from clearance.formats.files.written_paths import path_from
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.schema import case as schema
+from clearance.formats.schema.errors import validated
+from clearance.formats.schema.pose import TrajectoryFile
+from clearance.formats.text.notes import counted
+from clearance.world.case import PlacedRobot
+from clearance.world.notice import listed
+from clearance.world.robot import Joint
+from clearance.world.trajectory import Trajectory
+
+_FILES = ("urdf", "srdf", "joint_limits", "controllers")
+"""Keys of a robot that name files."""
+
+_BESIDE = {
+    "srdf": "pairs of links that may touch",
+    "joint_limits": "limits of joints",
+    "controllers": "path tolerances",
+}
+"""What the files say that may stand beside the robot's."""
+
+_FIRST = ("xacro", "xacro_args", "package_dirs")
+"""Keys that stand beside the robot's file."""
+
+
+@dataclass(frozen=True)
+class NewCaseRequest:
+    """What a new case is made from; paths are relative to the current folder.
+
+    Attributes:
+        keys: of a robot in a case file, but for its trajectory and joints.
+        trajectory: keys of a trajectory. states: to move between where there is none.
+        rest: states for the joints that the motion leaves alone. scene: a file. includes: of it, as in a
+            case.
+    """
+
+    keys: Mapping[str, Any]
+    trajectory: Mapping[str, Any] | None = None
+    states: Sequence[str] = ()
+    rest: Sequence[str] = ()
+    scene: str | None = None
+    includes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def srdf(self) -> str | None:
+        """The SRDF file."""
+        return self.keys.get("srdf")
+
+    @property
+    def package_dirs(self) -> Sequence[str]:
+        """Folders in which packages are looked for."""
+        return self.keys.get("package_dirs", ())
+
+
+@dataclass(frozen=True)
+class NewRobot:
+    """The robot, with its trajectory if it is given one.
+
+    Attributes:
+        keys: as it was read. rest: states for joints that the motion leaves alone.
+        taken, notes: a line each.
+        is_seen_only: no link has a collision shape.
+    """
+
+    placed: PlacedRobot
+    keys: Mapping[str, Any]
+    rest: Sequence[str]
+    taken: Sequence[str]
+    notes: Sequence[str]
+    is_seen_only: bool
+
+    @property
+    def root(self) -> str:
+        """Its first link."""
+        return self.placed.robot.link_names[0]
+
+    @property
+    def first_body(self) -> str:
+        """Its first link that has a shape."""
+        return self.placed.robot.bodies[0].name
+
+    def written(self, folder: Path, is_alone: bool) -> dict[str, Any]:
+        """Its keys in a case in `folder`.
+
+        Args:
+            is_alone: nothing stands around it, so that its links are measured against each other.
+        """
+        keys = {"self_clearance": True, **self.keys} if is_alone else dict(self.keys)
+        keys |= {key: path_from(folder, keys[key]) for key in _FILES if key in keys}
+        if "package_dirs" in keys:
+            keys["package_dirs"] = [path_from(folder, one) for one in keys["package_dirs"]]
+        first = {key: keys.pop(key) for key in ("urdf", *_FIRST) if key in keys}
+        base = {"xyz": [0.0, 0.0, 0.0], "rpy": [0.0, 0.0, 0.0]}
+        keys.pop("joints", None)
+        return {**first, "base": base, "geometry": keys.pop("geometry", "collision"), **keys}
+
+    def resting(self, trajectory: Trajectory) -> dict[str, Any]:
+        """What stands under `joints` for those that a trajectory does not move."""
+        states = self.rest[0] if len(self.rest) == 1 else list(self.rest)
+        return ({"state": states} if self.rest else {}) | {
+            joint.name: self._rest(joint) for joint in self._left(trajectory)
+        }
+
+    def remarks(self, trajectory: Trajectory) -> dict[str, str]:
+        """Why each key is as it is."""
+        reference = self.placed.robot.reference
+        left = {
+            joint.name: "assumed: nothing moves it"
+            + (", and so the robot's file has it" if reference.get(joint.name) else "")
+            for joint in self._left(trajectory)
+        }
+        return {"base": f"assumed: {self._stands}", **left}
+
+    def assumed(self, trajectory: Trajectory, is_alone: bool) -> Iterator[str]:
+        """A line each on what nobody said."""
+        yield self._stands
+        if self.is_seen_only:
+            yield "no link has a collision shape: the visual shapes are measured"
+        if is_alone:
+            yield "nothing stands around the robot, whose links are measured against each other"
+        if is_alone and "srdf" not in self.keys:
+            yield "all pairs of links but neighbours are measured: no SRDF excuses any"
+        left = self._left(trajectory)
+        at_rest = {joint.name: self._rest(joint) for joint in left}
+        zero = [name for name, position in at_rest.items() if position == 0.0]
+        if zero:
+            yield f"joints that nothing moves rest at 0: {listed(zero, 8)}"
+        own = self.placed.robot.reference
+        placed: list[str] = []
+        other: list[str] = []
+        for name, position in at_rest.items():
+            if position != 0.0:
+                (placed if position == own.get(name) else other).append(f"{name} {position:g}")
+        if placed:
+            yield f"joints that nothing moves rest where the robot's file has them: {listed(placed, 8)}"
+        if other:
+            yield f"joints that cannot be at 0 rest at the limit next to it: {listed(other, 8)}"
+
+    @property
+    def _stands(self) -> str:
+        return f"link {self.root!r} stands at the origin of the world"
+
+    def _rest(self, joint: Joint) -> float:
+        """[rad] or [m] where its own file has it, or 0; else the limit that is nearest to that."""
+        meant = self.placed.robot.reference.get(joint.name, 0.0)
+        return float(min(max(meant, joint.lower), joint.upper)) + 0.0
+
+    def _left(self, trajectory: Trajectory) -> list[Joint]:
+        """The joints that neither the trajectory nor a state gives a position."""
+        known = {*trajectory.joint_names, *self.placed.fixed_positions}
+        return [joint for joint in self.placed.robot.moving_joints if joint.name not in known]
+
+
+def new_robot(given: NewCaseRequest, meshes: MeshStore) -> NewRobot:
+    """The robot that is given; its visual shapes where it has no others and nothing is said of that.
+
+    Raises:
+        BadInput: as `RobotReader`.
+    """
+    keys = dict(given.keys)
+    if given.rest:
+        keys["joints"] = {"state": list(given.rest)}
+    if given.srdf is not None:
+        keys["self_clearance"] = True
+    try:
+        placed, notes = _placed(keys, given, meshes)
+    except NothingToMeasure:
+        if "geometry" in keys:
+            raise
+        keys["geometry"] = "visual"
+        placed, notes = _placed(keys, given, meshes)
+    robot = placed.robot
+    taken = [
+        f"robot {robot.name!r} from {meshes.files.shown(Path(placed.urdf_path))}: "
+        f"{counted(len(robot.link_names), 'link')}, {len(robot.bodies)} of them with a shape, "
+        f"{counted(len(robot.moving_joints), 'joint')} to move"
+    ]
+    taken += [
+        f"{what} from {meshes.files.shown(resolved(given.keys[key], Path()))}"
+        for key, what in _BESIDE.items()
+        if key in given.keys
+    ]
+    seen_only = "geometry" in keys and "geometry" not in given.keys
+    return NewRobot(placed, keys, given.rest, taken, notes, seen_only)
+
+
+def _placed(
+    keys: Mapping[str, Any], given: NewCaseRequest, meshes: MeshStore
+) -> tuple[PlacedRobot, list[str]]:
+    robot = validated(schema.Robot, dict(keys), "robot")
+    motion = None
+    if given.trajectory is not None:
+        motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
+    reader = RobotReader(Path(), meshes)
+    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"))
+    matrix = placed.self_clearance and placed.self_clearance.matrix
+    told = (*placed.robot.notes, *reader.notes, *on_motion)
+    return placed, [*told, *(matrix.notes if matrix else ())]

@@ -1,0 +1,144 @@
+"""The text of a case file, for people to edit: each key with what it says, and keys that are often wanted next.
+
+Not for: what stands in it (`files`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from clearance.errors import shown
+from clearance.formats.text.yaml_text import flow
+from clearance.world.notice import KINDS
+
+TOUCHING = "these pairs touch at every step"
+"""What is said of pairs that may be meant to touch."""
+
+
+@dataclass(frozen=True)
+class CaseText:
+    """What a new case file says.
+
+    Attributes:
+        name: of the case. made_from: the files, as they are shown.
+        robot: its keys and values, in order. link: its first with a shape, for examples.
+        resting: what stands under `joints`. states: of which one could stand there.
+        scene: a file, or nothing. trajectory: its keys, the file at least; `motion` says where it comes from,
+            `motion_notes` how it was read. motion_keys: keys that the trajectory needs but that only the reader
+            knows, as YAML, and why.
+        carry: parts that links carry, as a case has them. allow: pairs that are not measured.
+        touching: pairs that touch at every step, to be allowed where that is meant.
+        remarks: why a key is as it is, by key. includes: models that the scene includes, as they are taken.
+    """
+
+    name: str
+    made_from: Sequence[str]
+    robot: Mapping[str, Any]
+    link: str
+    resting: Mapping[str, Any]
+    states: Sequence[str]
+    scene: str | None
+    trajectory: Mapping[str, Any]
+    motion: str
+    motion_notes: Sequence[str] = ()
+    motion_keys: Sequence[tuple[str, str]] = ()
+    carry: Sequence[Mapping[str, Any]] = ()
+    allow: Sequence[tuple[str, str]] = ()
+    touching: Sequence[tuple[str, str]] = ()
+    remarks: Mapping[str, str] = field(default_factory=dict)
+    includes: Mapping[str, str] = field(default_factory=dict)
+
+
+def text_of(case: CaseText) -> str:
+    """The case file."""
+    return "\n".join([*_lines(case), ""])
+
+
+def _lines(case: CaseText) -> Iterator[str]:
+    yield f"# Made by `clearance new` from {shown(', '.join(case.made_from))}; yours to edit."
+    yield "# Metres, radians, seconds. A key behind a # is one that is often wanted."
+    yield f"name: {flow(case.name)}"
+    yield "robot:"
+    yield from (f"  {line}" for line in _robot(case))
+    yield from _scene(case)
+    yield from (f"# {shown(note)}" for note in case.motion_notes)
+    path = case.trajectory["file"] if len(case.trajectory) == 1 else case.trajectory
+    yield f"trajectory: {flow(path)}  # {shown(case.motion)}"
+    for key, why in case.motion_keys:
+        yield f"# trajectory: {flow(case.trajectory)[:-1]}, {key}}}  # {shown(why)}"
+    if case.carry:
+        yield "carry:  # from the scene's file, in which links hold them"
+        yield from (f"- {flow(one)}" for one in case.carry)
+    yield from _allow(case)
+    yield "limits:"
+    yield "  fail: 0.0  # assumed: contact alone is a violation; 0.005 asks for 5 mm"
+    yield "  # warn: 0.02  # closer than this is a near miss"
+    yield "  # joints: fail  # a joint beyond its limits is a violation, not a warning"
+    yield f"# accept: [units]  # suspect input that is meant: {', '.join(KINDS)}"
+    yield "# report: {author: J. Doe, revision: A}  # shown on the page, with fields to sign"
+
+
+def _robot(case: CaseText) -> Iterator[str]:
+    for key, value in case.robot.items():
+        remark = case.remarks.get(key) or _REMARKS.get(key, "")
+        yield f"{key}: {flow(value)}" + (f"  # {remark}" if remark else "")
+    yield from _resting(case)
+    if "self_clearance" not in case.robot:
+        yield "# self_clearance: true  # links of the robot against each other, too"
+    if "srdf" not in case.robot:
+        yield "# srdf: robot.srdf  # with self_clearance: which pairs of links are excused, and why"
+    elif case.robot.get("self_clearance"):
+        yield "# trust_never: true  # pairs that the SRDF calls Never are excused too; now they are measured"
+    yield f"# exclude_links: [{flow(case.link)}]  # not measured, as a link that is bolted to what it stands on"
+
+
+def _resting(case: CaseText) -> Iterator[str]:
+    if not case.resting:
+        return
+    yield "joints:  # those that the trajectory does not move"
+    if case.states:
+        yield f"  # state: {flow(case.states[0])}  # where a state says; there are {flow(case.states)}"
+    for name, value in case.resting.items():
+        yield f"  {flow(name)}: {flow(value)}{_remark(case, name)}"
+
+
+def _scene(case: CaseText) -> Iterator[str]:
+    if case.scene is not None:
+        yield f"scene: {flow(case.scene)}" + _remark(case, "scene")
+        if case.includes:
+            yield f"includes: {flow(case.includes)}"
+        return
+    yield "scene:"
+    yield f"  obstacles: []{_remark(case, 'scene')}; in place of []:"
+    yield "  # - {name: table, box: {size: [1.0, 1.0, 0.02]}, pose: {xyz: [0.5, 0.0, -0.01]}}"
+    yield "  # - {name: fixture, mesh: {file: fixture.stl, scale: 0.001}, pose: {xyz: [0.6, 0.0, 0.0]}}"
+
+
+def _allow(case: CaseText) -> Iterator[str]:
+    if case.allow:
+        yield "allow:  # pairs that are not measured; from the scene's file"
+        yield from (f"- {flow(list(pair))}" for pair in case.allow)
+    elif not case.touching:
+        yield f"# allow: [[{flow(case.link)}, table]]  # pairs that are not measured; wildcards in quotes"
+    if case.touching:
+        yield f"# {TOUCHING.capitalize()}; where that is meant, uncomment:"
+        yield from [] if case.allow else ["# allow:"]
+        yield from (f"# - {flow(list(pair))}" for pair in case.touching)
+
+
+def _remark(case: CaseText, key: str) -> str:
+    return f"  # {shown(case.remarks[key])}" if key in case.remarks else ""
+
+
+_REMARKS = {
+    "xacro": "xacro makes URDF of it, which evaluates the Python in it",
+    "package_dirs": "where package://x is looked for first",
+    "geometry": "or visual, or collision_or_visual: visual where a link has no other",
+    "self_clearance": "links of the robot against each other, too",
+    "srdf": "which pairs of links are excused, and why",
+    "joint_limits": "narrower than the robot's file; what goes beyond is a warning",
+    "controllers": "path tolerances, kept for notes",
+    "padding": "taken off the clearance of these links; from the scene's file",
+}

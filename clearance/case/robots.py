@@ -1,0 +1,203 @@
+"""The robots of a case file, read and placed: URDF, SRDF, trajectory, joints, padding, base. Not for: obstacles
+(`scene.obstacles`), and names that only the whole case can know (`case_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from clearance.case.allow import checked_links
+from clearance.case.resting import resting_positions
+from clearance.case.start_state import with_start
+from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.formats import read_robot
+from clearance.formats.robot.limit_files import limited, note_on_accelerations
+from clearance.formats.robot.request import RobotRequest, checked_args
+from clearance.formats.robot.robot_element import XACRO
+from clearance.formats.robot.srdf import read_srdf
+from clearance.formats.schema import case as schema
+from clearance.formats.schema.joints import states_of
+from clearance.formats.text.notes import note_on_rounded
+from clearance.formats.timed_files import trajectory_of
+from clearance.world.case import PlacedRobot, SelfClearance
+from clearance.world.mount import Mount
+from clearance.world.robot import Robot
+from clearance.world.rules import matches
+
+
+class RobotReader:
+    """Reads the robots of one case; those of one file share its bodies.
+
+    Args:
+        folder: against which paths are looked up. meshes: reads and keeps mesh files, and all others.
+
+    Attributes:
+        notes: a line each on how what was read so far was taken.
+    """
+
+    def __init__(self, folder: Path, meshes: MeshStore) -> None:
+        self._folder, self._meshes, self._files = folder, meshes, meshes.files
+        self._read: dict[RobotRequest, Robot] = {}
+        self.notes: list[str] = []
+
+    def moving(self, entry: schema.RobotEntry) -> tuple[PlacedRobot, tuple[str, ...]]:
+        """The robot of an entry as `in_motion` gives it.
+
+        Raises:
+            BadInput: with the field and the file.
+        """
+        return in_motion(entry, self._standing(entry), self._folder, self._files)
+
+    def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
+        """The robot of an entry, without what it does.
+
+        Raises:
+            BadInput: with the field and the file.
+        """
+        given, field = entry.robot, entry.field
+        request = self._request(given, field)
+        self._expand_srdf(given, field, request)
+        limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
+        robot = limits.robot
+        self.notes += limits.notes
+        with at(f"{field}.exclude_links"):
+            exclude_links = checked_links(given.exclude_links, robot.link_names)
+        with at(f"{field}.padding"):
+            padding = _padding(given.padding, robot.link_names)
+        placed = PlacedRobot(
+            robot=robot,
+            exclude_links=exclude_links,
+            urdf_path=str(request.path),
+            package_dirs=tuple(map(str, request.package_dirs)),
+            self_clearance=self._self_clearance(entry, robot),
+            padding=padding,
+            motion_limits=limits.motion_limits,
+            path_tolerances=limits.path_tolerances,
+        )
+        if given.base.is_rounded:
+            self.notes.append(f"{field}.base: {note_on_rounded(1)[0]}")
+        if given.base.on is not None:
+            return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
+        return replace(placed, world_from_base=given.base.matrix())
+
+    def _request(self, given: schema.Robot, field: str) -> RobotRequest:
+        package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
+        with at(f"{field}.package_dirs"):
+            _refuse_missing_folders(given.package_dirs, package_dirs)
+        if given.xacro_args and not given.xacro:
+            raise BadInput(
+                "arguments of xacro, which is not used",
+                where=f"{field}.xacro_args",
+                valid="xacro: true",
+            )
+        with at(f"{field}.xacro_args"):
+            args = checked_args(given.xacro_args)
+        return RobotRequest(
+            resolved(given.urdf, self._folder),
+            package_dirs,
+            given.geometry,
+            given.collada_up_axis,
+            given.xacro,
+            args,
+        )
+
+    def _expand_srdf(self, given: schema.Robot, field: str, request: RobotRequest) -> None:
+        """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
+        if given.srdf is None or not given.xacro or not given.srdf.endswith(XACRO):
+            return
+        path = resolved(given.srdf, self._folder)
+        if not self._files.is_held(path):
+            from clearance.formats.robot.urdf.xacro_file import hold_expanded
+
+            with at(f"{field}.srdf"):
+                self.notes += hold_expanded(path, request.package_dirs, self._files)
+
+    def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
+        if request not in self._read:
+            with at(f"{field}.urdf"):
+                self._read[request] = read_robot(request, self._meshes)
+        robot = self._read[request]
+        return robot if name is None else replace(robot, name=name)
+
+    def _self_clearance(self, entry: schema.RobotEntry, robot: Robot) -> SelfClearance | None:
+        """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses."""
+        given, field = entry.robot, entry.field
+        _refuse_idle_excuses(entry)
+        if not given.self_clearance:
+            return None
+        if given.srdf is None:
+            return SelfClearance()
+        with at(f"{field}.srdf"):
+            matrix = read_srdf(resolved(given.srdf, self._folder), robot, self._files)
+        return SelfClearance(matrix, given.trust_never)
+
+
+def in_motion(
+    entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
+) -> tuple[PlacedRobot, tuple[str, ...]]:
+    """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
+
+    Args:
+        placed: as it stands. folder: against which paths are looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+    asked, trajectory = entry.trajectory, None
+    notes: tuple[str, ...] = ()
+    moves: dict[str, Any] = {}
+    if asked is not None:
+        field = entry.trajectory_field
+        trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+        trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)
+        notes = (*notes, *on_start)
+        path = str(resolved(asked.file, folder))
+        moves = {"trajectory": trajectory, "timing": asked.timing, "trajectory_path": path}
+    moved = trajectory.joint_names if trajectory else ()
+    resting = resting_positions(entry, placed.robot, moved, folder, files)
+    on_limits = note_on_accelerations(placed.motion_limits, trajectory)
+    moves["fixed_positions"] = resting.positions
+    return replace(placed, **moves), (*notes, *resting.notes, *on_limits)
+
+
+def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:
+    """Refuses fields about excused pairs where they would excuse nothing."""
+    given, field = entry.robot, entry.field
+    starts = entry.trajectory is not None and isinstance(entry.trajectory.start_state, str | list)
+    if not given.self_clearance:
+        for key in ("srdf", "trust_never"):
+            if getattr(given, key) and not (key == "srdf" and (states_of(given.joints) or starts)):
+                raise BadInput(
+                    "it excuses pairs of links, which are not measured",
+                    where=f"{field}.{key}",
+                    valid="self_clearance: true, or no such field"
+                    + (", or a state of it: joints: {state: …}" if key == "srdf" else ""),
+                )
+    elif given.srdf is None and given.trust_never:
+        raise BadInput(
+            "it speaks of the pairs that an SRDF file calls Never",
+            where=f"{field}.trust_never",
+            valid=f"{field}.srdf: the file",
+        )
+
+
+def _padding(given: Mapping[str, float], links: Sequence[str]) -> dict[str, float]:
+    """[m] by link; of several patterns for a link the last counts."""
+    found: dict[str, float] = {}
+    for pattern, padding in given.items():
+        meant = [link for link in links if matches(link, pattern)]
+        if not meant:
+            raise UnknownLink(f"no link matches {pattern!r}", valid=nearest_name(pattern, links))
+        found |= dict.fromkeys(meant, padding)
+    return found
+
+
+def _refuse_missing_folders(given: Sequence[str], package_dirs: Sequence[Path]) -> None:
+    for i, (text, path) in enumerate(zip(given, package_dirs, strict=True)):
+        if not path.is_dir():
+            raise MissingFile(f"there is no folder {text!r}", where=f"[{i}]")

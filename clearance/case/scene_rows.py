@@ -1,0 +1,125 @@
+"""What a scene file says of the robots beside its obstacles: what may touch, and padding. Not for: reading it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from clearance.case.allow import PatternNames, body_names
+from clearance.errors import UnknownLink, nearest_name
+from clearance.formats.scene.request import SceneContent
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import JointKind
+from clearance.world.rules import Allowance, matches
+
+ORIGIN = 1e-9
+"""[m] and [-] How far a link's pose may be off the world's and count as the same."""
+
+WORLD_FRAMES = ("world", "map", "odom", "earth")
+"""Names of frames that stand, beside those of links. Source: ROS, REP 105."""
+
+
+def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]:
+    """The case with the rows of its scene file after its own, and notes on what could not be taken over.
+
+    Suspect input is added where the frame of the file is a link that is not the world's origin.
+
+    Raises:
+        UnknownLink: the frame of the file is neither a link nor the world.
+    """
+    case = replace(case, notices=(*case.notices, *_on_frame(case, content.frame)))
+    if not content.allow and not content.link_padding:
+        return case, []
+    names = body_names(case)
+    rows, notes = [], []
+    n_links, unknown = 0, dict[str, None]()
+    for pair in content.allow:
+        missing = [name for name in pair if not _any(name, (*names.links, *names.obstacles))]
+        unknown |= dict.fromkeys(missing)
+        if not missing:
+            row = _row(pair, names)
+            n_links += row is None
+            rows += [] if row is None else [row]
+    if rows:
+        notes.append(f"{len(rows)} pairs of the scene's file may touch and are not measured")
+    if n_links:
+        notes.append(
+            f"{n_links} allowed pairs of the scene's file are left out: of two links, of which srdf says more, or "
+            "of two obstacles that stand"
+        )
+    if unknown:
+        notes.append(
+            f"allowed pairs of bodies that are not there are left out: {listed([*unknown], 6)}"
+        )
+    robots = tuple(_padded(placed, content.link_padding) for placed in case.robots)
+    notes += _notes_on_padding(case, content)
+    return replace(case, robots=robots, allow=(*case.allow, *rows)), notes
+
+
+def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
+    """A notice for each robot that has the frame of a scene's file as a link, but not where the world is."""
+    if not frame or frame in WORLD_FRAMES:
+        return
+    links = body_names(case).links
+    if frame not in links:
+        raise UnknownLink(
+            f"frame {frame!r} is no link",
+            where="frame",
+            valid=nearest_name(frame, (*links, WORLD_FRAMES[0])),
+        )
+    for placed in case.robots:
+        link = frame.removeprefix(case.prefix_of(placed))
+        if link in placed.robot.link_names and not _is_world(placed, link):
+            yield Notice(
+                Severity.SUSPECT,
+                "frame",
+                f"CHECK FRAME: the scene's file is in the frame of link {frame!r}, but is read as the world's. "
+                "This link moves or is not at the origin: obstacles may be misplaced; place the robot to agree",
+            )
+
+
+def _is_world(placed: PlacedRobot, link: str) -> bool:
+    """True for a link that stands at the origin of the world."""
+    above = {joint.child: joint for joint in placed.robot.joints}
+    pose = np.eye(4)
+    while link in above:
+        joint = above[link]
+        if joint.kind is not JointKind.FIXED:
+            return False
+        pose, link = joint.parent_from_joint @ pose, joint.parent
+    standing = placed.world_from_base @ pose
+    return placed.mount is None and bool(np.abs(standing - np.eye(4)).max() < ORIGIN)
+
+
+def _row(pair: tuple[str, str], names: PatternNames) -> Allowance | None:
+    """The row of a link and an obstacle, or of two obstacles that can meet."""
+    for one, other in (pair, pair[::-1]):
+        if _any(one, names.links) and _any(other, names.obstacles):
+            return Allowance((one, other))
+    if names.obstacles_meet and all(_any(name, names.obstacles) for name in pair):
+        return Allowance(pair)
+    return None
+
+
+def _padded(placed: PlacedRobot, given: dict[str, float]) -> PlacedRobot:
+    """The robot with padding of those of its links for which the case gives none."""
+    own = {link: given[link] for link in placed.robot.link_names if link in given}
+    return replace(placed, padding=own | placed.padding)
+
+
+def _notes_on_padding(case: Case, content: SceneContent) -> Iterable[str]:
+    if content.link_padding:
+        yield "padding of the scene's file is a distance taken off the clearance, not a larger shape"
+    links = {link for placed in case.robots for link in placed.robot.link_names}
+    missing = [repr(link) for link in content.link_padding if link not in links]
+    if missing:
+        yield f"padding of links that are not there is left out: {listed(missing, 6)}"
+
+
+def _any(pattern: str, names: Collection[str]) -> bool:
+    return pattern in names or (
+        not {*"*?["}.isdisjoint(pattern) and any(matches(name, pattern) for name in names)
+    )

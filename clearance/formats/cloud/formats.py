@@ -1,0 +1,143 @@
+"""Files of scans to clouds of points: one table of suffixes. Not for: surfaces (`mesh.mesh_file`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, at
+from clearance.formats.cloud.pcd_file import read_pcd
+from clearance.formats.cloud.ply_points import read_ply_points
+from clearance.formats.cloud.points import Points
+from clearance.formats.cloud.points_text import read_points_text
+from clearance.formats.files.input_files import read_bytes
+from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
+
+SAMPLED = 200
+"""Points that are asked whether their ball touches another."""
+
+_READERS: dict[str, Callable[[bytes], Points]] = {
+    ".pcd": read_pcd,
+    ".ply": read_ply_points,
+    ".csv": read_points_text,
+    ".xyz": read_points_text,
+    ".txt": read_points_text,
+    ".asc": read_points_text,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedCloud:
+    """A cloud from a file.
+
+    Attributes:
+        shape: in metres, in the file's frame, scaled.
+        notes: what was left out or decided, one line each, without the file's name.
+    """
+
+    shape: PointCloud
+    notes: tuple[str, ...]
+
+
+def read_points(
+    path: str | PathLike[str], radius: float, scale: float | Sequence[float] = 1.0
+) -> PointCloud:
+    """The cloud in a file of points (`.pcd`, `.ply`, `.csv`, `.xyz`, `.txt`, `.asc`).
+
+    Args:
+        radius: [m] of the ball that each point stands for.
+        scale: factor of the coordinates, of all axes or of each; 0.001 for a file in millimetres.
+
+    Raises:
+        MissingFile, BadSyntax, BadShape, EmptyMesh, BadDimension: with the file's name.
+    """
+    path = Path(path)
+    return cloud_from_bytes(read_bytes(path, path.name), path.name, radius, scale).shape
+
+
+def cloud_from_bytes(
+    data: bytes,
+    name: str,
+    radius: float,
+    scale: float | Sequence[float] = 1.0,
+    *,
+    in_millimetres: bool = False,
+) -> LoadedCloud:
+    """The cloud in the content of a file; `name` gives the format and stands in errors.
+
+    Args:
+        in_millimetres: True if coordinates are that name no unit themselves.
+    """
+    with at(name):
+        suffix = Path(name).suffix.lower()
+        if suffix not in _READERS:
+            raise BadSyntax(f"unknown format of points {suffix!r}", valid=", ".join(_READERS))
+        found = _READERS[suffix](data)
+        kept, notes = _returned(found.places)
+        if len(kept) > MOST_POINTS:
+            raise BadShape(f"the file has {len(kept):,} points", valid=f"{MOST_POINTS:,} at most")
+        if in_millimetres and not found.in_metres:
+            kept = kept / 1000.0
+        shape = PointCloud(_scaled(kept, scale), radius)
+        notes += [*_on_copies(len(kept), shape), *_on_gaps(shape)]
+        return LoadedCloud(shape, (*found.notes, *notes))
+
+
+def _returned(places: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """The points that are finite, and a note on others: beams that did not come back."""
+    finite = np.isfinite(places).all(axis=1)
+    n_left_out = int(np.count_nonzero(~finite))
+    if n_left_out == len(places):
+        raise EmptyMesh(
+            f"none of the {len(places)} points is finite" if len(places) else "there are no points",
+            valid="at least one point",
+        )
+    if not n_left_out:
+        return places, []
+    what = "1 point is" if n_left_out == 1 else f"{n_left_out:,} points are"
+    return places[finite], [f"{what} not finite (no return) and left out, of {len(places):,}"]
+
+
+def _on_copies(n_given: int, shape: PointCloud) -> list[str]:
+    n_copies = n_given - shape.n_points
+    if not n_copies:
+        return []
+    return [f"{n_copies:,} of its points are there more than once and count once"]
+
+
+def _on_gaps(shape: PointCloud) -> list[str]:
+    """A note where most balls stand alone, by some of them, evenly spread."""
+    points = shape.vertices
+    chosen = points[:: -(-len(points) // SAMPLED)]
+    n_alone = sum(not _touches_another(point, points, shape.ball_radius) for point in chosen)
+    if 2 * n_alone <= len(chosen):
+        return []
+    return [
+        f"most of its balls of {1e3 * shape.ball_radius:.4g} mm touch no other: what is thinner than the gaps "
+        "between them passes through"
+    ]
+
+
+def _touches_another(point: np.ndarray, points: np.ndarray, radius: float) -> bool:
+    """True if the ball about a point touches that of another of `points` (n, 3), which are ordered by x."""
+    reach = 2.0 * radius
+    ends = np.searchsorted(points[:, 0], [point[0] - reach, np.nextafter(point[0] + reach, np.inf)])
+    near = points[ends[0] : ends[1]] - point
+    return int(np.count_nonzero((near**2).sum(axis=1) <= reach * reach)) > 1
+
+
+def _scaled(points: np.ndarray, scale: float | Sequence[float]) -> np.ndarray:
+    factors = np.asarray(scale, dtype=np.float64)
+    if factors.shape not in ((), (3,)) or not np.isfinite(factors).all() or not factors.all():
+        raise BadDimension(
+            f"scale {factors.tolist()} is given", valid="one or three factors, none zero"
+        )
+    with np.errstate(over="ignore"):
+        scaled = points * factors
+    if not np.isfinite(scaled).all():
+        raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
+    return scaled

@@ -1,0 +1,146 @@
+"""COLLADA (.dae) to triangles in metres with z up, as the file's own `<unit>` and `<up_axis>` say.
+
+Own code, because the usual readers keep single precision, turn NaN into 0, pass over accessors' offset and
+stride, wrap indices that are too large, take `0,01` for a unit of 1, and leave unit and up axis to the caller
+(NOTES.md). RViz and MoveIt obey `<unit>` but not `<up_axis>`: the caller says which way is taken, and a file
+that the two take differently is noted. Source: Khronos, COLLADA 1.4.1 specification, chapters 5 (`up_axis`,
+`unit`). Not for: nodes (`collada_scene`), and what is in a geometry (`collada_geometry`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadSyntax
+from clearance.formats.mesh.collada_geometry import local_name, words_of
+from clearance.formats.mesh.collada_scene import placed_pieces
+from clearance.formats.mesh.placing import Z_FROM_Y_UP, UpAxis, joined
+from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.text.numbers import floats
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+_IRRELEVANT = (
+    "library_images", "library_effects", "library_materials", "library_animations",
+    "library_animation_clips", "library_lights", "library_cameras", "library_physics_scenes",
+    "library_physics_models", "library_physics_materials", "instance_physics_scene",
+    "bind_material", "instance_camera", "instance_light", "extra",
+)  # fmt: skip
+
+_Z_FROM = {
+    "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),
+    "Y_UP": Z_FROM_Y_UP,
+    "Z_UP": np.eye(3),
+}
+
+
+def read_collada(data: bytes, up_axis: UpAxis = "file") -> Triangles:
+    """All geometry that the document's scene places, in metres, z up.
+
+    Args:
+        up_axis: "file" turns what `<up_axis>` calls up into z up; "ros" leaves the axes as they are.
+
+    Raises:
+        BadSyntax: not COLLADA, or something in it that is not supported. MissingKey: what an element must
+        have. BadDimension: the unit. EmptyMesh, BadPolygon, NotFinite.
+    """
+    root = _geometry_only(data)
+    metres, up = _unit(root), _up(root)
+    _refuse_other_units(root, metres, up)
+    return _in_metres_z_up(joined(placed_pieces(root)), metres, up, up_axis)
+
+
+def _geometry_only(data: bytes) -> Element:
+    """The document without what has no shape, so that a missing texture is no fault."""
+    from lxml import etree
+
+    if b"<!ENTITY" in data.replace(b"\0", b""):  # a few lines of them make gigabytes of text
+        raise BadSyntax("the document declares entities", valid="a document without <!ENTITY>")
+    parser = etree.XMLParser(
+        remove_comments=True,
+        remove_pis=True,
+        resolve_entities=False,
+        huge_tree=True,
+        no_network=True,
+    )
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        raise BadSyntax(f"not XML: {getattr(error, 'msg', None) or error}") from None
+    if local_name(root) != "COLLADA":
+        raise BadSyntax(f"the root element is <{local_name(root)}>", valid="<COLLADA>")
+    for element in list(root.iter(*(f"{{*}}{name}" for name in _IRRELEVANT))):
+        if element.getparent() is not None:
+            element.getparent().remove(element)
+    return root
+
+
+def _unit(root: Element) -> float:
+    """[m] the document's unit; a metre where it names none."""
+    unit = root.find("{*}asset/{*}unit")
+    return 1.0 if unit is None else _metres(unit)
+
+
+def _metres(unit: Element) -> float:
+    text = unit.get("meter")
+    if text is None and (unit.get("name") or "meter").lower() in (
+        "meter",
+        "metre",
+        "meters",
+        "metres",
+        "m",
+    ):
+        return 1.0
+    try:
+        metres = float(floats([text or ""])[0])
+    except BadSyntax:
+        metres = np.nan
+    if not (np.isfinite(metres) and metres > 0):
+        given = f"meter={text!r:.40}" if text is not None else f"name={unit.get('name')!r:.40}"
+        raise BadDimension(
+            f"<unit {given}> is given", valid='meter="…", a positive number of metres'
+        )
+    return metres
+
+
+def _up(root: Element) -> str:
+    """The axis that is up; the specification's default is y."""
+    element = root.find("{*}asset/{*}up_axis")
+    return "Y_UP" if element is None else _axis(element)
+
+
+def _axis(element: Element) -> str:
+    up = " ".join(words_of(element))
+    if up not in _Z_FROM:
+        raise BadSyntax(f"<up_axis> is {up!r:.40}", valid=", ".join(_Z_FROM))
+    return up
+
+
+def _refuse_other_units(root: Element, metres: float, up: str) -> None:
+    """Refuses a part of the document that has a unit or up axis of its own."""
+    for unit in root.iterfind(".//{*}asset/{*}unit"):
+        if _metres(unit) != metres:
+            raise BadSyntax(
+                f"units of {metres:g} and {_metres(unit):g} m", valid="one unit in a file"
+            )
+    for element in root.iterfind(".//{*}asset/{*}up_axis"):
+        if _axis(element) != up:
+            raise BadSyntax(f"both {up} and {_axis(element)}", valid="one <up_axis> in a file")
+
+
+def _in_metres_z_up(triangles: Triangles, metres: float, up: str, up_axis: UpAxis) -> Triangles:
+    notes = [f"scaled by {metres:g}, as its <unit> says"] if metres != 1.0 else []
+    if up != "Z_UP":
+        notes.append(_axis_note(up, up_axis))
+    turn = _Z_FROM[up] if up_axis == "file" else np.eye(3)
+    with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
+        return Triangles((triangles.vertices @ turn.T) * metres, triangles.corners, tuple(notes))
+
+
+def _axis_note(up: str, up_axis: UpAxis) -> str:
+    if up_axis == "ros":
+        return f"not turned from {up} to z up: its <up_axis> is ignored, as RViz and MoveIt do"
+    return f"turned from {up} to z up, as its <up_axis> says (RViz and MoveIt do not turn it)"

@@ -1,0 +1,170 @@
+"""glTF 2.0 in one binary file (.glb) to triangles, z up: the container, its document, and the scene's nodes.
+
+Own code, because the usual readers drop in silence what they do not know: a Draco mesh becomes a point, meshopt
+and instances vanish, quantized positions come out 65,535 times too large. Here what is placed is read as the
+specification says, or refused. Not for: accessors and primitives (`gltf_mesh`). Source: Khronos, glTF 2.0,
+chapters 3.5 (scenes and nodes), 4.4 (binary container); 3.4 says y up.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Hashable, Iterator
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadSyntax, EmptyMesh, NotFinite, at
+from clearance.formats.mesh.gltf_buffers import Buffers
+from clearance.formats.mesh.gltf_mesh import mesh_pieces
+from clearance.formats.mesh.gltf_object import GltfObject
+from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
+from clearance.formats.mesh.triangles import Triangles
+
+_HARMLESS = (
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+)
+"""Required extensions that have no bearing on shape, by the beginning of their names."""
+
+_READ = ("KHR_mesh_quantization",)
+
+_DEEPEST = 100
+
+
+def read_glb(data: bytes) -> Triangles:
+    """All triangles that the file's scene places, in metres, turned from y up to z up.
+
+    Raises:
+        BadSyntax: not GLB, cut off, or something in it that is not read. EmptyMesh, BadPolygon, NotFinite.
+    """
+    document, binary = chunks(data)
+    _refuse_extensions(document)
+    with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
+        surface = joined(_Scene(document, binary).pieces())
+        turned = surface.vertices @ Z_FROM_Y_UP.T
+    notes: tuple[str, ...] = ("turned from y up to z up, as glTF says",)
+    if len(document.items("scenes")) > 1:
+        notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
+    return Triangles(turned, surface.corners, notes)
+
+
+def chunks(data: bytes) -> tuple[GltfObject, bytes]:
+    """The document and the binary chunk, which may be empty."""
+    words = np.frombuffer(data[: len(data) // 4 * 4], "<u4")
+    if data[:4] != b"glTF" or len(words) < 5 or words[1] != 2:
+        raise BadSyntax("not a GLB file that can be read", valid="glTF binary, version 2")
+    if words[2] != len(data):
+        raise BadSyntax(f"the GLB file has {len(data)} bytes, and its header says {words[2]}")
+    chunks, place = [], 12
+    while place + 8 <= len(data):
+        length, kind = int(words[place // 4]), data[place + 4 : place + 8]
+        if length % 4 or place + 8 + length > len(data):
+            raise BadSyntax(f"a chunk of {length} bytes does not fit in the GLB file")
+        chunks.append((kind, data[place + 8 : place + 8 + length]))
+        place += 8 + length
+    if place != len(data) or chunks[0][0] != b"JSON":
+        raise BadSyntax("the first chunk of the GLB file is not JSON")
+    binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == b"BIN\0" else b""
+    return GltfObject(_json(chunks[0][1]), "glTF"), binary
+
+
+def _json(text: bytes) -> Any:
+    try:
+        return json.loads(text.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise BadSyntax(f"the GLB file's JSON cannot be read: {error!s:.80}") from None
+
+
+def _refuse_extensions(document: GltfObject) -> None:
+    version = document.object("asset").value.get("version")
+    if not isinstance(version, str) or not version.startswith("2."):
+        raise BadSyntax(f"glTF version {version!r:.20}", valid="2.0")
+    for name in document.items("extensionsRequired"):
+        if name not in _READ and not str(name).startswith(_HARMLESS):
+            raise BadSyntax(
+                f"the file requires the extension {name!r:.60}, which is not read",
+                valid="export without compression and extensions",
+            )
+
+
+class _Scene:
+    """Walks the nodes of the document's scene; each mesh is made once for its weights."""
+
+    def __init__(self, document: GltfObject, binary: bytes) -> None:
+        self.document = document
+        self.buffers = Buffers(document, binary)
+        self._visited: set[int] = set()
+        self._made: dict[Hashable, list[Triangles]] = {}
+
+    def pieces(self) -> Iterator[tuple[Hashable, Triangles]]:
+        """Each placed piece, in the scene's order, with what it is a copy of."""
+        if not self.document.items("scenes"):
+            raise EmptyMesh("the file has no scene", valid="a scene that places a mesh")
+        scene = self.document.item("scenes", self.document.index("scene", 0))
+        for i_node in scene.indices("nodes"):
+            yield from self._below(i_node, np.eye(4), 0)
+
+    def _below(self, i_node: int, world_from_parent: np.ndarray, depth: int) -> Iterator:
+        node = self.document.item("nodes", i_node)
+        if i_node in self._visited or depth > _DEEPEST:
+            raise BadSyntax(f"node {i_node} is placed twice", valid="a tree at most 100 deep")
+        self._visited.add(i_node)
+        with at(f"node {i_node}"):
+            node.refuse_extension("EXT_mesh_gpu_instancing")
+            if "skin" in node.value:
+                raise BadSyntax(
+                    "skinned geometry is not supported", valid="a mesh without its skeleton"
+                )
+            world_from_node = world_from_parent @ _matrix(node)
+            yield from self._mesh(node, world_from_node)
+        for child in node.indices("children"):
+            yield from self._below(child, world_from_node, depth + 1)
+
+    def _mesh(self, node: GltfObject, world_from_node: np.ndarray) -> Iterator:
+        if "mesh" not in node.value:
+            return
+        i_mesh = node.index("mesh")
+        weights = node.numbers("weights", None)
+        key = (i_mesh, None if weights is None else tuple(weights))
+        if key not in self._made:
+            with at(f"mesh {i_mesh}"):
+                self._made[key] = mesh_pieces(
+                    self.document.item("meshes", i_mesh), weights, self.buffers
+                )
+        for i, piece in enumerate(self._made[key]):
+            yield (key, i), placed(piece, world_from_node)
+
+
+def _matrix(node: GltfObject) -> np.ndarray:
+    """(4, 4) a node's own transform."""
+    whole = node.numbers("matrix", None, 16)
+    if whole is None:
+        return _moved_turned_scaled(node)
+    matrix = whole.reshape(4, 4).T
+    if matrix[3].tolist() != [0, 0, 0, 1]:
+        raise BadSyntax(f"the last row of its matrix is {matrix[3].tolist()}", valid="0 0 0 1")
+    return matrix
+
+
+def _moved_turned_scaled(node: GltfObject) -> np.ndarray:
+    x, y, z, w = node.numbers("rotation", (0.0, 0.0, 0.0, 1.0), 4)
+    length = np.sqrt(x * x + y * y + z * z + w * w)
+    if not abs(length - 1.0) < 0.01:
+        raise NotFinite(f"its rotation has the length {length:g}", valid="a unit quaternion")
+    x, y, z, w = np.array([x, y, z, w]) / length
+    turn = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn * node.numbers("scale", (1.0, 1.0, 1.0), 3)
+    matrix[:3, 3] = node.numbers("translation", (0.0, 0.0, 0.0), 3)
+    return matrix

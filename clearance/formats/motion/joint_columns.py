@@ -1,0 +1,132 @@
+"""Which columns of a table are joints of a robot, which are mimic joints, and which to leave out.
+
+Not for: reading the table (`trajectory_csv`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import BadInput, UnknownJoint
+from clearance.formats.table.column_units import VELOCITY, Column
+from clearance.formats.table.csv_table import TIME, UNNAMED
+from clearance.formats.text.yaml_text import flow
+from clearance.world.joint_positions import turns
+from clearance.world.mimics import Follower, followers
+from clearance.world.moving_joints import require_moving_joints
+from clearance.world.notice import listed
+from clearance.world.robot import Robot
+from clearance.world.trajectory import Trajectory
+
+TURN_AGREES, SLIDE_AGREES = 1e-3, 1e-4
+"""[rad], [m] How far a logged mimic joint may be off the position that it should follow: 1 mm at 1 m."""
+
+_NUMBERED = re.compile(r"(.*?)(\d+)")
+_LIKE_TIME = re.compile(rf"time|stamp|zeit|sec|^{re.escape(UNNAMED)}", re.IGNORECASE)
+
+
+def require_joints(robot: Robot, joints: Sequence[str], columns: Sequence[Column]) -> None:
+    """Checks that all are moving joints, or mimic joints whose master is given too.
+
+    Args:
+        columns: all of the table, for the remedy.
+
+    Raises:
+        UnknownJoint: with the nearest name, and the `columns` that leave out what is no joint.
+    """
+    following = {one.joint.name for one in _following(robot, joints)}
+    try:
+        require_moving_joints(robot, [name for name in joints if name not in following])
+    except UnknownJoint as error:
+        error.valid += f"; {remedy(robot, columns)}"
+        raise
+
+
+def without_followers(robot: Robot, found: Trajectory) -> tuple[Trajectory, list[str]]:
+    """The trajectory without mimic joints whose master it gives as well, and a note.
+
+    Raises:
+        BadInput: a mimic joint is off the position that it should follow.
+    """
+    following = _following(robot, found.joint_names)
+    for one in following:
+        _require_agreed(found, one)
+    if not following:
+        return found, []
+    names = [one.joint.name for one in following]
+    kept = [i for i, name in enumerate(found.joint_names) if name not in names]
+    told = listed([repr(name) for name in names], 8)
+    return found.of_columns(kept), [
+        f"columns of mimic joints agree with the joints that they follow: {told}"
+    ]
+
+
+def _following(robot: Robot, joints: Sequence[str]) -> list[Follower]:
+    """The mimic joints among the given ones whose master is given too."""
+    given = set(joints)
+    return [
+        one
+        for one in followers(robot)
+        if one.joint.mimic is not None and {one.joint.name, one.master} <= given
+    ]
+
+
+def _require_agreed(found: Trajectory, one: Follower) -> None:
+    joint, master = one.joint, one.master
+    own, lead = (found.positions[:, found.joint_names.index(n)] for n in (joint.name, master))
+    off = np.abs(own - (one.factor * lead + one.offset))
+    agrees, unit = (TURN_AGREES, "rad") if turns(joint) else (SLIDE_AGREES, "m")
+    if (off > agrees).any():
+        worst = int(np.argmax(off))
+        raise BadInput(
+            f"joint {joint.name!r} follows {master!r}, and is {off[worst]:.3g} {unit} off that at "
+            f"{found.times[worst]:g} s",
+            valid=f"within {agrees:g} {unit}, or leave {joint.name!r} out: it goes with {master!r}",
+        )
+
+
+def remedy(robot: Robot, columns: Sequence[Column]) -> str:
+    """The line `columns: …` to add to a case, so that only joints of the robot are read."""
+    joints = [joint.name for joint in robot.moving_joints]
+    own = [one for one in columns if one.name.removesuffix(VELOCITY) in joints]
+    times = [one.header for one in columns if one.name == TIME]
+    if own and times:
+        told = flow([*times, *(one.header for one in own)])
+        return f"columns: {told} reads these columns only (--columns)"
+    found = {one.name: one.header for one in own} or _joints_alike(joints, columns)
+    told = flow({TIME: times[0] if times else _time_alike(columns)} | found)
+    return f"columns: {told} maps each joint to its column (--columns)"
+
+
+def _time_alike(columns: Sequence[Column]) -> str:
+    """The column whose name is most like a time, or that has no name."""
+    headers = [one.header for one in columns]
+    return next((one for one in headers if _LIKE_TIME.search(one)), "column of times")
+
+
+def _joints_alike(joints: Sequence[str], columns: Sequence[Column]) -> dict[str, str]:
+    """A column for each joint: one whose name has the joint's in it, or one of as many numbered ones."""
+    found = {joint: _column_alike(joint, columns) for joint in joints}
+    if any(found.values()):
+        return {joint: header for joint, header in found.items() if header}
+    groups: dict[str, list[str]] = {}
+    for one in columns:
+        numbered = _NUMBERED.fullmatch(one.header)
+        if numbered:
+            groups.setdefault(numbered[1], []).append(one.header)
+    alike = [names for names in groups.values() if len(names) == len(joints) > 1]
+    alike.sort(key=lambda names: "actual_q_" not in names[0])  # as robots of UR log where they are
+    taken = alike[0] if alike else [f"column of {joint}" for joint in joints]
+    return dict(zip(joints, taken, strict=True))
+
+
+def _column_alike(joint: str, columns: Sequence[Column]) -> str | None:
+    """The column whose name contains the joint's, alone or with a word for position."""
+    part = re.compile(rf"(?:.*[^a-z0-9])?{re.escape(joint)}(?:[^a-z0-9].*)?", re.IGNORECASE)
+    headers = [one.header for one in columns if part.fullmatch(one.header)]
+    positions = [one for one in headers if "pos" in one.lower().replace(joint.lower(), "")]
+    headers = positions or [one for one in headers if one.lower().endswith(joint.lower())]
+    return headers[0] if len(headers) == 1 else None

@@ -1,0 +1,84 @@
+"""What a reader of pose tables is asked for, and what it gives. Not for: the formats (`pose_formats`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.formats.table.csv_table import Opener
+from clearance.formats.text.notes import note_on_rounded
+from clearance.geometry.quaternions import of_unit_length
+from clearance.world.pose_table import PoseTable
+
+
+@dataclass(frozen=True)
+class PoseRequest:
+    """A file to read.
+
+    Attributes:
+        opened: opens the file, `n_bytes` long, again and again.
+        length: of lengths that name no unit themselves, "m" or "mm"; None where the case says nothing.
+    """
+
+    opened: Opener
+    n_bytes: int
+    length: str | None = None
+
+    def refuse_units(self, why: str) -> None:
+        """Nothing, if the case says nothing of units.
+
+        Raises:
+            BadInput: it does, though the file says by itself what they are.
+        """
+        if self.length is not None:
+            raise BadInput(f"'units' is given, and {why}", valid="leave 'units' out of moves")
+
+
+@dataclass(frozen=True, eq=False)
+class PoseSamples:
+    """What a file of poses says, number by number.
+
+    Attributes:
+        times: (n,) [s]. positions: (n, 3) [m]. quaternions: (n, 4) xyzw, before they are made of length one.
+        frame: what they are seen from, and child: what they are of, where messages say so.
+        stamp: [ns] of the first sample in a file of messages, whose times count from there.
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+    quaternions: np.ndarray
+    frame: str = ""
+    child: str = ""
+    stamp: int = 0
+
+    def table(self) -> PoseTable:
+        """What a body follows.
+
+        Raises:
+            BadTime, BadPose, NotFinite: samples that nothing can follow.
+        """
+        return PoseTable(self.times, self.positions, self.quaternions)
+
+
+class ReadSamples(NamedTuple):
+    """What a file says, and a line each on what was taken how."""
+
+    samples: PoseSamples
+    notes: tuple[str, ...] = ()
+
+
+def samples_of(written: PoseSamples, notes: tuple[str, ...]) -> ReadSamples:
+    """What a file says, its quaternions of three digits or so made of length one, with a note."""
+    quaternions, n_rounded = of_unit_length(written.quaternions)
+    samples = replace(written, quaternions=quaternions)
+    return ReadSamples(samples, (*notes, *note_on_rounded(n_rounded)))
+
+
+class ReadPoses(NamedTuple):
+    """A table, and a line each on what was taken how."""
+
+    table: PoseTable
+    notes: tuple[str, ...] = ()

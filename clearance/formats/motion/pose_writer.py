@@ -1,0 +1,145 @@
+"""A pose table to a file that `pose_formats` reads back: CSV, or stamped poses in YAML or JSON.
+
+Every number is written so that it comes back bit for bit, quaternions as their file had them; times of messages
+are whole nanoseconds. What would not come back is refused. Not for: reading (`pose_table_file`, `pose_messages`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from pathlib import PurePath
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput, ClearanceError
+from clearance.formats.message.times import NANO, whole_times
+from clearance.formats.motion.pose_formats import read_samples
+from clearance.formats.motion.pose_table_file import COLUMNS
+from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.formats.text.yaml_text import flow
+
+Message = dict[str, Any]
+
+
+class WrittenPoses(NamedTuple):
+    """The content of a file, and a line each on what is not as it was."""
+
+    content: bytes
+    notes: tuple[str, ...]
+
+
+def written_poses(samples: PoseSamples, shown: str) -> WrittenPoses:
+    """The content of the file `shown`, in the format of its suffix.
+
+    Messages are a Path, or transforms where the samples are of a frame of their own.
+
+    Args:
+        shown: with one of `SUFFIXES`.
+
+    Raises:
+        BadInput: too much for the format. BadTime: samples less than a nanosecond apart.
+    """
+    suffix = PurePath(shown).suffix.lower()
+    if suffix == ".csv":
+        content, notes = _csv(samples), _lost_in_tables(samples)
+    else:
+        stamps = whole_times(samples.times.tolist())
+        content = WRITERS[suffix](_messages(samples, stamps.nanoseconds))
+        notes = [*_lost_in_messages(samples), *([stamps.note()] if stamps.n_rounded else [])]
+    _refuse_other(samples, content.encode(), shown)
+    return WrittenPoses(content.encode(), tuple(notes))
+
+
+def _csv(samples: PoseSamples) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    columns = (samples.times[:, None], samples.positions, samples.quaternions)
+    writer.writerows(np.hstack(columns).tolist())
+    return text.getvalue()
+
+
+def _messages(samples: PoseSamples, nanoseconds: list[int]) -> Message:
+    """A Path; a TFMessage where the samples say of which frame they are."""
+    key, place, turn = ("pose", "position", "orientation")
+    if samples.child:
+        key, place, turn = ("transform", "translation", "rotation")
+    rows = zip(nanoseconds, samples.positions.tolist(), samples.quaternions.tolist(), strict=True)
+    messages = [
+        {
+            "header": _header(samples.stamp + time, samples.frame),
+            **({"child_frame_id": samples.child} if samples.child else {}),
+            key: {
+                place: dict(zip("xyz", position, strict=True)),
+                turn: dict(zip("xyzw", quaternion, strict=True)),
+            },
+        }
+        for time, position, quaternion in rows
+    ]
+    if samples.child:
+        return {"transforms": messages}
+    return {"header": messages[0]["header"], "poses": messages}
+
+
+def _header(nanoseconds: int, frame: str) -> Message:
+    seconds, rest = divmod(nanoseconds, NANO)
+    return {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": frame}
+
+
+def _yaml(message: Message) -> str:
+    """A line for each key, and one for each pose."""
+    lines = []
+    for key, value in message.items():
+        if isinstance(value, list):
+            lines += [f"{key}:", *(f"- {flow(one)}" for one in value)]
+        else:
+            lines.append(f"{key}: {flow(value)}")
+    return "\n".join([*lines, ""])
+
+
+def _json(message: Message) -> str:
+    return json.dumps(message, ensure_ascii=False) + "\n"
+
+
+WRITERS: dict[str, Callable[[Message], str]] = {".json": _json, ".yaml": _yaml, ".yml": _yaml}
+"""By suffix: what writes a message."""
+
+SUFFIXES = (".csv", *WRITERS)
+"""What can be written."""
+
+
+def _lost_in_tables(samples: PoseSamples) -> list[str]:
+    """The notes on what a table has no place for; of frames the reader told."""
+    of = [f"the poses are of frame {samples.child!r}, which a table does not say"]
+    seconds, rest = divmod(samples.stamp, NANO)
+    since = [f"the first was stamped {seconds}.{rest:09d} s, which a table does not say"]
+    return [*(of if samples.child else []), *(since if samples.stamp else [])]
+
+
+def _lost_in_messages(samples: PoseSamples) -> list[str]:
+    notes = []
+    if not samples.frame:
+        notes.append("frame_id is empty, since nothing says in which frame the poses are")
+    first = samples.times[0].item()
+    if first:
+        notes.append(
+            f"messages count from their first, here at {first} s: "
+            f"moves: {{file: …, start: {first}}} keeps the times"
+        )
+    return notes
+
+
+def _refuse_other(samples: PoseSamples, content: bytes, shown: str) -> None:
+    """Nothing, if the file is read back as what was written."""
+    try:
+        back = read_samples(PoseRequest(lambda: io.BytesIO(content), len(content)), shown).samples
+    except ClearanceError as error:
+        raise BadInput(f"the poses cannot be written as {shown!r}: {error}") from None
+    same = back.positions.tobytes() == samples.positions.tobytes()
+    same = same and back.quaternions.tobytes() == samples.quaternions.tobytes()
+    if not same:
+        raise BadInput(f"the poses would be read otherwise from {shown!r}", valid="another format")

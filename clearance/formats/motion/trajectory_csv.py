@@ -1,0 +1,177 @@
+"""CSV to a trajectory: a `time` column [s] and one column a joint, by name, in any order.
+
+A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
+all joints have one or none. What is written otherwise (units, separators, no header, no times) is told in a note.
+Not for: which joints the robot has (`motion_names`), nor how a table is parsed (`csv_table`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, nearest_name
+from clearance.formats.motion.joint_columns import remedy, require_joints
+from clearance.formats.motion.quaternion_columns import by_angles, joints_by_angles, turned_joints
+from clearance.formats.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.formats.table.column_units import (
+    VELOCITY,
+    Column,
+    columns_in,
+    in_own_units,
+    note_on_units,
+    with_time,
+)
+from clearance.formats.table.csv_table import (
+    TIME,
+    UNNAMED,
+    TextTable,
+    as_written,
+    columns_of,
+    first_row,
+    header_of,
+    note_on_separators,
+    refuse_standing_time,
+    require_time,
+)
+from clearance.formats.table.table_names import chosen_columns, notes_on_names
+from clearance.world.trajectory import Trajectory
+
+
+def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
+    """The samples in a CSV file; joints in the order of their position columns.
+
+    Raises:
+        BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
+        file. BadDimension: a velocity that no joint can have. BadInput: a unit that a joint cannot have.
+    """
+    choice = request.choice
+    choice.refuse_others({"units", "joints", "period", "gaps", "columns"}, "a CSV table")
+    table = as_written(request.opened, _names_given(choice))
+    _refuse_numbers(table)
+    header = header_of(table, "joint names")
+    columns = _columns(header, request)
+    joints = _joints(columns, request)
+    turned = turned_joints(joints, request.turns)
+    by_name = {column.name: column for column in columns}
+    parts = [[TIME] * (choice.period is None), joints]
+    if any(name.endswith(VELOCITY) for name in by_name):
+        parts.append([joint + VELOCITY for joint in joints])
+    wanted = [[by_name[name] for name in part] for part in parts]
+    times, *moving = _values(table, request.n_bytes, header, wanted)
+    if choice.period is not None:
+        with np.errstate(over="ignore"):
+            times = choice.period * np.arange(len(times), dtype=np.float64)[:, None]
+    refuse_standing_time(times[:, 0], table)
+    notes = [*_notes(table, choice), *notes_on_names(header, columns), *note_on_units(columns)]
+    if turned:
+        moving[0], told = by_angles(moving[0], joints, turned, table)
+        joints, notes = joints_by_angles(joints, turned), [*notes, *told]
+    velocities = moving[1] if len(moving) > 1 else None
+    trajectory = Trajectory(times[:, 0], joints, moving[0], velocities)
+    return ReadTrajectory(trajectory, tuple(notes))
+
+
+def _joints(columns: list[Column], request: TrajectoryRequest) -> tuple[str, ...]:
+    """The names of the columns that are positions.
+
+    Raises:
+        MissingKey, BadInput: times or velocities that are missing, or are there twice. UnknownJoint: as
+            `require_joints`. BadShape: no joint.
+    """
+    names = [column.name for column in columns]
+    try:
+        _require_times(names, request.choice)
+    except MissingKey as error:
+        if request.robot is not None and request.choice.columns is None:
+            error.valid = (
+                f"{remedy(request.robot, columns)}; or period: the seconds from row to row"
+            )
+        raise
+    joints = tuple(name for name in names if name != TIME and not name.endswith(VELOCITY))
+    if request.robot is not None:
+        turned = turned_joints(joints, request.turns)
+        require_joints(request.robot, joints_by_angles(joints, turned), columns)
+    _refuse_unmatched_velocities(names)
+    if request.joints_needed and not joints:
+        raise BadShape("there is no joint column", valid="time and at least one joint are needed")
+    return joints
+
+
+def _columns(header: list[str], request: TrajectoryRequest) -> list[Column]:
+    """What is meant of a header."""
+    choice = request.choice
+    if choice.columns is not None:
+        return chosen_columns(header, dict(choice.columns), request.turns, choice.units)
+    nameless = [i for i, name in enumerate(header) if name.startswith(UNNAMED)]
+    if request.robot is None and nameless:
+        raise BadSyntax(f"column {nameless[0] + 1} of the header has no name")
+    return with_time(columns_in(header, request.turns, choice.units), request.turns)
+
+
+def _refuse_numbers(table: TextTable) -> None:
+    """Nothing, if the first row does not begin with a number, or names are given."""
+    row = first_row(table)
+    if table.names is None and row and table.float_of(row[0]) is not None:
+        raise MissingKey(
+            f"the first row, {','.join(row)!r:.80}, begins with a number: there is no header",
+            valid="joints: [the names of the columns beside time, in order] (--joints)",
+        )
+
+
+def _names_given(choice: Choice) -> tuple[str, ...] | None:
+    """The columns of a table without a header; time comes first where nothing else is said."""
+    if choice.joints is None:
+        return None
+    has_time = choice.period is not None or any(
+        column.name == TIME for column in columns_in(choice.joints, {}, None)
+    )
+    return choice.joints if has_time else (TIME, *choice.joints)
+
+
+def _require_times(names: list[str], choice: Choice) -> None:
+    if choice.period is None and choice.columns is not None and TIME not in names:
+        raise MissingKey(f"`columns` names no {TIME!r}", valid=f"{TIME}: the column of times [s]")
+    if choice.period is None:
+        require_time(names, "joint names")
+    elif TIME in names:
+        raise BadInput(
+            f"there is a column {TIME!r}, and a period of {choice.period:g} s", valid="one of them"
+        )
+
+
+def _values(
+    table: TextTable, n_bytes: int, header: list[str], parts: Sequence[Sequence[Column]]
+) -> list[np.ndarray]:
+    read = columns_of(table, n_bytes, header, [[one.header for one in part] for part in parts])
+    for values, part in zip(read, parts, strict=True):
+        in_own_units(values, part)
+    return read
+
+
+def _notes(table: TextTable, choice: Choice) -> list[str]:
+    notes = note_on_separators(table)
+    if choice.joints is not None:
+        notes.append(f"no header; the columns are {', '.join(table.names or ())}")
+    if choice.period is not None:
+        notes.append(f"no times; rows follow each other every {choice.period:g} s, from 0")
+    return notes
+
+
+def _refuse_unmatched_velocities(names: list[str]) -> None:
+    joints = [name for name in names if name != TIME and not name.endswith(VELOCITY)]
+    given = [name.removesuffix(VELOCITY) for name in names if name.endswith(VELOCITY)]
+    known, moving = frozenset(joints), frozenset(given)
+    for joint in given:
+        if joint not in known:
+            raise MissingKey(
+                f"column {joint + VELOCITY!r} is the velocity of {joint!r}, which has no column",
+                valid=nearest_name(joint, joints),
+            )
+    without = [joint for joint in joints if joint not in moving]
+    if given and without:
+        raise MissingKey(
+            f"joint {without[0]!r} has no column {without[0] + VELOCITY!r}, joint {given[0]!r} has one",
+            valid="velocities of all joints or of none",
+        )

@@ -1,0 +1,136 @@
+"""A trajectory to a file that `trajectory_file` reads back: CSV, or a JointTrajectory message in YAML or JSON.
+
+Every number is written so that it comes back bit for bit; times of messages are whole nanoseconds. What would not
+come back is refused. Not for: results (`report`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterator
+from pathlib import PurePath
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput, ClearanceError
+from clearance.formats.message.times import split_time, whole_times
+from clearance.formats.motion.trajectory_file import parse_trajectory
+from clearance.formats.table.column_units import VELOCITY
+from clearance.formats.table.csv_table import TIME
+from clearance.formats.text.yaml_text import flow
+from clearance.world.trajectory import Points, Trajectory
+
+
+class WrittenTrajectory(NamedTuple):
+    """The content of a file, and a line each on what is not as it was."""
+
+    content: bytes
+    notes: tuple[str, ...]
+
+
+def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
+    """The content of the file `shown`, in the format of its suffix.
+
+    Raises:
+        BadInput: no such format, or names that it cannot hold. BadTime: samples less than a nanosecond apart.
+    """
+    suffix = PurePath(shown).suffix.lower()
+    if suffix not in WRITERS:
+        raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
+    to_text, in_nanoseconds = WRITERS[suffix]
+    content = to_text(trajectory).encode()
+    whole = whole_times(trajectory.written.times.tolist()) if in_nanoseconds else None
+    is_rounded = whole is not None and whole.n_rounded > 0
+    _refuse_other(trajectory, content, shown, is_rounded)
+    return WrittenTrajectory(content, (whole.note(),) if whole and is_rounded else ())
+
+
+def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:
+    """The samples that a file of this name holds: a message has accelerations, a table the samples between."""
+    return trajectory.written if WRITERS[PurePath(shown).suffix.lower()][1] else trajectory
+
+
+def _csv(trajectory: Trajectory) -> str:
+    header, columns = (
+        [TIME, *trajectory.joint_names],
+        [trajectory.times[:, None], trajectory.positions],
+    )
+    if trajectory.velocities is not None:
+        header += [name + VELOCITY for name in trajectory.joint_names]
+        columns.append(trajectory.velocities)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(np.hstack(columns).tolist())
+    return text.getvalue()
+
+
+def _yaml(trajectory: Trajectory) -> str:
+    names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
+    lines = [f"joint_names: [{names}]", "points:"]
+    for point, (seconds, nanoseconds) in _points(trajectory):
+        rows = [f"{key}: {flow(values)}" for key, values in point.items()]
+        rows.append(f"time_from_start: {{sec: {seconds}, nanosec: {nanoseconds}}}")
+        lines += [f"- {rows[0]}", *(f"  {row}" for row in rows[1:])]
+    return "\n".join([*lines, ""])
+
+
+def _json(trajectory: Trajectory) -> str:
+    points = [
+        {**point, "time_from_start": {"sec": seconds, "nanosec": nanoseconds}}
+        for point, (seconds, nanoseconds) in _points(trajectory)
+    ]
+    message = {"joint_names": list(trajectory.joint_names), "points": points}
+    return json.dumps(message, ensure_ascii=False) + "\n"
+
+
+def _points(trajectory: Trajectory) -> Iterator[tuple[dict[str, list[float]], tuple[int, int]]]:
+    """The values of each point of a message, and its time in seconds and nanoseconds."""
+    columns = {k: v for k, v in _columns(trajectory.written).items() if v is not None}
+    for i, time in enumerate(trajectory.written.times.tolist()):
+        yield {key: values[i].tolist() for key, values in columns.items()}, split_time(time)
+
+
+def _columns(samples: Points | Trajectory) -> dict[str, np.ndarray | None]:
+    accelerations = samples.accelerations if isinstance(samples, Points) else None
+    return {
+        "positions": samples.positions,
+        "velocities": samples.velocities,
+        "accelerations": accelerations,
+    }
+
+
+WRITERS: dict[str, tuple[Callable[[Trajectory], str], bool]] = {
+    ".csv": (_csv, False),
+    ".json": (_json, True),
+    ".yaml": (_yaml, True),
+    ".yml": (_yaml, True),
+}
+"""By suffix: what writes it, and whether it keeps times in whole nanoseconds."""
+
+
+def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded: bool) -> None:
+    """Nothing, if the file is read back as what was written."""
+    try:
+        back = parse_trajectory(content, shown)
+    except ClearanceError as error:
+        raise BadInput(f"the trajectory cannot be written as {shown!r}: {error}") from None
+    asked = samples_in(trajectory, shown)
+    told, read = _columns(asked), _columns(back.written)
+    same = back.joint_names == trajectory.joint_names and all(
+        _same(told[key], read[key]) for key in told
+    )
+    if not (same and (is_rounded or np.array_equal(back.written.times, asked.times))):
+        raise BadInput(
+            f"the names {', '.join(trajectory.joint_names)!r:.80} would be read otherwise from {shown!r}",
+            valid="another format",
+        )
+
+
+def _same(a: np.ndarray | None, b: np.ndarray | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return a.shape == b.shape and a.tobytes() == b.tobytes()

@@ -1,0 +1,92 @@
+"""What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
+
+Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema.case`,
+`csv_table`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.formats.schema.obstacle import Obstacle
+from clearance.geometry.shapes import SHAPES
+from clearance.world.notice import Notice, Severity, listed
+
+LARGE_RADIUS = 5.0
+"""[m] No arm of this world works near a pipe or ball of more than ten metres across; 5 mm is a
+usual radius.
+"""
+
+LARGE_BALL = 0.2
+"""[m] Points of a scan are millimetres to centimetres apart; 5 is 5 mm."""
+
+LARGE_SCALE = 100.0
+"""[-] Mesh files are in metres or finer units, so that scales are 1 or less: 1000 is mistaken for 0.001."""
+
+ROUND_ANGLE = 0.02
+"""[rad] How near a multiple of pi/4 an angle is that is meant as one, written with few digits: 3.15, 4.7, 6.3."""
+
+
+def units(text: str) -> Notice:
+    """Suspect input of kind "units"."""
+    return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
+
+
+def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:
+    """What is odd about radii, angles and scales of a scene's obstacles."""
+    wide, turned = [], []
+    for obstacle in obstacles:
+        radius = _radius(obstacle)
+        if radius > LARGE_RADIUS:
+            wide.append(f"obstacle {obstacle.name!r} has a radius of {radius:g} m")
+        if obstacle.points is not None and obstacle.points.radius > LARGE_BALL:
+            wide.append(
+                f"each point of {obstacle.name!r} has a radius of {obstacle.points.radius:g} m"
+            )
+        turned += odd_angles(f"obstacle {obstacle.name!r}", obstacle.pose.rpy)
+    hint = "lengths are in metres, is this millimetres?"
+    notices = [units(f"{listed(wide)}; {hint}")] if wide else []
+    return notices + angle_notices(turned)
+
+
+def _radius(obstacle: Obstacle) -> float:
+    """[m] of a round shape; 0 for others."""
+    shape = SHAPES.get(obstacle.kind)
+    return 0.0 if shape is None or shape.radius is None else obstacle.dimensions[shape.radius]
+
+
+def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:
+    """That an angle looks like degrees, if one does."""
+    odd = [angle for angle in map(abs, rpy or ()) if _looks_like_degrees(angle)]
+    return [f"{what} has an angle of {max(odd):g} rad in its rpy"] if odd else []
+
+
+def angle_notices(odd: Sequence[str]) -> list[Notice]:
+    """One notice on all odd angles."""
+    return [units(f"{listed(odd)}; angles are in radians, is this degrees?")] if odd else []
+
+
+def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]:
+    """A notice if meshes, given by name, are made larger than any unit asks for."""
+    large = [(name, max(map(abs, scale))) for name, scale in scales]
+    odd = [
+        f"the file is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE
+    ]
+    if not odd:
+        return []
+    return [units(f"{listed(odd)}; lengths are in metres, and a file in millimetres needs 0.001")]
+
+
+def _looks_like_degrees(angle: float) -> bool:
+    """True above two half turns, and above one for a number that is round in decimals and no part of a turn.
+
+    Programs that write angles from 0 to a full turn write all digits; who writes 5 or 4.5 thinks of degrees.
+    """
+    if angle > 2.0 * np.pi + ROUND_ANGLE:
+        return True
+    if angle <= np.pi + ROUND_ANGLE or round(angle, 2) != angle:
+        return False
+    eighths = angle / (np.pi / 4)
+    return abs(eighths - round(eighths)) * np.pi / 4 > ROUND_ANGLE

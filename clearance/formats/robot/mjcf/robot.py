@@ -1,0 +1,191 @@
+"""MJCF to a robot: one body for each body of the model that has a shape, in the body's frame.
+
+Not for: where the robot stands, or how it moves; models that are scenes (`scene.mjcf`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from clearance.errors import at
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.compound_joints import notes_on_parts
+from clearance.formats.robot.mjcf.document import MjcfDocument, mjcf_document
+from clearance.formats.robot.mjcf.filters import MjcfFilters
+from clearance.formats.robot.mjcf.followers import with_followers
+from clearance.formats.robot.mjcf.model import MjcfGeom, MjcfModel
+from clearance.formats.robot.mjcf.shapes import MjcfShapes, compiled
+from clearance.formats.robot.mjcf.states import reference_of, states_of
+from clearance.formats.robot.mjcf.tree import joints_of
+from clearance.formats.robot.plane_box import note_on_planes
+from clearance.formats.robot.request import Geometry, RobotRequest
+from clearance.formats.robot.shape_kinds import (
+    chosen_kind,
+    notes_on_bare,
+    refuse_other_geometry,
+    unseen,
+)
+from clearance.formats.robot.tree import links_from_root
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.world.body import Body
+from clearance.world.names import checked_name, require_own_names
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import WORLD_LINK, Robot
+from clearance.world.self_pairs import neighbours
+
+
+def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in an MJCF file; its root link is the world, to which the model's own static geoms belong.
+
+    Raises:
+        BadInput: with the file and the body, joint, geom or mesh. Unavailable: MuJoCo is not installed.
+        NothingToMeasure: no body has a shape of the kind that is asked for, though there are others.
+    """
+    with at(meshes.files.shown(request.path)):
+        document = mjcf_document(request.path, meshes.files)
+        model, shapes = compiled(document, request.package_dirs, meshes)
+        names = [body.name for body in model.bodies]
+        known = frozenset(names)
+        joints, notes, notices = with_followers(joints_of(model), model)
+        frames = [joint.child for joint in joints if joint.child not in known]
+        require_own_names("link", [*names, *frames])
+        checked_name(model.name)
+        link_names, ordered = links_from_root((*names, *frames), joints)
+        kinds = _kinds(model)
+        refuse_other_geometry(kinds, request.geometry)
+        measured = _measured(model, kinds, request.geometry)
+        bodies = [_body(name, measured[name], shapes) for name in link_names if measured.get(name)]
+    told = [*notes, *notes_on_parts(ordered), *_notes(model, kinds, measured)]
+    robot = Robot(
+        model.name or "robot",
+        link_names,
+        ordered,
+        tuple(bodies),
+        (),
+        (*notices, *_notices(document, model), *unseen(kinds, request.geometry)),
+        states=states_of(model),
+        reference=reference_of(model),
+    )
+    filters = _filters(model, kinds, request.geometry, robot)
+    told = [f"{request.path.name}: {note}" for note in (*told, *filters.notes())]
+    return replace(robot, notes=(*shapes.notes(), *told), own_matrix=filters.matrix)
+
+
+def _filters(
+    model: MjcfModel, kinds: dict[str, frozenset[str]], geometry: Geometry, robot: Robot
+) -> MjcfFilters:
+    """What keeps bodies from colliding; one that has planes alone is among those that collide."""
+    names = [body.name for body in robot.bodies]
+    plane = frozenset({"collision"})
+    chosen = {name: chosen_kind(kinds.get(name) or plane, geometry) for name in names}
+    colliding = frozenset(name for name in names if chosen[name] == "collision")
+    return MjcfFilters(model, frozenset(names), colliding, neighbours(robot))
+
+
+def _notices(document: MjcfDocument, model: MjcfModel) -> list[Notice]:
+    """Warnings on what holds bodies together in MuJoCo and not here."""
+    found = []
+    if document.left_out:
+        counts = ", ".join(f"{n} {tag}" for tag, n in document.left_out.items())
+        found.append(
+            f"equalities that close loops are not followed ({counts}): the trajectory, or joints, must "
+            "give every joint of the loop its value"
+        )
+    return [Notice(Severity.WARNING, "geometry", text) for text in found]
+
+
+def _kinds(model: MjcfModel) -> dict[str, frozenset[str]]:
+    return {
+        name: frozenset(
+            kind for kind in ("collision", "visual") if any(_is(geom, kind) for geom in geoms)
+        )
+        for name, geoms in _by_body(model).items()
+        if name != WORLD_LINK or geoms
+    }
+
+
+def _measured(
+    model: MjcfModel, kinds: dict[str, frozenset[str]], geometry: Geometry
+) -> dict[str, list[MjcfGeom]]:
+    """The geoms of each body that are of the kind that is asked for, and planes that collide."""
+    found = {
+        name: [geom for geom in geoms if _is(geom, chosen_kind(kinds[name], geometry))]
+        for name, geoms in _by_body(model).items()
+    }
+    for geom in _planes(model):
+        found[model.bodies[geom.body].name].append(geom)
+    return found
+
+
+def _planes(model: MjcfModel) -> list[MjcfGeom]:
+    return [geom for geom in model.geoms if geom.kind == "plane" and geom.collides]
+
+
+def _is(geom: MjcfGeom, kind: str) -> bool:
+    return geom.collides if kind == "collision" else geom.shown
+
+
+def _by_body(model: MjcfModel) -> dict[str, list[MjcfGeom]]:
+    """The geoms of each body in their order, planes left out."""
+    found: dict[str, list[MjcfGeom]] = {body.name: [] for body in model.bodies}
+    for geom in model.geoms:
+        if geom.kind != "plane":
+            found[model.bodies[geom.body].name].append(geom)
+    return found
+
+
+def _body(name: str, geoms: Sequence[MjcfGeom], shapes: MjcfShapes) -> Body:
+    made = []
+    for geom in geoms:
+        with at(f"body {name!r}"):
+            made.append(shapes.shape(geom))
+    return Body(
+        name, Polyhedron.merged([shape for shape, _ in made]), ", ".join(o for _, o in made)
+    )
+
+
+def _notes(
+    model: MjcfModel,
+    kinds: dict[str, frozenset[str]],
+    measured: dict[str, list[MjcfGeom]],
+) -> list[str]:
+    """What was taken for what."""
+    notes = []
+    if measured.get(WORLD_LINK):
+        n = len(measured[WORLD_LINK])
+        what = (
+            "1 geom of the world itself stands"
+            if n == 1
+            else f"{n} geoms of the world itself stand"
+        )
+        told = f"{what} with the robot, as its link {WORLD_LINK!r}"
+        notes.append(f"{told}; self_clearance: true measures the other links against it")
+    planes = [repr(geom.name) for geom in _planes(model)]
+    if planes:
+        notes.append(note_on_planes(planes))
+    counted = Counter(
+        "collide"
+        if geom.collides
+        else "are only seen"
+        if geom.shown
+        else "are hidden and collide with nothing"
+        for geom in model.geoms
+        if geom.kind != "plane"
+    )
+    if counted:
+        told = ", ".join(f"{n} {what}" for what, n in sorted(counted.items()))
+        notes.append(f"geoms: {told}")
+    moving = [repr(body.name) for body in model.bodies if body.is_mocap]
+    if moving:
+        notes.append(f"mocap bodies stay where the file has them: {listed(moving, 6)}")
+    free = [joint.name for joint in model.joints if joint.kind == "free"]
+    if free:
+        notes.append(
+            f"the values of free joints are places in the model's world: {listed(free, 6)}"
+        )
+    limited = [joint.name for joint in model.joints if joint.kind == "ball"]
+    if limited:
+        notes.append(f"limits of ball joints are not looked at: {listed(limited, 6)}")
+    return [*notes, *notes_on_bare(kinds)]

@@ -1,0 +1,71 @@
+"""What is asked of a reader of robot files. Not for: reading them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from clearance.errors import BadInput
+from clearance.formats.files.input_files import resolved
+from clearance.formats.mesh.placing import UpAxis
+
+Geometry = Literal["collision", "visual", "collision_or_visual"]
+
+
+@dataclass(frozen=True)
+class RobotRequest:
+    """Which robot, and how its file is to be read.
+
+    Attributes:
+        path: the robot's file.
+        package_dirs: where `package://` is looked up first.
+        geometry: which shapes are the robot's; "collision_or_visual" takes the visual ones of links that have no
+            others.
+        collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
+        xacro: the file is made into URDF by xacro first, which evaluates Python. xacro_args: its arguments.
+    """
+
+    path: Path
+    package_dirs: tuple[Path, ...] = ()
+    geometry: Geometry = "collision"
+    collada_up_axis: UpAxis = "ros"
+    xacro: bool = False
+    xacro_args: tuple[tuple[str, str], ...] = ()
+
+
+def request_in_memory(
+    path: str | Path,
+    package_dirs: Sequence[str | Path],
+    geometry: Geometry,
+    collada_up_axis: UpAxis,
+    xacro: bool,
+    xacro_args: Mapping[str, str | bool | int | float],
+) -> RobotRequest:
+    """What a caller in Python asks; paths are relative to the current folder.
+
+    Raises:
+        BadInput: a name that no argument of xacro can have.
+    """
+    folders = tuple(map(Path, package_dirs))
+    args = checked_args(xacro_args)
+    return RobotRequest(
+        resolved(str(path), Path()), folders, geometry, collada_up_axis, xacro, args
+    )
+
+
+def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[str, str], ...]:
+    """The arguments of a case file as on xacro's command line.
+
+    Raises:
+        BadInput: a name that no argument can have.
+    """
+    for name in given:
+        if not name or ":=" in name or name != name.strip():
+            raise BadInput(f"{name!r:.60} is given", valid="names of the file's xacro:arg elements")
+    return tuple((name, _as_text(value)) for name, value in given.items())
+
+
+def _as_text(value: str | bool | int | float) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,61 @@
+"""Which of a link's shapes are the robot's, those to collide with or those to be seen, and what that leaves out.
+
+Not for: the shapes themselves (`urdf.shapes`, `mjcf.shapes`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from clearance.errors import NothingToMeasure
+from clearance.formats.robot.request import Geometry
+from clearance.world.notice import Notice, Severity, listed
+
+Kinds = Mapping[str, frozenset[str]]
+"""By link, in order, which of "collision" and "visual" it has shapes of."""
+
+_OTHER = {"collision": "visual", "visual": "collision"}
+
+
+def chosen_kind(has: frozenset[str], geometry: Geometry) -> str:
+    """Which shapes of a link are measured, of those that it has."""
+    if geometry != "collision_or_visual":
+        return geometry
+    return "collision" if "collision" in has else "visual"
+
+
+def refuse_other_geometry(kinds: Kinds, geometry: Geometry) -> None:
+    """Raises `NothingToMeasure` if all shapes are of the kind that is not asked for."""
+    if geometry == "collision_or_visual" or any(geometry in has for has in kinds.values()):
+        return
+    other = _OTHER[geometry]
+    n_other = sum(other in has for has in kinds.values())
+    if n_other:
+        have = "1 link has" if n_other == 1 else f"{n_other} links have"
+        raise NothingToMeasure(
+            f"no link has a {geometry} shape, {have} a {other} shape",
+            valid=f"give robot: {{geometry: {other}}}",
+        )
+
+
+def unseen(kinds: Kinds, geometry: Geometry) -> list[Notice]:
+    """A warning on links that have a shape but are not measured, since it is of the other kind."""
+    if geometry == "collision_or_visual":
+        return []
+    other = _OTHER[geometry]
+    names = [repr(name) for name, has in kinds.items() if geometry not in has and other in has]
+    if not names:
+        return []
+    have, are = ("1 link has", "is") if len(names) == 1 else (f"{len(names)} links have", "are")
+    remedy = "; robot: {geometry: collision_or_visual} measures them" if other == "visual" else ""
+    text = f"{have} a {other} but no {geometry} shape and {are} not measured: {listed(names, 6)}{remedy}"
+    return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def notes_on_bare(kinds: Kinds) -> list[str]:
+    """A note on links without any shape, which are frames."""
+    bare = [name for name, has in kinds.items() if not has]
+    if not bare:
+        return []
+    count = "1 link" if len(bare) == 1 else f"{len(bare)} links"
+    return [f"{count} without any shape: {listed(bare, 6)}"]

@@ -1,0 +1,247 @@
+"""What a URDF document must look like before anything is made of it: each fault names its element.
+
+Elements that say nothing about shape or motion (inertia, colour, transmission, gazebo, …) are taken out. Then a
+`<geometry>` has one child, its shape, and attributes hold what `pose_of` and `numbers` read from them.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clearance.errors import BadInput, BadShape, MissingKey, NotFinite, at
+from clearance.formats.plausibility import odd_angles
+from clearance.formats.robot.request import Geometry
+from clearance.formats.robot.robot_element import robot_element
+from clearance.formats.robot.shape_kinds import chosen_kind
+from clearance.formats.text.numbers import is_zero
+from clearance.geometry.pose import pose_from_rpy
+from clearance.geometry.shapes import SHAPES, Measure
+from clearance.world.names import checked_name, require_own_names
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+_KEPT_BELOW = {
+    "robot": ("link", "joint"),
+    "link": ("collision", "visual"),
+    "collision": ("origin", "geometry"),
+    "visual": ("origin", "geometry"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "mimic"),
+}
+
+_PRIMITIVES = {name: shape for name, shape in SHAPES.items() if shape.in_urdf}
+
+_NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
+    **{
+        name: {
+            key: (3,) if measure is Measure.SIZES else (1,)
+            for key, measure in shape.dimensions.items()
+        }
+        for name, shape in _PRIMITIVES.items()
+    },
+    "origin": {"xyz": (3,), "rpy": (3,)},
+    "axis": {"xyz": (3,)},
+    "mesh": {"scale": (1, 3)},
+    "limit": {"lower": (1,), "upper": (1,)},
+    "mimic": {"multiplier": (1,), "offset": (1,)},
+}
+"""How many numbers each attribute holds."""
+
+_REQUIRED = {
+    **{name: tuple(shape.dimensions) for name, shape in _PRIMITIVES.items()},
+    "link": ("name",),
+    "joint": ("name", "type"),
+    "parent": ("link",),
+    "child": ("link",),
+    "mesh": ("filename",),
+    "mimic": ("joint",),
+}
+
+_SHAPES = (*_PRIMITIVES, "mesh")
+
+
+def parse_document(data: bytes) -> Element:
+    """The checked root element of a URDF document, reduced to links' shapes and joints.
+
+    Raises:
+        BadInput: as `reduced_document` and `checked_document`.
+    """
+    return checked_document(reduced_document(data))
+
+
+def reduced_document(data: bytes) -> Element:
+    """The root element of a URDF document, reduced to links' shapes and joints.
+
+    Raises:
+        BadSyntax: not XML, not URDF, or a xacro file.
+    """
+    root = robot_element(data, "a URDF file")
+    checked_name(root.get("name") or "")
+    _reduce(root)
+    return root
+
+
+def without_empty_shapes(root: Element, geometry: Geometry) -> list[str]:
+    """What is taken out of a reduced document since it has no size: no shape, or one whose dimensions are all 0.
+
+    A shape that is flat or a line is left to be refused, since something may come near it.
+
+    Args:
+        geometry: which shapes are measured; others are taken out without being named.
+    """
+    names = []
+    for link in root.iterfind("link"):
+        has = frozenset(("collision",) if link.find("collision") is not None else ())
+        measured = chosen_kind(has, geometry)
+        for kind in ("collision", "visual"):
+            for i, element in enumerate(link.findall(kind)):
+                if _has_no_size(element):
+                    names += [f"link {link.get('name')!r} {kind}[{i}]"] * (kind == measured)
+                    link.remove(element)
+    return names
+
+
+def _has_no_size(element: Element) -> bool:
+    geometry = element.find("geometry")
+    if geometry is None or not len(geometry):
+        return True
+    sizes = geometry[0].attrib.values() if geometry[0].tag in _PRIMITIVES else ()
+    words = [word for size in sizes for word in size.split()]
+    return bool(words) and all(is_zero(word) for word in words)
+
+
+def checked_document(root: Element) -> Element:
+    """The root element of a reduced document, which can be read.
+
+    Raises:
+        MissingKey, BadShape, NotFinite, DuplicateName, BadInput: an element that cannot be used, with its place.
+    """
+    for kind in ("link", "joint"):
+        _check_names(root, kind)
+        for element in root.findall(kind):
+            _check(element, f"{kind} {element.get('name')!r}")
+    return root
+
+
+def odd_origins(root: Element) -> list[str]:
+    """The elements of a checked document whose origins have angles that look like degrees."""
+    odd = []
+    for origin in root.iter("origin"):
+        owner = origin.getparent()
+        if owner.tag != "joint":
+            owner = owner.getparent()
+        what = f"an origin of {owner.tag} {owner.get('name')!r}"
+        odd += odd_angles(what, numbers(origin, "rpy", (0.0,)))
+    return odd
+
+
+def pose_of(element: Element) -> np.ndarray:
+    """The (4, 4) pose [m] of an element in what it belongs to, by its `<origin>`; the identity without one."""
+    origin = element.find("origin")
+    return np.eye(4) if origin is None else pose_from_rpy(*_origin(origin))
+
+
+def number(element: Element, attribute: str, default: float) -> float:
+    """The number in an attribute of a checked document."""
+    (value,) = numbers(element, attribute, (default,))
+    return value
+
+
+def numbers(element: Element, attribute: str, default: tuple[float, ...] = ()) -> tuple[float, ...]:
+    """The numbers in an attribute of a checked document."""
+    text = element.get(attribute)
+    return default if text is None else tuple(map(float, text.split()))
+
+
+def dimensions_of(primitive: Element) -> dict[str, float | tuple[float, ...]]:
+    """The dimensions of a shape of the table, by name, in a checked document."""
+    given = {key: numbers(primitive, key) for key in SHAPES[primitive.tag].dimensions}
+    return {key: values[0] if len(values) == 1 else values for key, values in given.items()}
+
+
+def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Place [m], and roll, pitch, yaw [rad]."""
+    zeros = (0.0, 0.0, 0.0)
+    return numbers(origin, "xyz", zeros), numbers(origin, "rpy", zeros)
+
+
+def _reduce(element: Element) -> None:
+    kept = _KEPT_BELOW.get(element.tag)
+    for child in list(element):
+        if kept is not None and child.tag not in kept:
+            element.remove(child)
+        else:
+            _reduce(child)
+
+
+def _check_names(root: Element, kind: str) -> None:
+    names = [element.get("name") for element in root.findall(kind)]
+    for i, name in enumerate(names):
+        if not name:
+            raise MissingKey(f"<{kind}> has no name", where=f"{kind}[{i}]")
+    require_own_names(kind, names)
+
+
+def _check(element: Element, where: str) -> None:
+    for attribute in _REQUIRED.get(element.tag, ()):
+        if not element.get(attribute):
+            raise MissingKey(f"<{element.tag}> has no {attribute}", where=where)
+    if element.tag == "mesh":
+        with at(where):
+            checked_name(element.get("filename"))
+    for attribute, counts in _NUMBERS.get(element.tag, {}).items():
+        _check_numbers(element, attribute, counts, where)
+    if element.tag == "geometry":
+        _check_geometry(element, where)
+    if element.tag in ("collision", "visual") and element.find("geometry") is None:
+        raise MissingKey(f"<{element.tag}> has no <geometry>", where=where)
+    if element.tag == "joint":
+        _check_ends(element, where)
+    counted: dict[str, int] = {}
+    for child in element:
+        i = counted.get(child.tag, 0)
+        counted[child.tag] = i + 1
+        listed = child.tag in ("collision", "visual")
+        _check(child, f"{where} {child.tag}[{i}]" if listed else f"{where} {child.tag}")
+
+
+def _check_numbers(element: Element, attribute: str, counts: tuple[int, ...], where: str) -> None:
+    text = element.get(attribute)
+    if text is None:
+        return
+    words = text.replace(",", " ").split()
+    try:
+        values = [float(word) for word in words if "_" not in word]
+    except ValueError:
+        values = []
+    if len(values) != len(words) or len(values) not in counts:
+        wanted = " or ".join(str(n) for n in counts)
+        plural = " is" if counts == (1,) else "s are"
+        raise BadShape(
+            f"{attribute}={text!r:.60} is given",
+            where=where,
+            valid=f"{wanted} number{plural} needed",
+        )
+    if not all(math.isfinite(value) for value in values):
+        raise NotFinite(
+            f"{attribute}={text!r:.60} is given", where=where, valid="finite numbers are needed"
+        )
+    element.set(attribute, " ".join(words))
+
+
+def _check_geometry(element: Element, where: str) -> None:
+    shapes = [str(child.tag) for child in element]
+    if len(shapes) != 1 or shapes[0] not in _SHAPES:
+        given = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
+        raise BadInput(f"{given} is given", where=where, valid=f"one of {', '.join(_SHAPES)}")
+
+
+def _check_ends(element: Element, where: str) -> None:
+    for end in ("parent", "child"):
+        if len(element.findall(end)) != 1:
+            raise MissingKey(
+                f"<joint> has {len(element.findall(end))} <{end}>", where=where, valid="one"
+            )

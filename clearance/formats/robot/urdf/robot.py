@@ -1,0 +1,151 @@
+"""URDF to a robot: one body for each link that has a shape.
+
+The document is checked first (`elements`), so that what is read here is there; meshes go through our own
+loader (`shapes`). Not for: where the robot stands, or how it moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from clearance.errors import BadSyntax, at
+from clearance.formats.files.foreign_files import refuse_foreign
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.mesh.placing import UpAxis
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.plausibility import angle_notices
+from clearance.formats.robot.compound_joints import frames_between
+from clearance.formats.robot.request import Geometry, RobotRequest, request_in_memory
+from clearance.formats.robot.robot_element import ALLOW_XACRO, XACRO
+from clearance.formats.robot.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
+from clearance.formats.robot.tree import links_from_root
+from clearance.formats.robot.urdf.axis_check import axis_notices
+from clearance.formats.robot.urdf.elements import (
+    checked_document,
+    odd_origins,
+    reduced_document,
+    without_empty_shapes,
+)
+from clearance.formats.robot.urdf.joints import joints_of
+from clearance.formats.robot.urdf.shapes import ShapeReader
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.world.body import Body
+from clearance.world.names import require_own_names
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import Robot
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+
+def load_urdf(
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    geometry: Geometry = "collision",
+    collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
+) -> Robot:
+    """The robot in a URDF file, for cases that are made in memory.
+
+    Args:
+        path: or `pybullet_data:…`, as in a case file.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    request = request_in_memory(path, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    return read_urdf(request, MeshStore(InputFiles(request.path.parent)))
+
+
+def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in a URDF file: one body for each link that has a shape, in the link's frame.
+
+    Raises:
+        BadInput: with the file and the element. NothingToMeasure: no link has a shape of the kind that is
+        asked for, though there are others.
+    """
+    data, made = _document(request, meshes.files)
+    with at(meshes.files.shown(request.path)):
+        root = reduced_document(data)
+        empty = without_empty_shapes(root, request.geometry)
+        checked_document(root)
+        joints, notes = joints_of(root)
+        by_name = {link.get("name"): link for link in root.iterfind("link")}
+        frames = frames_between(joints)
+        require_own_names("link", [*by_name, *frames])
+        link_names, ordered = links_from_root((*by_name, *frames), joints)
+        links = [by_name[name] for name in link_names if name in by_name]
+        kinds = _kinds(links)
+        refuse_other_geometry(kinds, request.geometry)
+        reader = ShapeReader(request, meshes)
+        bodies = [body for link in links if (body := _body(link, reader)) is not None]
+        notices = [
+            *angle_notices(odd_origins(root)),
+            *reader.notices(),
+            *axis_notices(links, bodies, ordered, reader),
+            *unseen(kinds, request.geometry),
+            *_on_empty(empty),
+        ]
+    notes = [f"{request.path.name}: {note}" for note in (*notes, *notes_on_bare(kinds))]
+    return Robot(
+        root.get("name") or "robot",
+        link_names,
+        ordered,
+        tuple(bodies),
+        (*made, *reader.notes(), *notes),
+        tuple(notices),
+    )
+
+
+def _on_empty(empty: list[str]) -> list[Notice]:
+    """A warning on shapes that are left out."""
+    if not empty:
+        return []
+    text = f"shapes without a size, not measured: {listed(empty, 6)}"
+    return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
+    """The URDF in a file, or what xacro makes of it; and notes on that."""
+    if request.xacro:
+        from clearance.formats.robot.urdf.xacro_file import expanded
+
+        return expanded(request, files)
+    data, shown = files.read(request.path), files.shown(request.path)
+    refuse_foreign(data, shown, "a URDF file")
+    if request.path.suffix.lower() == XACRO:
+        raise BadSyntax("this is a xacro file, not a URDF file", where=shown, valid=ALLOW_XACRO)
+    return data, ()
+
+
+def _body(link: Element, reader: ShapeReader) -> Body | None:
+    """The shapes of a link as one body in its frame, if it has any."""
+    kind = reader.kind(link)
+    elements = link.findall(kind)
+    if not elements:
+        return None
+    name = link.get("name")
+    shapes, origins = [], []
+    for i, element in enumerate(elements):
+        with at(f"link {name!r} {kind}[{i}]"):
+            shape, origin = reader.shape(element)
+        shapes.append(shape)
+        origins.append(origin)
+    whole = shapes[0] if len(shapes) == 1 else Polyhedron.merged(shapes)
+    return Body(name, whole, ", ".join(origins))
+
+
+def _kinds(links: list[Element]) -> dict[str, frozenset[str]]:
+    """Which kinds of shapes each link has."""
+    return {
+        link.get("name"): frozenset(
+            kind for kind in ("collision", "visual") if link.find(kind) is not None
+        )
+        for link in links
+    }

@@ -1,0 +1,82 @@
+"""The shapes of a URDF's links, those of the table of shapes and mesh files, in the link's frame.
+
+Not for: which links and joints there are (`robot`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clearance.formats.files.found_files import FoundFiles
+from clearance.formats.files.lookups import MESH, note_lookup
+from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.mesh_store import MeshStore, Scale
+from clearance.formats.plausibility import scale_notices
+from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.shape_kinds import chosen_kind
+from clearance.formats.robot.urdf.elements import dimensions_of, numbers, pose_of
+from clearance.formats.text.notes import grouped, short
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import SHAPES
+from clearance.world.notice import Notice
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+
+class ShapeReader:
+    """Makes shapes from elements, and keeps what is to be reported of their files."""
+
+    def __init__(self, request: RobotRequest, meshes: MeshStore) -> None:
+        self.request = request
+        self.meshes = meshes
+        self._notes: list[tuple[str, str]] = []
+        self._scales: dict[str, Scale] = {}
+        self._found = FoundFiles()
+
+    def kind(self, link: Element) -> str:
+        """Which elements of a link are its shape."""
+        has = frozenset(() if link.find("collision") is None else ("collision",))
+        return chosen_kind(has, self.request.geometry)
+
+    def shape(self, element: Element) -> tuple[Polyhedron, str]:
+        """The shape of a collision or visual element in its link's frame, and what it was made from."""
+        shape, origin = self._unmoved(element.find("geometry")[0])
+        moved = element.find("origin") is not None
+        return (shape.transformed(pose_of(element)) if moved else shape), origin
+
+    def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
+        """Where a mesh element's file lies, and its scale."""
+        given = mesh.get("filename")
+        asked = given, self.request.path.parent, self.request.package_dirs
+        found = mesh_path(*asked)
+        note_lookup(self.meshes.files, MESH, *asked, found.path)
+        shown = self.meshes.files.shown(found.path)
+        self._found.add(given, found, shown)
+        scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
+        self._scales[short(shown)] = scale
+        return found.path, scale
+
+    def notes(self) -> list[str]:
+        """What was mended in the files, a line for each kind of fault."""
+        return [*grouped(self._notes), *self._found.notes()]
+
+    def notices(self) -> list[Notice]:
+        """Files that stand in for others, and scales that look like another unit."""
+        return [*self._found.notices(), *scale_notices(list(self._scales.items()))]
+
+    def _unmoved(self, element: Element) -> tuple[Polyhedron, str]:
+        kind = element.tag
+        if kind == "mesh":
+            return self._mesh(element)
+        return SHAPES[kind].maker(**dimensions_of(element)), kind
+
+    def _mesh(self, element: Element) -> tuple[Polyhedron, str]:
+        path, scale = self.mesh_file(element)
+        mesh = self.meshes.load(path, scale, self.request.collada_up_axis)
+        shown = self.meshes.files.shown(path)
+        self._notes += [(shown, note) for note in mesh.notes]
+        return mesh.shape, shown

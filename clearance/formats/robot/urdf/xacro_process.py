@@ -1,0 +1,210 @@
+"""xacro in a process of its own, and its adapter: what is asked comes as JSON on stdin, the URDF goes to stdout.
+
+xacro evaluates Python and keeps what it does in its module, so one run must not meet another, nor last. What it
+opens is told, so that it can be hashed. Writing, other processes and the network are refused: a hedge against
+accidents, no wall against a hostile file. Not for: importing (`xacro_file` starts it).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+MOST_TEXT = 64_000_000
+"""[characters] Of the URDF."""
+
+_REFUSED = (
+    "socket.", "subprocess.", "os.system", "os.exec", "os.fork", "os.posix_spawn", "os.spawn", "os.startfile",
+    "os.remove", "os.rename", "os.rmdir", "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.ch", "os.kill",
+    "os.putenv", "shutil.", "ctypes.", "urllib.", "http.", "ftplib.", "smtplib.", "webbrowser.", "pty.",
+)  # fmt: skip
+"""Beginnings of the audit events of what is not done here."""
+
+_WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+
+_CODE = (".py", ".pyc", ".so", ".pyd")
+"""Files that Python itself may open."""
+
+
+class _Refusal(Exception):
+    """What is evaluated asks for more than to read."""
+
+
+class ChildWatch:
+    """Keeps which files are opened, and refuses all else, while it is on."""
+
+    def __init__(self) -> None:
+        self.opened: dict[str, None] = {}
+        self.on = False
+
+    def __call__(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if not self.on:
+            return
+        if event == "open":
+            self._open(*arguments)
+        elif event.startswith(_REFUSED):
+            raise _Refusal(f"it asks for {event!r}, which is refused")
+
+    def _open(self, path: object, mode: str | None, flags: int) -> None:
+        if (mode and set(mode) & set("wax+")) or (flags or 0) & _WRITES:
+            raise _Refusal("it asks to write a file, which is refused")
+        if isinstance(path, str | bytes | os.PathLike):
+            name = os.fsdecode(path)
+            if not name.endswith(_CODE):
+                self.opened[os.path.abspath(name)] = None
+
+
+class _Arguments(dict[str, str]):
+    """The arguments of a file, and which of them it asks for."""
+
+    def __init__(self, given: dict[str, str]) -> None:
+        super().__init__(given)
+        self.asked: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.asked.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.asked.add(str(name))
+        return super().__getitem__(name)
+
+
+class _Packages:
+    """Stands in for ROS's index of packages, so that `$(find x)` follows our rules."""
+
+    def __init__(self, folder: Path, package_dirs: list[Path], watch: ChildWatch) -> None:
+        self._folder, self._dirs, self._watch = folder, package_dirs, watch
+        self.by_variable: dict[str, dict[str, str]] = {}
+        self.found: dict[str, str] = {}
+
+    def find(self, name: str, *_: object, **__: object) -> str:
+        """The folder of a package."""
+        from clearance.formats.files.mesh_paths import package_folder
+
+        self._watch.on = False  # manifests that are looked into are no input
+        try:
+            found = package_folder(str(name), self._folder, self._dirs)
+        finally:
+            self._watch.on = True
+        if found.variable:
+            self.by_variable.setdefault(found.variable, {})[str(name)] = str(found.path)
+        self.found[str(name)] = os.path.abspath(found.path)
+        return self.found[str(name)]
+
+    def install(self) -> None:
+        """Makes this the module that xacro asks."""
+        packages = types.ModuleType("ament_index_python.packages")
+        packages.get_package_share_directory = self.find  # type: ignore[attr-defined]
+        index = types.ModuleType("ament_index_python")
+        index.packages = packages  # type: ignore[attr-defined]
+        sys.modules |= {"ament_index_python": index, "ament_index_python.packages": packages}
+
+
+def _main() -> None:
+    asked = json.load(sys.stdin)
+    told, sys.stdout = sys.stdout, sys.stderr
+    sys.path[:] = asked["modules"]
+    json.dump(_answer(asked), told)
+
+
+def _answer(asked: dict[str, Any]) -> dict[str, Any]:
+    sys.dont_write_bytecode = True  # of modules that are imported while writing is refused
+
+    import xacro
+    import xacro.substitution_args  # before anything is watched
+    import xacro.xmlutils  # noqa: F401
+
+    import clearance.formats.files.mesh_paths  # noqa: F401
+
+    watch, path = ChildWatch(), Path(asked["path"])
+    packages = _Packages(path.parent, [Path(folder) for folder in asked["package_dirs"]], watch)
+    packages.install()
+    sys.addaudithook(watch)
+    _limit_work(asked["seconds"], asked["bytes"])
+    made = evaluated(path, asked["args"], watch)
+    return (
+        made
+        | {"files": [*watch.opened], "variables": packages.by_variable}
+        | {"packages": packages.found}
+    )
+
+
+def evaluated(path: Path, given: dict[str, str], watch: ChildWatch) -> dict[str, Any]:
+    """The URDF, the values of all arguments, and which of them were asked for; or what went wrong, and where."""
+    import xacro
+
+    arguments = _Arguments(given)
+    watch.on = True
+    try:
+        text = xacro.process_file(str(path), mappings=arguments).toxml()
+        if len(text) > MOST_TEXT:
+            raise _Refusal(f"the URDF has more than {MOST_TEXT:,} characters")
+    except Exception as error:
+        return _fault(error, getattr(xacro, "filestack", None) or [])
+    finally:
+        watch.on = False
+    return {"urdf": text, "args": dict(arguments), "asked": sorted(arguments.asked)}
+
+
+def _fault(error: Exception, stack: list[str | None]) -> dict[str, Any]:
+    """What went wrong, where: the file that was being read, and the line where the parser knows it."""
+    return {
+        "problem": _told(error),
+        "valid": getattr(_innermost(error), "valid", ""),
+        "file": next((name for name in reversed(stack) if name), None),
+        "line": getattr(error, "lineno", None),
+        "missing": _missing(error),
+    }
+
+
+def _innermost(error: Exception) -> Exception:
+    """What xacro's own exceptions wrap."""
+    inner = getattr(error, "exc", None)
+    return _innermost(inner) if isinstance(inner, Exception) else error
+
+
+def _missing(error: Exception) -> str | None:
+    """The file that is named and not there, if that is the fault."""
+    inner = _innermost(error)
+    if isinstance(inner, FileNotFoundError) and inner.filename:
+        return os.path.abspath(os.fsdecode(inner.filename))
+    return None
+
+
+def _told(error: Exception) -> str:
+    """The error and what it wraps, each said once."""
+    if isinstance(error, RecursionError):
+        return "it is nested too deep, or files or macros call each other without end"
+    if isinstance(error, MemoryError):
+        return "it needs too much memory"
+    if isinstance(error, KeyError):
+        return f"unknown name {error}"
+    if hasattr(error, "lineno"):
+        return str(error).partition(": line")[0]  # which stands before it
+    own = str(getattr(error, "problem", "") or Exception.__str__(error))
+    own = "" if own == "None" or own.startswith("<class ") else own
+    inner = getattr(error, "exc", None)
+    wrapped = (
+        _told(inner) if isinstance(inner, Exception) and not isinstance(inner, OSError) else ""
+    )
+    parts = (own, "" if wrapped in own else wrapped, getattr(error, "suffix", None) or "")
+    return " ".join(part for part in parts if part) or type(error).__name__
+
+
+def _limit_work(seconds: int, n_bytes: int) -> None:
+    """Ends this process after so much work, and refuses it more memory; not on Windows."""
+    try:
+        import resource
+    except ImportError:
+        return
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    resource.setrlimit(resource.RLIMIT_DATA, (n_bytes, n_bytes))
+
+
+if __name__ == "__main__":
+    _main()

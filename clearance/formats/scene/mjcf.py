@@ -1,0 +1,110 @@
+"""MJCF to a scene: an obstacle for each geom that stands. Not for: models that are robots (`mjcf.robot`)."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadInput, at
+from clearance.formats.mesh.off_file import off_text
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.mjcf.document import mjcf_document
+from clearance.formats.robot.mjcf.model import MjcfGeom, MjcfModel
+from clearance.formats.robot.mjcf.shapes import (
+    MjcfShapes,
+    body_from_shape,
+    compiled,
+    primitive,
+    triangles_of,
+)
+from clearance.formats.robot.plane_box import note_on_planes
+from clearance.formats.scene.pose_row import pose_row
+from clearance.formats.scene.request import SceneContent, SceneRequest
+from clearance.world.notice import Notice, Severity, listed
+
+
+def read_mjcf_scene(asked: SceneRequest) -> SceneContent:
+    """The geoms of an MJCF file that collide, where the file places them, called body/geom.
+
+    Raises:
+        BadInput: with the file and the body, joint, geom or mesh. Unavailable: MuJoCo is not installed.
+    """
+    with at(asked.shown):
+        document = mjcf_document(asked.path, asked.files)
+        model, shapes = compiled(document, asked.package_dirs, MeshStore(asked.files))
+        poses = _body_poses(model)
+        kept = [geom for geom in model.geoms if geom.collides]
+        if not kept:
+            raise BadInput("none of its geoms collides", valid="geoms with contype or conaffinity")
+        obstacles = [
+            {"name": _name(model, geom), **_row(geom, poses[geom.body], shapes, asked)}
+            for geom in kept
+        ]
+    notes = [f"{asked.shown}: {note}" for note in _notes(model, kept)]
+    return SceneContent({"obstacles": obstacles}, (*notes, *shapes.notes()), _notices(model))
+
+
+def _body_poses(model: MjcfModel) -> list[np.ndarray]:
+    """(4, 4) [m] of each body in the world, as the file has them."""
+    poses: list[np.ndarray] = []
+    for body in model.bodies:
+        poses.append(body.pose if not poses else poses[body.parent] @ body.pose)
+    return poses
+
+
+def _name(model: MjcfModel, geom: MjcfGeom) -> str:
+    return geom.name if geom.body == 0 else f"{model.bodies[geom.body].name}/{geom.name}"
+
+
+def _row(
+    geom: MjcfGeom, world_from_body: np.ndarray, shapes: MjcfShapes, asked: SceneRequest
+) -> dict[str, Any]:
+    """The row of a YAML scene for a geom, but for its name."""
+    pose = world_from_body @ body_from_shape(geom)
+    if geom.kind == "mesh":
+        with at(f"mesh {geom.mesh!r}"):
+            return {"mesh": _mesh(geom.mesh, shapes, asked), "pose": pose_row(pose)}
+    kind, dimensions = primitive(geom)
+    return {kind: dimensions, "pose": pose_row(pose)}
+
+
+def _mesh(name: str, shapes: MjcfShapes, asked: SceneRequest) -> dict[str, Any]:
+    """A mesh by its file; one that the model moves, or that stands in it, by a file that is not on disk."""
+    mesh = shapes.spec.meshes[name]
+    if mesh.file and mesh.lies_as_in_its_file:
+        path = shapes.file_of(mesh.file)
+        file = os.path.relpath(path, asked.path.parent)
+        return {"file": file, "scale": mesh.scale.tolist(), "collada_up_axis": "ros"}
+    vertices, triangles = triangles_of(shapes.mesh(name)[0])
+    file = f"{asked.path.name}.{_as_file_name(name)}.off"
+    asked.files.hold(asked.path.parent / file, off_text(vertices.tolist(), triangles.tolist()))
+    return {"file": file}
+
+
+def _as_file_name(name: str) -> str:
+    """The name with codes for what a file's name cannot hold; two names stay two."""
+    return re.sub(r"[^\w.-]", lambda found: f"%{ord(found[0]):02x}", name)
+
+
+def _notes(model: MjcfModel, kept: list[MjcfGeom]) -> list[str]:
+    notes = []
+    n_left_out = len(model.geoms) - len(kept)
+    if n_left_out:
+        notes.append(
+            f"{n_left_out} geoms that collide with nothing (contype, conaffinity) are left out"
+        )
+    planes = [repr(geom.name) for geom in kept if geom.kind == "plane"]
+    if planes:
+        notes.append(note_on_planes(planes))
+    return notes
+
+
+def _notices(model: MjcfModel) -> tuple[Notice, ...]:
+    moving = list(dict.fromkeys(repr(model.bodies[joint.body].name) for joint in model.joints))
+    if not moving:
+        return ()
+    text = f"bodies on joints stand where the file has them, with all that is on them: {listed(moving, 6)}"
+    return (Notice(Severity.WARNING, "geometry", text),)

@@ -1,0 +1,232 @@
+"""MoveIt's PlanningScene in YAML, as a message is printed or as robowflex writes it, to a scene.
+
+World objects become obstacles, attached ones ride on their link. Not for: the robot's state, colours.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadInput, at
+from clearance.formats.message.values import Message, Poses, items, message, messages, number, text
+from clearance.formats.scene.moveit.matrix import allowed_pairs
+from clearance.formats.scene.moveit.objects import object_rows
+from clearance.formats.scene.moveit.shapes import Row, SceneMeshes
+from clearance.formats.scene.pose_row import pose_row
+from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest
+from clearance.formats.text.notes import note_on_rounded
+from clearance.world.rules import pattern_of
+
+OCTOMAP = "<octomap>"
+"""The name of a map in MoveIt, by which its matrix may allow it."""
+
+_KEYS = {
+    "world",
+    "robot_state",
+    "allowed_collision_matrix",
+    "fixed_frame_transforms",
+    "robot_model_name",
+}
+
+
+def is_planning_scene(raw: object) -> bool:
+    """True for plain data that has what no scene of ours has."""
+    return isinstance(raw, dict) and not _KEYS.isdisjoint(raw) and "obstacles" not in raw
+
+
+def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
+    """The obstacles of a planning scene, what may touch them, and the padding of links.
+
+    Raises:
+        BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
+    """
+    with at(asked.shown):
+        meshes, poses = SceneMeshes(asked), Poses()
+        frames = _Frames(raw, poses)
+        world = message(raw, "world")
+        with at("world"):
+            obstacles = list(_world(world, frames, meshes, poses))
+            obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
+        state = message(raw, "robot_state")
+        with at("robot_state"):
+            attached, held = _attached(state, meshes, poses)
+        matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
+        padding = _padding(raw)
+    rows = [*obstacles, *attached]
+    notes = [*frames.notes(), *_lost(raw, state), *note_on_rounded(poses.n_rounded)]
+    if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
+        notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
+    return SceneContent(
+        {"obstacles": rows},
+        (*(f"{asked.shown}: {note}" for note in notes), *meshes.found.notes()),
+        tuple(meshes.found.notices()),
+        allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
+        link_padding=padding,
+        held=tuple(held),
+        frame=frames.taken,
+    )
+
+
+class _Frames:
+    """The frames of a planning scene, each in the frame in which it plans."""
+
+    def __init__(self, raw: Message, poses: Poses) -> None:
+        self._known: dict[str, np.ndarray] = {}
+        self._plain: set[str] = set()
+        for where, row in messages(raw, "fixed_frame_transforms"):
+            with at(where):
+                self._plain.add(text(row, "child_frame_id", "").lstrip("/"))
+                name = text(message(row, "header"), "frame_id", "").lstrip("/")
+                self._known[name] = poses.read(message(row, "transform"), "translation", "rotation")
+
+    def of(self, given: Message) -> np.ndarray:
+        """(4, 4) [m] the frame of an object.
+
+        Raises:
+            BadInput: a frame that nothing ties to those of other objects.
+        """
+        name = text(message(given, "header"), "frame_id", "").lstrip("/")
+        if name in self._known:
+            return self._known[name]
+        self._plain.add(name)
+        named = sorted(self._plain - {""})
+        if len(named) > 1:
+            raise BadInput(
+                f"frames {named[0]!r} and {named[1]!r} are used, and nothing says where one is in the other",
+                valid="one frame, or fixed_frame_transforms",
+            )
+        return np.eye(4)
+
+    @property
+    def taken(self) -> str:
+        """The frame that is taken for the world, if it is named otherwise; one at most, as `of` sees to."""
+        return next(iter(self._plain - {"", "world"}), "")
+
+    def notes(self) -> list[str]:
+        """Which frame is taken for the world."""
+        return [f"frame {self.taken!r} is taken for the world of the case"] if self.taken else []
+
+
+def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    for where, given in messages(world, "collision_objects"):
+        with at(where):
+            rows = object_rows(given, frames.of(given), meshes, poses)
+        yield from rows
+
+
+def _attached(
+    state: Message, meshes: SceneMeshes, poses: Poses
+) -> tuple[list[Row], list[HeldPart]]:
+    """The obstacles that ride on links, and what each may touch."""
+    rows: list[Row] = []
+    held: list[HeldPart] = []
+    for where, given in messages(state, "attached_collision_objects"):
+        with at(where):
+            link = text(given, "link_name")
+            touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
+            for row in _held(message(given, "object"), link, meshes, poses):
+                rows.append(row | {"on": link})
+                held.append(HeldPart(row["name"], link, touch))
+    return rows, held
+
+
+def _touch_links(given: Message) -> list[str]:
+    links = items(given, "touch_links")
+    if not all(isinstance(link, str) for link in links):
+        raise BadInput("a name is no text", where="touch_links", valid="names of links")
+    return links
+
+
+def _held(held: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
+    """The obstacles of what a link holds, in the link's frame."""
+    frame = text(message(held, "header"), "frame_id", link).lstrip("/")
+    if frame != link:
+        raise BadInput(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
+    return object_rows(held, np.eye(4), meshes, poses)
+
+
+def _parts(raw: Message) -> dict[str, list[str]]:
+    """The names of the obstacles of each object of several shapes."""
+    objects = [one for _, one in messages(message(raw, "world"), "collision_objects")]
+    objects += [one for _, one in _objects_held(message(raw, "robot_state"))]
+    n_shapes = {
+        text(one, "id"): len(items(one, "primitives")) + len(items(one, "meshes"))
+        for one in objects
+    }
+    return {name: [f"{name}/{i}" for i in range(n)] for name, n in n_shapes.items() if n > 1}
+
+
+def _by_obstacle(
+    pairs: list[tuple[str, str]], parts: dict[str, list[str]], rows: list[Row]
+) -> Iterator[tuple[str, str]]:
+    """The pairs with the obstacles of an object of several shapes for its name; one pattern, if of no other."""
+    patterns = {}
+    for name, own in parts.items():
+        before = f"{name}/"
+        alone = sum(row["name"].startswith(before) for row in rows) == len(own)
+        one = [f"{pattern_of(name)}/*"]
+        patterns[pattern_of(name)] = one if alone else [pattern_of(part) for part in own]
+    for first, second in pairs:
+        yield from itertools.product(patterns.get(first, [first]), patterns.get(second, [second]))
+
+
+def _padding(raw: Message) -> dict[str, float]:
+    """[m] by link; those of 0 are left out.
+
+    Raises:
+        BadDimension: a scale that is not 1, a padding below 0.
+    """
+    for where, row in messages(raw, "link_scale"):
+        with at(where):
+            if number(row.get("scale", 1.0), "scale") != 1.0:
+                problem = f"link {text(row, 'link_name')!r} is scaled by {row['scale']}"
+                raise BadDimension(problem, valid="1, and padding")
+    found = {}
+    for where, row in messages(raw, "link_padding"):
+        with at(where):
+            padding = number(row.get("padding", 0.0), "padding")
+            if padding < 0.0:
+                raise BadDimension(f"padding is {padding} m", valid="0 or more")
+            found[text(row, "link_name")] = padding
+    return {link: padding for link, padding in found.items() if padding}
+
+
+def _octomap_data(world: Message) -> list[object]:
+    return items(message(message(world, "octomap"), "octomap"), "data")
+
+
+def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    """The obstacle of a map with occupied cells, called `OCTOMAP` as in MoveIt."""
+    tree = message(given, "octomap")
+    if not items(tree, "data"):
+        return
+    with at("octomap"):
+        placed = frames.of(given) @ poses.read(message(given, "origin"))
+        mapped = meshes.octomap(tree)
+        if mapped is not None:
+            yield {"name": OCTOMAP, **mapped, "pose": pose_row(placed)}
+
+
+def _lost(raw: Message, state: Message) -> Iterator[str]:
+    """What has no place in a scene."""
+    joints = [message(state, key) for key in ("joint_state", "multi_dof_joint_state")]
+    if any(items(one, name) for one in joints for name in ("name", "joint_names")):
+        yield "the robot's state is not taken: joints are as the case says"
+    if raw.get("is_diff") is True:
+        yield "it is a difference to another scene, of which nothing is known"
+    world = message(raw, "world")
+    n_named = sum(
+        len(items(one, "subframe_names"))
+        for _, one in (*messages(world, "collision_objects"), *_objects_held(state))
+    )
+    if n_named:
+        yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
+
+
+def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
+    for where, given in messages(state, "attached_collision_objects"):
+        yield where, message(given, "object")

@@ -1,0 +1,74 @@
+"""What is asked of a reader of scene files, and what it gives. Not for: reading them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.world.notice import Notice
+
+SKIP = "skip"
+"""In place of an included model: nothing."""
+
+
+@dataclass(frozen=True)
+class SceneRequest:
+    """Which scene, and where to look for what it names.
+
+    Attributes:
+        path: the scene's file. package_dirs: where `model://` and `package://` are looked up first.
+        files: reads the file, and all that it names.
+        includes: by URI of a model that an SDF file includes: `SKIP`, or the path or URI of one to take for it.
+    """
+
+    path: Path
+    files: InputFiles
+    package_dirs: tuple[Path, ...] = ()
+    includes: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def shown(self) -> str:
+        """The file's name in messages."""
+        return self.files.shown(self.path)
+
+
+def includes_of(given: Mapping[str, str], folder: Path) -> dict[str, str]:
+    """The same for a `SceneRequest`: paths as seen from a folder are whole; what is no text is left out."""
+    return {
+        uri: model if model == SKIP or "://" in model else os.path.abspath(resolved(model, folder))
+        for uri, model in given.items()
+        if isinstance(uri, str) and isinstance(model, str)
+    }
+
+
+class HeldPart(NamedTuple):
+    """An obstacle that a link holds, and the links and objects that it may touch meanwhile."""
+
+    part: str
+    link: str
+    touch: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class SceneContent:
+    """A scene as a case file would have it.
+
+    Attributes:
+        scene: what stands under `scene:`, files relative to the folder of the scene's file.
+        notes: what was left out or decided, one line each. notices: what bears on the verdict.
+        allow: names of bodies that may touch, in any order, of which some may not be there.
+        link_padding: [m] by link. held: obstacles on links that hold them.
+        frame: what its poses are given in, if its file says so; it is taken for the world.
+    """
+
+    scene: object
+    notes: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
+    allow: tuple[tuple[str, str], ...] = ()
+    link_padding: dict[str, float] = field(default_factory=dict)
+    held: tuple[HeldPart, ...] = ()
+    frame: str = ""

@@ -1,0 +1,368 @@
+"""CSV tables of numbers: a header with a `time` column [s] and others, by name, in any order.
+
+The table is parsed by pyarrow in one pass, block by block, so that memory holds its numbers and never
+its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
+for: what the columns are (`trajectory_csv`, `pose_table_file`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+
+import numpy as np
+
+from clearance.errors import (
+    BadShape,
+    BadSyntax,
+    BadTime,
+    ClearanceError,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+)
+from clearance.formats.files.input_files import SHORT
+from clearance.formats.table.plain_table import plain_numbers
+from clearance.world.names import checked_name
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+TIME = "time"
+
+EMPTY = ""
+"""The name of a column behind a separator at the end of each row, which holds nothing."""
+
+Opener = Callable[[], BinaryIO]
+"""Opens a file for reading from its start."""
+
+
+UNNAMED = "(column "
+"""How the name of a column without one begins; its place follows."""
+
+
+class TextTable(NamedTuple):
+    """A file with a table, and how it is written.
+
+    Attributes:
+        opened: opens it, again and again. names: of its columns, where it has no header.
+    """
+
+    opened: Opener
+    delimiter: str = ","
+    decimal: str = "."
+    names: tuple[str, ...] | None = None
+
+    def float_of(self, cell: str) -> float | None:
+        """The number in a cell, or None."""
+        if "_" in cell or (self.decimal != "." and "." in cell):
+            return None
+        try:
+            return float(cell.replace(self.decimal, "."))
+        except ValueError:
+            return None
+
+
+_SEPARATORS = {";": "semicolons", "\t": "tabs or blanks"}
+"""Beside commas."""
+
+
+def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTable:
+    """The table with the separators that it shows: semicolons, or else tabs, where the first row has some and, in
+    a header, no commas; then decimal commas where there is any comma. Without any of these, blanks are tabs.
+
+    Args:
+        names: of the columns, where there is no header.
+    """
+    with opened() as file:
+        start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
+        if _is_of_blanks(start):
+            return as_written(_blanks_as_tabs(opened), names)
+        others = [mark for mark in _SEPARATORS if mark.encode() in start]
+        if not others or (names is None and b"," in start):
+            return TextTable(opened, names=names)
+        file.seek(0)
+        has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
+    return TextTable(opened, others[0], "," if has_comma else ".", names)
+
+
+def _is_of_blanks(start: bytes) -> bool:
+    """True for a first row of words without any separator; `time [s]` is one column."""
+    words = start.split()
+    marked = any(mark in start.rstrip() for mark in (b",", b";", b"\t"))
+    return (
+        len(words) > 1 and not marked and not any(word.startswith((b"[", b"(")) for word in words)
+    )
+
+
+def _blanks_as_tabs(opened: Opener) -> Opener:
+    """The same file, a tab for each stretch of blanks; the mark of a comment stays out of the first row."""
+    with opened() as file:
+        rows = [line.split() for line in file.read().splitlines()]
+    first = next(row for row in rows if row)
+    if first[0] in (b"#", b"%"):
+        del first[0]
+    content = b"\n".join(b"\t".join(row) for row in rows)
+    return lambda: io.BytesIO(content)
+
+
+def note_on_separators(table: TextTable) -> list[str]:
+    """A line that says so where columns are separated otherwise than by commas."""
+    if table.delimiter == ",":
+        return []
+    decimals = ", decimals written with commas" if table.decimal == "," else ""
+    return [f"columns are separated by {_SEPARATORS[table.delimiter]}{decimals}"]
+
+
+def first_row(table: TextTable) -> list[str]:
+    """The cells of the first row that is not blank, none where there is none."""
+    return [cell.strip() for cell in next(_rows(table), (0, []))[1]]
+
+
+def header_of(table: TextTable, others: str) -> list[str]:
+    """The names of the columns, each once; `EMPTY` last where each row ends with a separator.
+
+    One without a name, as that of a row's number, is called `(column 1)` by its place, and a joint of that name
+    is none.
+
+    Args:
+        others: what the columns beside `time` are, for errors.
+
+    Raises:
+        BadSyntax, DuplicateName: with the column.
+    """
+    if table.names is not None:
+        return _as_the_first_row(table, table.names)
+    names = first_row(table)
+    if not any(names):
+        raise BadSyntax("the file is empty", valid=f"a header with {TIME!r} and {others} is needed")
+    names[0] = names[0].lstrip("#%").lstrip()  # as programs write that mark what is no number
+    if len(names) > 1 and not names[-1]:
+        names.pop()
+    seen: set[str] = set()
+    for i, name in enumerate(names):
+        if not name:
+            name = names[i] = f"{UNNAMED}{i + 1})"
+        if name in seen:
+            raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
+        seen.add(name)
+        checked_name(name)
+    return _as_the_first_row(table, names)
+
+
+def _as_the_first_row(table: TextTable, names: Sequence[str]) -> list[str]:
+    """The names, and that of an empty column where the first row of numbers ends with one more."""
+    _, cells = next(_data_rows(table), (0, []))
+    ends_empty = len(cells) == len(names) + 1 and not cells[-1].strip()
+    return [*names, EMPTY] if ends_empty else [*names]
+
+
+def require_time(names: Sequence[str], others: str) -> None:
+    """Nothing, if one of the columns is `time`.
+
+    Raises:
+        MissingKey: none is.
+    """
+    if TIME not in names:
+        raise MissingKey(
+            f"there is no column {TIME!r} in the header {','.join(names)!r:.80}",
+            valid=f"the header names the columns, separated by commas: time and {others}",
+        )
+
+
+def columns_of(
+    table: TextTable, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
+) -> list[np.ndarray]:
+    """For each of `parts` the (n, len(part)) columns of its names.
+
+    Args:
+        n_bytes: length of the file. names: of all its columns.
+
+    Raises:
+        BadShape, BadSyntax, NotFinite: with the line in the file.
+    """
+    plain = _plain(table, n_bytes, len(names))
+    if plain is not None:
+        return [plain.take([names.index(name) for name in part], axis=1) for part in parts]
+    wanted = list(dict.fromkeys(name for part in parts for name in part))
+    # a cell ends with a comma, and one that is wanted has a digit; what is not filled takes no memory
+    most = n_bytes // (len(names) + len(wanted)) + 2
+    found = [np.empty((most, len(part))) for part in parts]
+    n_rows = 0
+    for batch in _batches(table, names, wanted):
+        rows = slice(n_rows, n_rows + batch.num_rows)
+        for columns, part in zip(found, parts, strict=True):
+            for i, name in enumerate(part):
+                columns[rows, i] = batch.column(wanted.index(name)).to_numpy()
+        n_rows = rows.stop
+    if not n_rows:
+        raise _no_rows()
+    for columns in found:
+        columns.resize(
+            (n_rows, columns.shape[1]), refcheck=False
+        )  # gives the rest back, without a copy
+    _refuse_not_finite(found, parts, names, table)
+    return found
+
+
+def _plain(table: TextTable, n_bytes: int, n_columns: int) -> np.ndarray | None:
+    """(n, `n_columns`) all numbers of a short table that holds nothing else; None of others, or without a row."""
+    if n_bytes > SHORT:
+        return None
+    with table.opened() as file:
+        content = file.read()
+    found = plain_numbers(content, _header_line(table), n_columns, table.delimiter, table.decimal)
+    return found if found is not None and len(found) else None
+
+
+def _batches(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[pa.RecordBatch]:
+    """All rows, a few megabytes at a time; the columns that are wanted, whatever the others hold."""
+    import pyarrow as pa
+    from pyarrow import csv as arrow_csv
+
+    keys = [str(i) for i in range(len(names))]
+    of_wanted = [keys[names.index(name)] for name in wanted]
+    types = arrow_csv.ConvertOptions(
+        column_types=dict.fromkeys(of_wanted, pa.float64()),
+        include_columns=of_wanted,
+        null_values=[],
+        strings_can_be_null=False,
+        decimal_point=table.decimal,
+    )
+    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(table))
+    parsing = arrow_csv.ParseOptions(delimiter=table.delimiter)
+    try:
+        with table.opened() as file, _native(file) as stream:
+            if stream.size() <= SHORT:  # threads cost more than they help
+                reading.use_threads = False
+                whole = arrow_csv.read_csv(stream, reading, parsing, types)
+                yield from whole.combine_chunks().to_batches()
+                return
+            yield from arrow_csv.open_csv(stream, reading, parsing, types)
+    except pa.ArrowException as error:
+        raise _fault_in_rows(table, names, wanted) or BadSyntax(
+            f"not a table of numbers: {error}"
+        ) from None
+
+
+def _native(file: BinaryIO) -> pa.NativeFile:
+    """The same file, read without Python: pyarrow reads ahead in threads of its own.
+
+    One that is still inside a Python file when the interpreter ends takes the whole process with it
+    ("terminate called without an active exception").
+    """
+    import pyarrow as pa
+
+    name = getattr(file, "name", None)
+    if isinstance(name, str | bytes):
+        return pa.OSFile(os.fsdecode(name), "rb")
+    content = file.read()
+    held = pa.allocate_buffer(len(content))
+    np.frombuffer(held, dtype=np.uint8)[:] = np.frombuffer(content, dtype=np.uint8)
+    return pa.BufferReader(held)
+
+
+def _no_rows() -> ClearanceError:
+    return BadShape("there are no rows below the header", valid="at least one row is needed")
+
+
+def _fault_in_rows(
+    table: TextTable, names: list[str], wanted: Sequence[str]
+) -> ClearanceError | None:
+    """The first row that is not as many cells as the header has names, with numbers where they are wanted."""
+    rows = _data_rows(table)
+    has_header = table.names is None
+    given = "the header has" if has_header else "there are"
+    n_rows = 0
+    for line, cells in rows:
+        n_rows += 1
+        where = f"line {line}"
+        if len(cells) != len(names):
+            return BadShape(
+                f"{len(cells)} columns",
+                where=where,
+                valid=f"{given} {len(names)}{'' if has_header else ' names'}",
+            )
+        for name, cell in zip(names, cells, strict=True):
+            if name in wanted and table.float_of(cell) is None:
+                valid = "decimals have commas in this file" if table.decimal == "," else ""
+                return BadSyntax(
+                    f"{cell.strip()!r} in column {name!r} is not a number", where=where, valid=valid
+                )
+    return None if n_rows else _no_rows()
+
+
+def _refuse_not_finite(
+    found: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], table: TextTable
+) -> None:
+    bad = []
+    for columns, part in zip(found, parts, strict=True):
+        least = np.flatnonzero(~np.isfinite(columns).all(axis=1))[:1].tolist()
+        bad += [
+            (row, names.index(part[i]), columns[row, i]) for row in least for i in range(len(part))
+        ]
+    wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
+    if not wrong:
+        return
+    i_row, i_column, value = min(wrong, key=lambda cell: cell[:2])
+    raise NotFinite(
+        f"{value} in column {names[i_column]!r}",
+        where=f"line {line_of_row(table, i_row)}",
+        valid="a finite number is needed",
+    )
+
+
+def refuse_standing_time(times: np.ndarray, table: TextTable) -> None:
+    """Nothing, if times increase from row to row.
+
+    Raises:
+        BadTime: with the line in the file.
+    """
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if not len(late):
+        return
+    i_row = int(late[0]) + 1
+    raise BadTime(
+        f"time {float(times[i_row])} follows {float(times[i_row - 1])}",
+        where=f"line {line_of_row(table, i_row)}",
+        valid="time must increase from row to row",
+    )
+
+
+def _rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
+    """(line number, cells) of every row that is not blank; lines count from 1."""
+    with table.opened() as file:
+        text = io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
+        reader = csv.reader(text, delimiter=table.delimiter)
+        try:
+            for cells in reader:
+                if cells:
+                    yield reader.line_num, cells
+        except UnicodeDecodeError:
+            raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
+        except csv.Error as error:
+            raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
+
+
+def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
+    """Those below the header."""
+    rows = _rows(table)
+    if table.names is None:
+        next(rows)
+    return rows
+
+
+def _header_line(table: TextTable) -> int:
+    """Number of lines up to and with the header."""
+    return 0 if table.names is not None else next(_rows(table))[0]
+
+
+def line_of_row(table: TextTable, i_row: int) -> int:
+    """The line of the file that a row, counted from 0, is on."""
+    for i, (line, _) in enumerate(_data_rows(table)):
+        if i == i_row:
+            return line
+    raise AssertionError("a row that was parsed is gone")

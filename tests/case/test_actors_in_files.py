@@ -1,0 +1,204 @@
+"""Case files of several robots, and of what moves, rides and is carried, mean what they say."""
+
+import math
+
+import numpy as np
+import pytest
+
+from clearance.case.case_file import load_case
+from clearance.errors import BadInput, UnknownLink
+from clearance.world.carry import Carry
+from clearance.world.case import Clock
+from clearance.world.rules import Allowance, Rule
+from clearance.world.timing import Timing, Window
+from tests.formats.making import CASE, write_case
+from tests.formats.making_case import changed, load_small
+from tests.formats.making_cell import load_cell
+
+
+def test_robots_of_one_file_share_their_bodies(tmp_path):
+    left, right = load_cell(tmp_path).robots
+    assert (left.robot.name, right.robot.name) == ("left", "right")
+    assert left.robot.bodies is right.robot.bodies
+    assert left.given_trajectory.times.tolist() == [0, 0.5, 1] and right.trajectory is None
+    assert right.fixed_positions == {"shoulder": 0.2}
+    assert right.world_from_base[:3, 3].tolist() == [6, 0, 0]
+
+
+def test_a_robot_may_stand_on_a_link_of_another(tmp_path):
+    case = load_cell(tmp_path, "base: {xyz: [6", "base: {on: left/tip, xyz: [6")
+    right = case.robots[1]
+    assert right.mount.on == "left/tip" and right.mount.pose[:3, 3].tolist() == [6, 0, 0]
+    assert np.array_equal(right.world_from_base, np.eye(4))
+
+
+def test_obstacles_stand_ride_or_move(tmp_path):
+    door, fixture, workpiece, _ = load_cell(
+        tmp_path, "on: left/base", "padding: 0.001, on: left/base"
+    ).obstacles
+    assert door.moves.times.tolist() == [0, 0.4, 1] and door.mount is None
+    assert door.moves.positions[:, 1].tolist() == [0, 0.5, 1]
+    assert door.moves.quaternions[1].tolist() == [0, 0, 0.6, 0.8]
+    assert fixture.mount.on == "left/base" and fixture.mount.pose[1, 3] == 5
+    assert (fixture.padding, door.padding) == (0.001, 0)
+    assert workpiece.stands and workpiece.world_from_body[:3, 3].tolist() == [2, 2, 0]
+
+
+def test_what_moves_on_something_does_so_from_its_pose(tmp_path):
+    case = load_cell(
+        tmp_path, "moves: door.csv", "on: right/base, pose: {xyz: [1, 0, 0]}, moves: door.csv"
+    )
+    door = case.obstacles[0]
+    assert door.mount.on == "right/base" and door.mount.pose[0, 3] == 1 and len(door.moves) == 3
+
+
+def test_carries_rules_allowances(tmp_path):
+    case = load_cell(tmp_path)
+    assert case.carries == (Carry("workpiece", "left/tip", Window(0.25, 0.75), ("left/*",)),)
+    assert case.limits.rules == (
+        Rule(("left/*", "fixture"), Window(0.5, 1), None, "at the fixture", 0.001),
+        Rule(("workpiece", "*"), Window(), "workpiece", "workpiece - *", None, 0.03),
+    )
+    levels = [case.limits.of_rule(i) for i in (1, 2)]
+    assert [(one.fail, one.warn) for one in levels] == [(0.001, 0.001), (0.005, 0.03)]
+    assert case.allow == (
+        Allowance(("left/base", "post")),
+        Allowance(("door", "post"), Window(end=0.5)),
+    )
+    assert case.clock == Clock(0.0)
+
+
+@pytest.mark.parametrize(
+    ("given", "slack"),
+    [("common", 0), ("unsynchronised", math.inf), ("{slack: 0.2}", 0.2), ("{slack: 0}", 0)],
+)
+def test_clocks(tmp_path, given, slack):
+    assert load_small(tmp_path, CASE + f"clock: {given}\n").clock.slack == slack
+
+
+TIMED = "trajectory: {file: path.csv, start: 0.5, rate: 2, after: loop}"
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        changed("trajectory: {file: path.csv}", TIMED),
+        changed("arm.urdf", f"arm.urdf, {TIMED}", "trajectory: {file: path.csv}\n", ""),
+        changed(
+            "robot: {urdf: arm.urdf}",
+            "robots: [{urdf: arm.urdf}]",
+            "trajectory: {file: path.csv}",
+            TIMED,
+        ),
+    ],
+)
+def test_a_trajectory_stands_at_the_top_or_in_its_robot(tmp_path, case):
+    placed = load_small(tmp_path, case).robots[0]
+    assert placed.timing == Timing(0.5, 2, "loop") and placed.given_trajectory.n_steps == 3
+
+
+def test_one_robot_may_be_named_and_padded(tmp_path):
+    keys = 'name: robo, padding: {"*": 0.001, up*: 0.003}'
+    placed = load_small(tmp_path, changed("urdf: arm.urdf", f"urdf: arm.urdf, {keys}")).robots[0]
+    assert placed.robot.name == "robo"
+    assert placed.padding == {"base": 0.001, "upper": 0.003, "tip": 0.001}
+
+
+def test_self_clearance_is_of_each_robot(tmp_path):
+    left, right = load_cell(tmp_path, "name: right,", "name: right, self_clearance: true,").robots
+    assert left.self_clearance is None and right.self_clearance is not None
+
+
+@pytest.mark.slow
+def test_a_scene_file_may_hold_what_moves(tmp_path):
+    (tmp_path / "parts").mkdir()
+    scene = "obstacles:\n- {name: door, sphere: {radius: 1}, moves: {file: door.csv, rate: 0.5}}\n"
+    (tmp_path / "parts" / "scene.yaml").write_text(scene)
+    (tmp_path / "parts" / "door.csv").write_text(
+        "qw,qx,qy,qz,z,y,x,time\n1,0,0,0,3,2,9,0\n1,0,0,0,3,2,8,1\n"
+    )
+    text = CASE[: CASE.index("scene:")] + "scene: parts/scene.yaml\n"
+    case = load_case(write_case(tmp_path, text))
+    moves = case.obstacles[0].moves
+    assert moves.timing == Timing(rate=0.5) and moves.positions.tolist() == [[9, 2, 3], [8, 2, 3]]
+    assert case.robots[0].trajectory is None
+    assert [source.path for source in case.sources if "door" in source.path] == ["parts/door.csv"]
+
+
+def test_what_moves_alike_is_told_in_one_note(tmp_path):
+    fixture = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, pose: {xyz: [0, 5, 0]}}"
+    also = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, moves: door.csv}"
+    assert load_cell(tmp_path, fixture, also).notes == (
+        "obstacles 'door', 'fixture' move between the poses of their tables by straight translation, and rotation "
+        "about one axis at constant speed",
+    )
+
+
+def test_notes_say_how_things_move(tmp_path):
+    timing = "{file: door.csv, start: 0.25, rate: 2, after: %s}"
+    notes = load_cell(tmp_path).notes
+    assert notes == (
+        "obstacle 'door' moves between the poses of its table by straight translation, and rotation about one "
+        "axis at constant speed",
+    )
+    held = load_cell(tmp_path, "door.csv", timing % "hold").notes
+    assert held[1:] == (
+        "obstacle 'door' stands at its first sample until 0.25 s",
+        "obstacle 'door' stands at its last sample from 0.75 s",
+    )
+    loops = load_cell(tmp_path, "door.csv", timing % "loop").notes
+    assert (
+        loops[2]
+        == "obstacle 'door' goes through its table again and again, every 0.5 s (after: loop)"
+    )
+    absent = load_cell(tmp_path, "door.csv", timing % "absent").notes
+    assert absent[1:] == (
+        "obstacle 'door' is in the cell from 0.25 s to 0.75 s only (after: absent)",
+    )
+
+
+@pytest.mark.parametrize(
+    ("after", "early"),
+    [
+        ("hold", "stands at its first sample until 0.25 s"),
+        ("absent", "is in the cell from 0.25 s (after: absent)"),
+    ],
+)
+def test_a_table_ends_where_its_part_is_picked_up(tmp_path, after, early):
+    timing = f"{{file: door.csv, start: 0.25, rate: 2, after: {after}}}"
+    carry = "  - {part: door, by: right/tip, from: 0.5}\nlimits:"
+    notes = load_cell(tmp_path, "door.csv", timing, "limits:", carry).notes
+    assert notes[1:] == (
+        f"obstacle 'door' {early}",
+        "obstacle 'door' follows its table until it is picked up at 0.5 s",
+    )
+
+
+def test_joints_at_zero_are_told_robot_by_robot(tmp_path):
+    notes = load_cell(tmp_path, ", joints: {shoulder: 0.2}", "").notes
+    assert notes[0] == (
+        "robot 'right': joints given neither by the trajectory nor by robots[1].joints stay at 0: shoulder"
+    )
+
+
+def test_profiles_name_links_of_one_robot_or_of_several(tmp_path):
+    sketch = (
+        "points: {a: [-9, -9], b: [9, -9], c: [0, 9]}\n"
+        "segments: {ab: [a, b], bc: [b, c], ca: [c, a]}\n"
+    )
+    profile = "profiles: [{name: zone, sketch: zone.yaml, links: [%s]}]\n"
+    case = load_small(tmp_path, CASE + profile % "upper", zone__yaml=sketch)
+    assert case.profiles[0].links == ("upper",)
+    case = load_cell(tmp_path, "limits:", profile % "left/upper" + "limits:", zone__yaml=sketch)
+    assert case.profiles[0].links == ("left/upper",)
+    with pytest.raises(UnknownLink, match="did you mean 'left/upper'"):
+        load_cell(tmp_path, "limits:", profile % "upper" + "limits:", zone__yaml=sketch)
+
+
+def test_a_grasp_is_as_driven_unless_it_is_said_to_be_exact(tmp_path):
+    (carry,) = load_cell(tmp_path).carries
+    assert not carry.exact_grasp
+    (carry,) = load_cell(tmp_path, 'touch: ["left/*"]}', "grasp: exact}").carries
+    assert carry.exact_grasp
+    with pytest.raises(BadInput, match="carry"):
+        load_cell(tmp_path, 'touch: ["left/*"]}', "grasp: loose}")

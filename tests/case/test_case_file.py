@@ -1,0 +1,249 @@
+"""Case files: what is in them arrives."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from clearance.case.case_file import load_case
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    BadSyntax,
+    ClearanceError,
+    DuplicateName,
+    MissingFile,
+    NothingToMeasure,
+    UnknownKey,
+)
+from clearance.world.pairs import measured_pairs
+from tests.formats.making import ARM, CASE, cube_stl, signed_volume, write_case
+from tests.formats.making_case import TWO_JOINTS, changed, load_small, with_obstacle
+from tests.formats.making_cell import load_cell
+
+
+def test_a_small_case_arrives_whole(tmp_path):
+    case = load_small(tmp_path)
+    placed = case.robots[0]
+    assert case.name == "small"
+    assert placed.robot.link_names == ("base", "upper", "tip")
+    assert placed.trajectory.positions.tolist() == [[0], [0.25], [0.5]]
+    assert placed.world_from_base.tolist() == np.eye(4).tolist()
+    assert (case.limits.fail, case.limits.warn) == (0.005, 0.02)
+    assert [o.name for o in case.obstacles] == ["post"]
+    assert case.obstacles[0].world_from_body[:3, 3].tolist() == [2, 0, 0]
+    assert case.obstacles[0].body.shape.bounds[1].tolist() == [0.05, 0.05, 0.5]
+    assert case.contact_response is False
+    assert case.notes == ()
+
+
+def test_every_file_read_is_listed_with_its_checksum(tmp_path):
+    case = load_small(tmp_path)
+    assert [source.path for source in case.sources] == [
+        "arm.urdf",
+        "case.yaml",
+        "path.csv",
+        "upper.stl",
+    ]
+    for source in case.sources:
+        data = (tmp_path / source.path).read_bytes()
+        assert (source.sha256, source.n_bytes) == (hashlib.sha256(data).hexdigest(), len(data))
+
+
+def test_paths_are_relative_to_the_case_wherever_one_stands(tmp_path, monkeypatch):
+    (tmp_path / "cases" / "one").mkdir(parents=True)
+    (tmp_path / "robots").mkdir()
+    path = write_case(tmp_path / "cases" / "one", changed("arm.urdf", "../../robots/arm.urdf"))
+    for name in ("arm.urdf", "upper.stl"):
+        (tmp_path / "cases" / "one" / name).rename(tmp_path / "robots" / name)
+    monkeypatch.chdir(tmp_path / "robots")
+    case = load_case("../cases/one/case.yaml")
+    assert [s.path for s in case.sources] == [
+        "../../robots/arm.urdf", "../../robots/upper.stl", "case.yaml", "path.csv",
+    ]  # fmt: skip
+    assert case.sources == load_case(path).sources
+
+
+def test_the_scene_may_be_a_file_with_paths_of_its_own(tmp_path):
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "scenes" / "cube.stl").write_bytes(cube_stl())
+    (tmp_path / "scenes" / "room.yaml").write_text(
+        "obstacles:\n- {name: cube, mesh: {file: cube.stl, scale: 2}, pose: {rpy: [0, 0, 1e-3]}}\n"
+    )
+    text = (
+        CASE[: CASE.index("scene:")]
+        + "scene: scenes/room.yaml\n"
+        + CASE[CASE.index("trajectory") :]
+    )
+    case = load_small(tmp_path, text)
+    assert signed_volume(case.obstacles[0].body.shape) == 8
+    assert case.obstacles[0].body.origin == "scenes/cube.stl"
+    assert case.obstacles[0].world_from_body[1, 0] == np.sin(1e-3)
+    assert "scenes/room.yaml" in [source.path for source in case.sources]
+
+
+def test_faults_in_a_scene_file_name_that_file(tmp_path):
+    text = CASE[: CASE.index("scene:")] + "scene: room.yaml\n" + CASE[CASE.index("trajectory") :]
+    for content, fault, says in [
+        ("obstacles: [{name: a, bxo: {}}]", UnknownKey, "yaml: obstacles[0]: unknown key 'bxo'"),
+        ("obstacles: [{name: a, sphere: {radius: 1}}, {name: a, sphere: {radius: 1}}]",
+         DuplicateName, "room.yaml: obstacles[1]: two obstacles have the name 'a'"),
+        ("obstacles: [{name: a, mesh: {file: no.stl}}]", MissingFile,
+         "room.yaml: obstacles[0]: mesh: there is no file 'no.stl'"),
+        ("", BadInput, "room.yaml: nothing is given"),
+    ]:  # fmt: skip
+        with pytest.raises(fault) as caught:
+            load_small(tmp_path, text, room__yaml=content)
+        assert says in str(caught.value)
+        assert str(caught.value).startswith("case.yaml: scene: room.yaml")
+
+
+@pytest.mark.parametrize(
+    ("shape", "lower", "upper"),
+    [
+        ("box: {size: [1, 2, 3]}", [-0.5, -1, -1.5], [0.5, 1, 1.5]),
+        ("cylinder: {radius: 0.5, length: 3}", [-0.5, -0.5, -1.5], [0.5, 0.5, 1.5]),
+        pytest.param("sphere: {radius: 0.5}", [-0.5] * 3, [0.5] * 3, marks=pytest.mark.slow),
+        (
+            "pipe: {inner_radius: 0.4, outer_radius: 0.5, length: 3}",
+            [-0.5, -0.5, -1.5],
+            [0.5, 0.5, 1.5],
+        ),
+        ("mesh: {file: upper.stl}", [-0.5] * 3, [0.5] * 3),
+        ("mesh: {file: upper.stl, scale: -4}", [-2] * 3, [2] * 3),
+        ("mesh: {file: upper.stl, scale: [2, -4, 1.0]}", [-1, -2, -0.5], [1, 2, 0.5]),
+    ],
+)
+def test_every_shape_becomes_a_solid_that_holds_it(tmp_path, shape, lower, upper):
+    body = load_small(tmp_path, with_obstacle(shape)).obstacles[0].body
+    assert (body.shape.bounds[0] <= lower).all() and (body.shape.bounds[1] >= upper).all()
+    assert body.shape.bounds == pytest.approx(np.array([lower, upper]), abs=1.1e-4)
+    assert body.shape.closed and body.shape.oriented
+    assert signed_volume(body.shape) > 0
+
+
+def test_sections_and_bent_pipes_reach_the_shape(tmp_path):
+    straight = "pipe: {inner_radius: 0.04, outer_radius: 0.05, length: 2, sections: 8}"
+    assert len(load_small(tmp_path, with_obstacle(straight)).obstacles[0].body.shape.vertices) == 32
+    bent = (
+        "pipe: {inner_radius: 0.04, outer_radius: 0.05, bend_radius: 0.2, "
+        "path: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}"
+    )
+    shape = load_small(tmp_path, with_obstacle(bent)).obstacles[0].body.shape
+    assert shape.bounds == pytest.approx(np.array([[0, -0.05, -0.05], [1.05, 1, 0.05]]), abs=1e-3)
+
+
+def test_poses_take_quaternions_or_roll_pitch_yaw(tmp_path):
+    half = float(np.sqrt(0.5))
+    base = f"arm.urdf, base: {{xyz: [1, 2, 3], quat_xyzw: [0, 0, {half!r}, {half!r}]}}"
+    case = load_small(
+        tmp_path, changed("arm.urdf", base, "{xyz: [2, 0, 0]}", "{rpy: [0, 0, 1.5707963267948966]}")
+    )
+    turned = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    assert case.robots[0].world_from_base[:3, :3] == pytest.approx(turned, abs=1e-15)
+    assert case.robots[0].world_from_base[:3, 3].tolist() == [1, 2, 3]
+    assert case.obstacles[0].world_from_body[:3, :3] == pytest.approx(turned, abs=1e-15)
+
+
+def test_limits_warn_is_fail_where_it_is_left_out(tmp_path):
+    assert load_small(tmp_path, changed(", warn: 0.02", "")).limits.warn == 0.005
+    assert load_small(tmp_path, changed("limits: {fail: 0.005, warn: 0.02}", "")).limits.fail == 0
+
+
+def test_allow_takes_wildcards_and_names(tmp_path):
+    text = CASE + 'allow: [[base, "po?t"], ["up*", post]]\ncontact_response: true\n'
+    with pytest.raises(NothingToMeasure, match=r"^case\.yaml: no link-obstacle pair"):
+        load_small(tmp_path, text)
+    case = load_small(tmp_path, text.replace(', ["up*", post]', ""))
+    assert [row.between for row in case.allow] == [("base", "po?t")]
+    assert case.contact_response is True
+
+
+@pytest.mark.parametrize("row", ["[post, base]", "['*', base]", "{between: [post, 'ba*']}"])
+def test_allow_takes_the_obstacle_first_too(tmp_path, row):
+    case = load_small(tmp_path, CASE + f"allow: [{row}]\n")
+    assert case.allow[0].between[0].startswith("ba")
+    assert [pair.a.name_in(case) for pair in measured_pairs(case)[0]] == ["upper"]
+
+
+def test_allow_takes_a_part_before_a_link_of_several_robots(tmp_path):
+    rows = "[workpiece, left/base]", "{between: [post, 'left/*'], until: 0.5}", "['*', left/tip]"
+    case = load_cell(tmp_path, "allow:\n", "allow:\n  - " + "\n  - ".join(rows) + "\n")
+    assert [row.between for row in case.allow[:3]] == [
+        ("left/base", "workpiece"), ("left/*", "post"), ("*", "left/tip"),
+    ]  # fmt: skip
+    assert case.allow[1].window.end == 0.5
+
+
+def test_joints_that_nobody_names_are_zero_with_a_note(tmp_path):
+    case = load_small(tmp_path, urdf=TWO_JOINTS)
+    assert "stay at 0: lift" in case.notes[0]
+    case = load_small(
+        tmp_path, changed("arm.urdf", "arm.urdf, joints: {lift: 0.05}"), urdf=TWO_JOINTS
+    )
+    assert case.robots[0].fixed_positions == {"lift": 0.05}
+    assert case.notes == ()
+
+
+@pytest.mark.parametrize("turns", [1001.0, -1e7])
+def test_a_joint_that_spins_between_two_samples_is_refused(tmp_path, turns):
+    load_small(tmp_path, trajectory="time,shoulder\n0,0\n1,6283.18\n")
+    way = 0.1 + turns * 6.283185307179586
+    with pytest.raises(BadDimension) as caught:
+        load_small(tmp_path, trajectory=f"time,shoulder\n0,0\n1,0.1\n2.5,{way}\n")
+    told = str(caught.value)
+    assert "path.csv: joint 'shoulder' turns by" in told
+    assert "between 1 s and 2.5 s" in told and "\n" not in told
+
+
+def test_meshes_named_twice_are_made_once(tmp_path):
+    text = CASE.replace(
+        "trajectory:",
+        "  - {name: one, mesh: {file: upper.stl}}\n  - {name: two, mesh: {file: upper.stl}}\n"
+        "  - {name: big, mesh: {file: upper.stl, scale: 2}}\ntrajectory:",
+    )
+    _, one, two, big = load_small(tmp_path, text).obstacles
+    assert one.body.shape is two.body.shape
+    assert one.body.shape is not big.body.shape
+
+
+def test_a_case_that_is_not_there(tmp_path):
+    with pytest.raises(MissingFile, match=r"^there is no file 'case\.yaml'"):
+        load_case(tmp_path / "case.yaml")
+    (tmp_path / "case.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(BadSyntax, match="not UTF-8"):
+        load_case(tmp_path / "case.yaml")
+
+
+def test_messages_and_sources_never_hold_a_path_of_this_machine(tmp_path):
+    write_case(tmp_path)
+    far = ARM.replace("upper.stl", str(tmp_path / "upper.stl"))
+    case = load_small(tmp_path, urdf=far)
+    assert str(tmp_path) not in str(case.sources) + str(case.notes) + str(
+        case.robots[0].robot.notes
+    )
+    with pytest.raises(ClearanceError) as caught:
+        load_small(tmp_path, changed("arm.urdf", str(tmp_path / "no.urdf")))
+    assert str(tmp_path) not in str(caught.value)
+
+
+def test_loading_twice_gives_the_same(tmp_path):
+    one, two = load_small(tmp_path), load_small(tmp_path)
+    assert one.sources == two.sources
+    for a, b in zip(one.robots[0].robot.bodies, two.robots[0].robot.bodies, strict=True):
+        assert a.shape.vertices.tobytes() == b.shape.vertices.tobytes()
+        assert a.shape.face_vertices.tobytes() == b.shape.face_vertices.tobytes()
+
+
+def test_author_and_revision_arrive_for_the_report(tmp_path):
+    assert load_small(tmp_path).sign_off is None
+    signed = load_small(
+        tmp_path, changed("limits:", "report: {author: J. Doe, revision: B}\nlimits:")
+    )
+    assert (signed.sign_off.author, signed.sign_off.revision) == ("J. Doe", "B")
+    assert (
+        load_small(tmp_path, changed("limits:", "report: {revision: B}\nlimits:")).sign_off.author
+        == ""
+    )
+    with pytest.raises(UnknownKey, match="authors"):
+        load_small(tmp_path, changed("limits:", "report: {authors: J. Doe}\nlimits:"))

@@ -1,0 +1,294 @@
+"""Everything in a case file that cannot be meant is refused in one line, with its place."""
+
+import pytest
+
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    BadPose,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    DuplicateName,
+    EmptyMesh,
+    MissingFile,
+    MissingKey,
+    NotFinite,
+    NothingToMeasure,
+    UnknownJoint,
+    UnknownKey,
+    UnknownLink,
+    UnknownObstacle,
+)
+from clearance.formats.schema import obstacle as obstacle_schema
+from tests.formats.making import ARM, CASE
+from tests.formats.making_case import TWO_JOINTS, changed, load_small, with_obstacle
+
+FAULTS = [
+    (
+        changed("name: small", "nmae: small"),
+        UnknownKey,
+        "case.yaml: unknown key 'nmae'; did you mean 'name'?",
+    ),
+    (changed("robot: {urdf: arm.urdf}\n", ""), MissingKey, "case.yaml: 'robot' is missing"),
+    (
+        changed("urdf: arm.urdf", "urfd: arm.urdf"),
+        UnknownKey,
+        "case.yaml: robot: unknown key 'urfd'; did",
+    ),
+    (
+        changed("xyz: [2", "xzy: [2"),
+        UnknownKey,
+        "case.yaml: scene.obstacles[0].pose: unknown key 'xzy'",
+    ),
+    (changed("{size: [", "{sizes: ["), UnknownKey, "scene.obstacles[0].box: unknown key 'sizes'"),
+    (changed("    box:", "    bxo:"), UnknownKey, "did you mean 'box'?"),
+    (
+        changed("robot: {urdf: arm.urdf}", "robot: arm.urdf"),
+        BadInput,
+        "robot: 'arm.urdf' is given; a mapping",
+    ),
+    (changed("robot: {urdf: arm.urdf}", "robot:"), BadInput, "robot: nothing is given"),
+    (changed("file: path.csv", "file: 7"), BadInput, "trajectory.file: 7 is given"),
+    (changed("warn: 0.02", "warn: 0.002"), BadInput, "limits: warn 0.002 is below fail 0.005"),
+    (changed("fail: 0.005", "fail: -0.005"), BadInput, "limits.fail: -0.005 is given"),
+    (changed("fail: 0.005", "fail: .nan"), NotFinite, "limits.fail: nan is given"),
+    (changed("fail: 0.005", "fail: .inf"), NotFinite, "limits.fail: inf is given"),
+    (changed("fail: 0.005", "fail: '0.005'"), BadInput, "limits.fail: '0.005' is given"),
+    (changed("fail: 0.005", "fail: true"), BadInput, "limits.fail: True is given"),
+    (changed("fail: 0.005", "fail: 5 mm"), BadInput, "limits.fail: '5 mm' is given"),
+    (
+        changed("[2, 0, 0]", "[2, 0]"),
+        BadShape,
+        "scene.obstacles[0].pose.xyz: [2, 0] is given; 3 values",
+    ),
+    (changed("[2, 0, 0]", "[2, 0, .nan]"), NotFinite, "scene.obstacles[0].pose.xyz[2]: nan"),
+    (changed("[2, 0, 0]", "[2, 0, yes]"), BadInput, "scene.obstacles[0].pose.xyz[2]: 'yes'"),
+    (
+        changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 2]"),
+        BadPose,
+        "scene.obstacles[0].pose.quat_xyzw",
+    ),
+    (changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 0]"), BadPose, "length 0"),
+    (
+        changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 1], rpy: [0, 0, 0]"),
+        BadInput,
+        "both quat_xyzw and rpy",
+    ),
+    (
+        changed("[0.1, 0.1, 1]", "[0.1, -0.1, 1]"),
+        BadDimension,
+        "scene.obstacles[0].box.size[1]: -0.1",
+    ),
+    (
+        changed("[0.1, 0.1, 1]", "[0.1, 0, 1]"),
+        BadDimension,
+        "scene.obstacles[0].box.size[1]: 0 is given",
+    ),
+    (
+        changed("    box: {size: [0.1, 0.1, 1]}\n", ""),
+        BadInput,
+        "scene.obstacles[0]: it has no shape",
+    ),
+    (
+        changed("    box:", "    sphere: {radius: 1}\n    box:"),
+        BadInput,
+        "box and sphere are given",
+    ),
+    (
+        with_obstacle("sphere: {radius: -1}"),
+        BadDimension,
+        "scene.obstacles[0].sphere.radius: -1 is given",
+    ),
+    (
+        with_obstacle("cylinder: {radius: 1}"),
+        MissingKey,
+        "scene.obstacles[0].cylinder: 'length' is missing",
+    ),
+    (
+        with_obstacle("pipe: {inner_radius: 2, outer_radius: 1, length: 1}"),
+        BadDimension,
+        "obstacles[0]",
+    ),
+    (with_obstacle("pipe: {inner_radius: 0, outer_radius: 1}"), BadDimension, "length and path"),
+    (
+        with_obstacle("pipe: {inner_radius: 0, outer_radius: 1, length: 1, bend_radius: 2}"),
+        BadInput,
+        "without path",
+    ),
+    (
+        with_obstacle("pipe: {inner_radius: 0, outer_radius: 1, length: 1, sections: 2}"),
+        BadInput,
+        "sections",
+    ),
+    (
+        with_obstacle("mesh: {file: upper.stl, scale: 0}"),
+        BadDimension,
+        "scene.obstacles[0].mesh.scale: 0 is",
+    ),
+    (with_obstacle("mesh: {file: upper.stl, scale: [1, 2]}"), BadDimension, "mesh.scale: [1, 2]"),
+    (with_obstacle("mesh: {file: upper.stl, scale: '2'}"), BadDimension, "mesh.scale: '2'"),
+    (
+        with_obstacle("mesh: {file: no.stl}"),
+        MissingFile,
+        "scene: obstacles[0]: mesh: there is no file 'no.stl'",
+    ),
+    (
+        with_obstacle("mesh: {file: path.csv}"),
+        BadSyntax,
+        "mesh: path.csv: unknown mesh format '.csv'",
+    ),
+    (with_obstacle("mesh: {file: empty.stl}"), EmptyMesh, "mesh: empty.stl: the mesh has no faces"),
+    (
+        changed("scene:\n", "scene:\n  obstacle: []\n"),
+        UnknownKey,
+        "scene: unknown key 'obstacle'; did you",
+    ),
+    (
+        changed("trajectory: {file: path.csv}\n", ""),
+        MissingKey,
+        "case.yaml: 'trajectory' is missing",
+    ),
+    (
+        changed("path.csv", "no.csv"),
+        MissingFile,
+        "case.yaml: trajectory.file: there is no file 'no.csv'",
+    ),
+    (
+        changed("arm.urdf", "no.urdf"),
+        MissingFile,
+        "case.yaml: robot.urdf: there is no file 'no.urdf'",
+    ),
+    (changed("arm.urdf", "."), MissingFile, "is a folder"),
+    (changed("arm.urdf", "path.csv"), BadSyntax, "case.yaml: robot.urdf: path.csv: not XML"),
+    (
+        changed("arm.urdf", "arm.urdf, package_dirs: [nowhere]"),
+        MissingFile,
+        "robot.package_dirs: [0]: there is no folder",
+    ),
+    (
+        changed("arm.urdf", "arm.urdf, geometry: hull"),
+        BadInput,
+        "robot.geometry: 'hull' is given; 'collision', 'visual' or",
+    ),
+    (
+        changed("arm.urdf", "arm.urdf, exclude_links: [bass]"),
+        UnknownLink,
+        "robot.exclude_links: [0]: unknown link 'bass'; did you mean 'base'?",
+    ),
+    (
+        changed("arm.urdf", "arm.urdf, exclude_links: [base, upper]"),
+        NothingToMeasure,
+        "no link-obstacle pair",
+    ),
+    (
+        changed("arm.urdf", "arm.urdf, joints: {elbow: 1}"),
+        UnknownJoint,
+        "robot.joints: unknown joint 'elbow'",
+    ),
+    (changed("arm.urdf", "arm.urdf, joints: {flange: 1}"), UnknownJoint, "joint 'flange' is fixed"),
+    (
+        changed("arm.urdf", "arm.urdf, joints: {shoulder: 1}"),
+        DuplicateName,
+        "also a column of the trajectory",
+    ),
+    (
+        changed("arm.urdf", "arm.urdf, joints: {shoulder: .nan}"),
+        NotFinite,
+        "robot.joints.shoulder: nan",
+    ),
+    (
+        CASE + "allow: [[bas, post]]\n",
+        UnknownLink,
+        "allow[0]: unknown link 'bas'; did you mean 'base'?",
+    ),
+    (
+        CASE + "allow: [[base, post], [base, pots]]\n",
+        UnknownObstacle,
+        "allow[1]: unknown obstacle 'pots'; did you mean 'post'?",
+    ),
+    (CASE + "allow: [['arm_*', post]]\n", UnknownLink, "no link matches 'arm_*'"),
+    (CASE + "allow: [[base, 'car_*']]\n", UnknownObstacle, "no obstacle matches 'car_*'"),
+    (
+        CASE + "allow: [[post, bse]]\n",
+        UnknownLink,
+        "allow[0]: unknown link 'bse'; did you mean 'base'?",
+    ),
+    (CASE + "allow: [[base]]\n", BadShape, "allow[0]: ['base'] is given; 2 values are needed"),
+    (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given"),
+    (CASE + "contact_response: 1\n", BadInput, "contact_response: 1 is given"),
+    (CASE + "name: again\n", DuplicateName, 'case.yaml: line 10: found duplicate key "name"'),
+    (CASE + "  - [", BadSyntax, "case.yaml: line"),
+    (
+        "",
+        BadInput,
+        "case.yaml: nothing is given; a mapping is needed, with keys name, robot, robots, scene",
+    ),
+    ("- 1\n", BadInput, "case.yaml: [1] is given"),
+    ("a: 1\n---\nb: 2\n", BadSyntax, "another document"),
+    ("a: !!python/object:os.system x", BadSyntax, "case.yaml: line 1: not YAML"),
+    (
+        changed("  - name: post\n", "  - {name: post, sphere: {radius: 1}}\n  - name: post\n"),
+        DuplicateName,
+        "obstacles[1]: two obstacles",
+    ),
+]
+
+
+@pytest.mark.parametrize(("case", "fault", "says"), FAULTS)
+def test_each_fault_is_one_line_with_its_place(tmp_path, case, fault, says):
+    with pytest.raises(fault) as caught:
+        load_small(tmp_path, case, empty__stl=bytes(84))
+    assert says in str(caught.value)
+    assert str(caught.value).startswith("case.yaml: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_no_obstacles_leave_nothing_to_measure(tmp_path):
+    text = (
+        CASE[: CASE.index("  obstacles:")] + "  obstacles: []\n" + CASE[CASE.index("trajectory") :]
+    )
+    with pytest.raises(NothingToMeasure):
+        load_small(tmp_path, text)
+
+
+MIMIC = TWO_JOINTS.replace('<limit lower="0" upper="0.1"/>', '<mimic joint="shoulder"/>')
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "urdf", "fault", "says"),
+    [
+        (
+            "time,sholder\n0,1\n",
+            ARM,
+            UnknownJoint,
+            "unknown joint 'sholder'; did you mean 'shoulder'?",
+        ),
+        (
+            "time,flange\n0,1\n",
+            ARM,
+            UnknownJoint,
+            "joint 'flange' is fixed; moving joints: shoulder",
+        ),
+        (
+            "time,lift\n0,1\n",
+            MIMIC,
+            UnknownJoint,
+            "joint 'lift' mimics 'shoulder' and cannot be set",
+        ),
+        ("time,shoulder\n0,1\n0,1\n", ARM, BadTime, "line 3"),
+        ("time,shoulder\n0,nan\n", ARM, NotFinite, "line 2"),
+        ("time,shoulder\n0\n", ARM, BadShape, "line 2: 1 columns; the header has 2"),
+    ],
+)
+def test_faults_of_the_trajectory_name_case_field_and_file(tmp_path, trajectory, urdf, fault, says):
+    with pytest.raises(fault) as caught:
+        load_small(tmp_path, trajectory=trajectory, urdf=urdf)
+    assert str(caught.value).startswith("case.yaml: trajectory.file: path.csv: ")
+    assert says in str(caught.value)
+
+
+def test_a_scale_beyond_doubles_is_refused():
+    for scale in (10**400, [1.0, 1.0, -(10**400)]):
+        with pytest.raises(BadDimension, match="a finite number, or three"):
+            obstacle_schema.Mesh._number_or_three(scale)

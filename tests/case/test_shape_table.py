@@ -1,0 +1,101 @@
+"""Every row of the table of shapes: what files make of it, and that the public names and the guide have it."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput
+from clearance.geometry.shapes import SHAPES, Measure
+from tests.formats.making import ARM
+from tests.formats.making_case import changed, load_small, with_obstacle
+
+EXAMPLE = {
+    Measure.LENGTH: 0.25,
+    Measure.LENGTH_OR_ZERO: 0.125,
+    Measure.SIZES: [0.5, 0.25, 0.125],
+    Measure.POINTS: [[0, 0, 0], [1, 0, 0]],
+    Measure.SIDES: 12,
+}
+
+
+def example(name: str, **more) -> dict:
+    return {key: EXAMPLE[measure] for key, measure in SHAPES[name].dimensions.items()} | more
+
+
+def written(name: str, given: dict) -> str:
+    return f"{name}: {{{', '.join(f'{key}: {value}' for key, value in given.items())}}}"
+
+
+def same(shape, other) -> bool:
+    return np.array_equal(shape.vertices, other.vertices) and shape.excess == other.excess
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_case_file_makes_what_python_makes(tmp_path, name):
+    given = example(name, length=0.5) if "length" in SHAPES[name].optional else example(name)
+    body = load_small(tmp_path, with_obstacle(written(name, given))).obstacles[0].body
+    assert body.origin == name and body.shape.closed
+    assert same(body.shape, getattr(cl, name)(**given))
+
+
+@pytest.mark.parametrize("name", [name for name, shape in SHAPES.items() if shape.in_urdf])
+def test_a_urdf_makes_what_python_makes(tmp_path, name):
+    def text(value):
+        return " ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+    attributes = " ".join(f'{key}="{text(value)}"' for key, value in example(name).items())
+    urdf = ARM.replace('<box size="0.2 0.2 0.2"/>', f"<{name} {attributes}/>")
+    assert urdf != ARM or name == "box"
+    body = load_small(tmp_path, urdf=urdf).robots[0].robot.bodies[0]
+    assert body.origin == name
+    assert same(body.shape, getattr(cl, name)(**example(name)))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_what_is_missing_or_no_length_is_refused_where_it_stands(tmp_path, name):
+    for key, measure in SHAPES[name].dimensions.items():
+        given = example(name)
+        bad = [1, 1] if measure is Measure.SIZES else -1
+        for faulty in ({k: v for k, v in given.items() if k != key}, given | {key: bad}):
+            with pytest.raises(BadInput) as caught:
+                load_small(tmp_path, with_obstacle(written(name, faulty)))
+            assert f"scene.obstacles[0].{name}" in str(caught.value) and key in str(caught.value)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name, shape in SHAPES.items() if shape.radius])
+def test_a_radius_in_millimetres_is_suspect(tmp_path, name):
+    given = example(name) | {SHAPES[name].radius: 6.0}
+    given |= {"length": 0.5} if "length" in SHAPES[name].optional else {}
+    (notice, *_) = load_small(tmp_path, with_obstacle(written(name, given))).notices
+    assert "has a radius of 6 m" in notice.text
+
+
+def test_the_public_names_and_the_guide_have_every_shape():
+    guide = (Path(__file__).resolve().parents[2] / "scripts" / "docs" / "case_file.md").read_text()
+    for name, shape in SHAPES.items():
+        assert getattr(cl, name) is shape.maker and name in cl.__all__
+        rows = re.findall(rf"^\| `{name}` \| (.*) \| .* \|$", guide, flags=re.MULTILINE)
+        assert rows, f"no row of {name}"
+        assert all(f"`{key}" in row for key in shape.dimensions for row in rows)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.3, 1.0, math.pi / 2])
+@pytest.mark.parametrize("length", [0.0, 0.4])
+def test_a_capsule_is_as_far_as_its_line_less_its_radius(tmp_path, tilt, length):
+    """The robot's base ends at x = 0.1 and z = 0.1; of a line that leans towards it the end is nearest."""
+    radius, x, end = 0.05, 1.5, 0.5 * length
+    shape = f"capsule: {{radius: {radius}, length: {length}}}"
+    pose = f"xyz: [{x}, 0, 0], rpy: [0, {tilt}, 0]"
+    text = changed("box: {size: [0.1, 0.1, 1]}", shape, "xyz: [2, 0, 0]", pose)
+    still = ARM.replace('<mesh\n  filename="upper.stl"/>', '<box size="0.1 0.1 0.1"/>')
+    run = cl.check(load_small(tmp_path, text, urdf=still))
+    above = max(end * math.cos(tilt) - 0.1, 0.0) if tilt > 0.0 else 0.0
+    true = math.hypot(x - end * math.sin(tilt) - 0.1, above) - radius
+    excess = run.record.case.obstacles[0].body.shape.excess
+    assert 0.0 < excess <= 1e-4
+    assert true - excess - 1e-12 <= run.worst_sample["clearance"] <= true + 1e-12

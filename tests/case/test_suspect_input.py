@@ -1,0 +1,240 @@
+"""Input that is valid but looks wrong: what of a case's files becomes a notice, of which severity and kind."""
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadInput, BadPose
+from clearance.world.notice import KINDS, Severity
+from clearance.world.plausibility import notices_of
+from tests.formats.making import ARM, PATH
+from tests.formats.making_case import CASE, TWO_JOINTS, changed, load_small, with_obstacle
+
+FENCE = "v 0 0 0\nv 3000 0 0\nv 3000 0 2000\nv 0 0 2000\nf 1 2 3 4\n"
+"""A fence of 3 m by 2 m, drawn in millimetres."""
+
+
+def found(folder, case=CASE, **changes):
+    """(severity, kind, text) of every notice of the small case, changed."""
+    notices = notices_of(load_small(folder, case, **changes))
+    return [(notice.severity, notice.kind, notice.text) for notice in notices]
+
+
+def only_suspect(folder, case=CASE, kind="units", **changes):
+    """The text of the only suspect notice, which is of this kind."""
+    ((_, told_kind, text),) = [
+        one for one in found(folder, case, **changes) if one[0] is Severity.SUSPECT
+    ]
+    assert told_kind == kind
+    return text
+
+
+def test_a_good_case_has_no_notices(tmp_path):
+    assert found(tmp_path) == []
+
+
+def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
+    path = "time,shoulder\n0,0\n2,1.25\n5,-1.5\n"
+    assert found(tmp_path, trajectory=path) == [
+        (
+            Severity.WARNING,
+            "limits",
+            "joint 'shoulder' leaves its limits -1 to 1 rad by up to 0.5 rad in 2 of 3 steps",
+        )
+    ]
+    case = changed("arm.urdf", "arm.urdf, joints: {lift: 0.13}")
+    ((severity, kind, text),) = found(tmp_path, case, urdf=TWO_JOINTS)
+    assert (severity, kind) == (Severity.WARNING, "limits")
+    assert text == "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.03 m all the time"
+    nobody_says = TWO_JOINTS.replace('lower="0" upper="0.1"', 'lower="0.02" upper="0.1"')
+    ((severity, kind, text),) = found(tmp_path, urdf=nobody_says)
+    assert (severity, kind) == (Severity.WARNING, "limits")
+    assert "joint 'lift' leaves its limits 0.02 to 0.1 m by up to 0.02 m all the time" in text
+
+
+@pytest.mark.parametrize("beyond", [8.0, -2.6])
+def test_a_joint_far_beyond_its_limits_is_suspect(tmp_path, beyond):
+    text = only_suspect(tmp_path, kind="limits", trajectory=f"time,shoulder\n0,0\n1,{beyond}\n")
+    assert "joint 'shoulder' leaves its limits -1 to 1 rad" in text
+
+
+def test_a_slide_far_beyond_its_range_is_suspect(tmp_path):
+    case = changed("arm.urdf", "arm.urdf, joints: {lift: 50}")
+    text = only_suspect(tmp_path, case, kind="limits", urdf=TWO_JOINTS)
+    assert "joint 'lift' leaves its limits 0 to 0.1 m by up to 49.9 m" in text
+
+
+def test_joint_limits_can_be_made_a_violation(tmp_path):
+    case = changed("warn: 0.02", "warn: 0.02, joints: fail")
+    assert found(tmp_path, case) == []
+    ((severity, kind, text),) = found(tmp_path, case, trajectory="time,shoulder\n0,0\n2,1.25\n")
+    assert (severity, kind) == (Severity.VIOLATED, "joint limits")
+    assert "by up to 0.25 rad in 1 of 2 steps" in text
+    kinds = [one[:2] for one in found(tmp_path, case, trajectory="time,shoulder\n0,0\n9,9\n")]
+    assert kinds == [(Severity.SUSPECT, "limits"), (Severity.VIOLATED, "joint limits")]
+    with pytest.raises(BadInput, match=r"limits\.joints: 'ignore' is given"):
+        load_small(tmp_path, changed("warn: 0.02", "warn: 0.02, joints: ignore"))
+
+
+def test_kinds_of_suspect_input_are_accepted_by_name(tmp_path):
+    assert load_small(tmp_path).accept == ()
+    case = load_small(tmp_path, CASE + f"accept: [{', '.join(KINDS)}]\n")
+    assert case.accept == KINDS
+    with pytest.raises(BadInput, match=rf"accept\[1\]: 'unit' is given; .*{', '.join(KINDS)}"):
+        load_small(tmp_path, CASE + "accept: [limits, unit]\n")
+
+
+def test_limits_and_radii_in_millimetres_are_suspect(tmp_path):
+    case = changed("fail: 0.005, warn: 0.02", "fail: 5, warn: 20", "box: {size: [0.1, 0.1, 1]}",
+                   "cylinder: {radius: 40, length: 1}")  # fmt: skip
+    told = [text for *_, text in found(tmp_path, case, trajectory="time,shoulder\n0,0\n50,45\n")]
+    for says in (
+        "CHECK UNITS: limits.fail is 5 m and limits.warn is 20 m",
+        "CHECK UNITS: obstacle 'post' has a radius of 40 m",
+        "CHECK UNITS: joint 'shoulder' goes to 45 rad",
+        "CHECK LIMITS: joint 'shoulder' leaves",
+    ):
+        assert sum(text.startswith(says) for text in told) == 1, told
+    assert len(told) == 4
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        (
+            "urdf: arm.urdf",
+            "urdf: arm.urdf, base: {rpy: [0, 0, 90]}",
+            "base has an angle of 90 rad",
+        ),
+        ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 5]}", "base has an angle of 5 rad"),
+        ("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [-1200, 0, 0]}", "base stands 1200 m away"),
+        ("xyz: [2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
+        ("xyz: [2, 0, 0]", "xyz: [0, 0, 650]", "obstacle 'post' stands 650 m away"),
+        ("xyz: [2, 0, 0]", "xyz: [40, 0, 25]", "obstacle 'post' stands 46.9 m away"),
+        ("size: [0.1, 0.1, 1]", "size: [600, 400, 5]", "obstacle 'post' is 600 m long"),
+        ("size: [0.1, 0.1, 1]", "size: [0.002, 0.001, 0.001]", "obstacle 'post' is 0.002 m long"),
+    ],
+)
+def test_what_stands_or_measures_in_other_units_is_suspect(tmp_path, old, new, says):
+    text = only_suspect(tmp_path, changed(old, new))
+    assert text.startswith("CHECK UNITS: ") and says in text
+
+
+def test_a_fence_in_millimetres_without_scale_is_suspect(tmp_path):
+    case = with_obstacle("mesh: {file: fence.obj}")
+    text = only_suspect(tmp_path, case, fence__obj=FENCE)
+    assert "obstacle 'post' is 3000 m long where the robot reaches" in text
+    assert "scale 0.001" in text
+    scaled = case.replace("fence.obj", "fence.obj, scale: 0.001")
+    assert found(tmp_path, scaled, fence__obj=FENCE) == []
+    twice = case.replace("fence.obj", "fence.obj, scale: 0.000001")
+    text = only_suspect(tmp_path, twice, fence__obj=FENCE)
+    assert "obstacle 'post' is 0.003 m long" in text
+
+
+def test_a_drawing_far_from_its_own_origin_is_suspect(tmp_path):
+    """A bracket of 30 mm, 2.5 m from the drawing's origin, read as metres: no side is long enough to tell."""
+    bracket = "v 2500 300 0\nv 2530 300 0\nv 2530 330 0\nf 1 2 3\n"
+    text = only_suspect(tmp_path, with_obstacle("mesh: {file: b.obj}"), b__obj=bracket)
+    assert "obstacle 'post' stands 2520 m away" in text
+
+
+def test_the_usual_is_not_suspect(tmp_path):
+    floor = "  - {name: floor, pose: {xyz: [0, 0, -0.1]}, box: {size: [80, 80, 0.02]}}\n"
+    pin = "  - {name: pin, pose: {xyz: [1, 0, 0]}, cylinder: {radius: 0.002, length: 0.03}}\n"
+    case = CASE.replace("trajectory:", floor + pin + "trajectory:")
+    turned = case.replace("xyz: [2, 0, 0]", "xyz: [2, 0, 0], rpy: [4.71, 6.2832, -5.1234567]")
+    assert found(tmp_path, turned) == []
+    wall = "  - {name: wall, pose: {xyz: [30, 0, 3]}, box: {size: [0.3, 60, 6]}}\n"
+    pillar = "  - {name: pillar, pose: {xyz: [20, 22, 3]}, box: {size: [0.5, 0.5, 6]}}\n"
+    assert found(tmp_path, case.replace("trajectory:", wall + pillar + "trajectory:")) == []
+    hall = CASE.replace("xyz: [2, 0, 0]", "xyz: [112, 0, 0]")
+    hall = hall.replace("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [110, 0, 0]}")
+    assert found(tmp_path, hall) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 90"', "joint 'shoulder' has an angle of 90 rad"),
+        ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 5"', "joint 'shoulder' has an angle of 5 rad"),
+        ('xyz="0 0 0.1" rpy="0 0 0"', 'xyz="0 0 50"', "joint 'shoulder' stands 50 m away"),
+        ('xyz="0 0 0.5"', 'xyz="0 0 500"', "the shape of link 'upper' stands 500 m away"),
+    ],
+)
+def test_origins_in_other_units_are_suspect(tmp_path, old, new, says):
+    assert old in ARM
+    told = [
+        text for _, kind, text in found(tmp_path, urdf=ARM.replace(old, new)) if kind == "units"
+    ]
+    assert sum(says in text for text in told) == 1, told
+
+
+def test_a_link_whose_mesh_is_scaled_into_nothing_is_suspect(tmp_path):
+    text = only_suspect(
+        tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1e-3 1e-3 1e-3"')
+    )
+    assert "link 'upper' is 0.001 m long where the robot reaches" in text
+
+
+def test_a_link_whose_mesh_is_scaled_out_of_the_world_is_suspect(tmp_path):
+    told = found(tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1000 1000 1000"'))
+    assert any("the file is scaled by 1000 (upper.stl)" in text for *_, text in told)
+    assert {kind for _, kind, _ in told} == {"units"}
+
+
+def test_time_in_milliseconds_is_suspect(tmp_path):
+    path = "time,shoulder\n0,0\n500,0.25\n1000,0.5\n"
+    assert "is this milliseconds" in only_suspect(tmp_path, trajectory=path)
+    assert found(tmp_path, trajectory="time,shoulder\n0,0\n50,0.25\n100,0.5\n") == []
+    assert found(tmp_path, trajectory="time,shoulder\n0,0.5\n500,0.5\n1000,0.5\n") == []
+    fast_for_once = "time,shoulder\n0,0\n500,0.25\n500.25,0.5\n"
+    assert found(tmp_path, trajectory=fast_for_once) == []
+
+
+def mimic(text: str) -> str:
+    """The small arm whose flange follows its shoulder."""
+    return TWO_JOINTS.replace(
+        '<limit lower="0" upper="0.1"/>', f'<limit lower="0" upper="0.1"/>{text}'
+    )
+
+
+def test_joints_that_follow_are_held_against_their_limits_too(tmp_path):
+    urdf = mimic('<mimic joint="shoulder" multiplier="0.3"/>')
+    ((severity, kind, text),) = found(tmp_path, urdf=urdf, trajectory=PATH)
+    assert (severity, kind) == (Severity.WARNING, "limits")
+    assert "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.05 m in 1 of 3 steps" in text
+
+
+@pytest.mark.parametrize("text", ['offset="1e160"', 'multiplier="1e200"', 'offset="-1e8"'])
+def test_joints_that_follow_out_of_the_world_are_refused(tmp_path, text):
+    from clearance import check
+
+    with pytest.raises(BadInput, match=r"joint 'lift'|link 'tip'"):
+        urdf = mimic(f'<mimic joint="shoulder" {text}/>')
+        shape = '<link name="tip"><collision><geometry><box size="1 1 1"/></geometry></collision></link>'
+        check(load_small(tmp_path, urdf=urdf.replace('<link name="tip"/>', shape)))
+
+
+@pytest.mark.parametrize("angle", [3.15, -3.15, 3.1, 4.7, 4.72, 6.3, 6.28])
+def test_parts_of_a_turn_of_few_digits_are_no_degrees(tmp_path, angle):
+    assert found(tmp_path, changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], rpy: [0, 0, {angle}]")) == []
+
+
+@pytest.mark.parametrize("angle", [3.2, 4, 4.6, 6.4, 315])
+def test_other_angles_of_few_digits_may_be_degrees(tmp_path, angle):
+    case = changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], rpy: [0, 0, {angle}]")
+    assert f"obstacle 'post' has an angle of {angle:g} rad" in only_suspect(tmp_path, case)
+
+
+def test_quaternions_of_three_digits_stand_in_a_case_with_a_note(tmp_path):
+    quaternion = "quat_xyzw: [0, 0.707, 0, 0.707]"
+    case = changed("xyz: [2, 0, 0]", f"xyz: [2, 0, 0], {quaternion}",
+                   "arm.urdf", f"arm.urdf, base: {{{quaternion}}}")  # fmt: skip
+    made = load_small(tmp_path, case)
+    upright = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
+    for pose in (made.obstacles[0].world_from_body, made.robots[0].world_from_base):
+        assert np.allclose(pose[:3, :3], upright, atol=1e-15)
+    told = "1 quaternion is rounded to three digits or so and made of length 1"
+    assert [note for note in made.notes if told in note] == [f"robot.base: {told}", told]
+    with pytest.raises(BadPose, match=r"0\.98994"):
+        load_small(tmp_path, case.replace("0.707", "0.7"))

@@ -1,0 +1,382 @@
+"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is
+kept.
+"""
+
+import re
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadDimension, BadInput, BadPolygon, BadSyntax, EmptyMesh, NotFinite
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.mesh.mesh_file import mesh_from_bytes, read_mesh
+from clearance.formats.mesh_store import MeshStore
+from tests.formats.making import signed_volume
+
+WEDGE = "0 0 0 1 0 0 0 2 0 0 0 3"
+WEDGE_TRIANGLES = "0 2 1 0 1 3 0 3 2 1 2 3"
+
+
+def document(
+    asset="",
+    vertices=WEDGE,
+    primitives=None,
+    nodes='<node><instance_geometry url="#g"/></node>',
+    more="",
+) -> bytes:
+    primitives = primitives or (
+        '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>{WEDGE_TRIANGLES}</p></triangles>"
+    )
+    n = len(vertices.split())
+    return f"""<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset>{asset}</asset>{more}
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="{n}">{vertices}</float_array><technique_common>
+<accessor source="#pa" count="{n // 3}" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>{primitives}
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
+
+
+def load(*args, scale=1.0, **kwargs):
+    return mesh_from_bytes(document(*args, **kwargs), "m.dae", scale)
+
+
+Z_UP = "<up_axis>Z_UP</up_axis>"
+SHARED = '<input semantic="VERTEX" source="#v" offset="0"/>'
+
+
+@pytest.mark.parametrize(
+    ("asset", "upper", "lower"),
+    [
+        (Z_UP, [1, 2, 3], [0, 0, 0]),
+        ('<unit name="inch" meter="0.0254"/>' + Z_UP, [0.0254, 0.0508, 3 * 0.0254], [0, 0, 0]),
+        ('<unit meter="0.001"/>' + Z_UP, [0.001, 0.002, 0.003], [0, 0, 0]),
+        ("<up_axis>Y_UP</up_axis>", [1, 0, 2], [0, -3, 0]),
+        ("", [1, 0, 2], [0, -3, 0]),  # the specification's default is y up, in metres
+        ("<up_axis>X_UP</up_axis>", [0, 0, 1], [-2, -3, 0]),
+        ('<unit meter="0.5"/>', [0.5, 0, 1], [0, -1.5, 0]),
+    ],
+)
+def test_unit_and_up_axis_are_obeyed_once(asset, upper, lower):
+    mesh = load(asset)
+    assert mesh.shape.bounds.tolist() == [lower, upper]
+    assert signed_volume(mesh.shape) > 0
+    assert bool(mesh.notes) == (asset != Z_UP)
+
+
+@pytest.mark.parametrize("axis", ["X_UP", "Y_UP", "Z_UP", None])
+def test_the_ros_way_obeys_the_unit_and_leaves_every_axis_where_it_is(axis):
+    tag = "" if axis is None else f"<up_axis>{axis}</up_axis>"
+    data = document('<unit meter="0.5"/>' + tag)
+    mesh = mesh_from_bytes(data, "m.dae", up_axis="ros")
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [0.5, 1, 1.5]]
+    assert any("is ignored, as RViz and MoveIt do" in note for note in mesh.notes) == (
+        axis != "Z_UP"
+    )
+    assert not any("turned from" in note and "not turned" not in note for note in mesh.notes)
+
+
+def test_a_store_keeps_both_ways_apart(tmp_path):
+    (tmp_path / "m.dae").write_bytes(document("<up_axis>Y_UP</up_axis>"))
+    store = MeshStore(InputFiles(tmp_path))
+    turned, left = (store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0), way) for way in ("file", "ros"))
+    assert turned.shape.bounds[1].tolist() == [1, 0, 2]
+    assert left.shape.bounds[1].tolist() == [1, 2, 3]
+    assert store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0)) is turned
+    assert read_mesh(tmp_path / "m.dae", up_axis="ros").bounds[1].tolist() == [1, 2, 3]
+
+
+def test_scale_comes_on_top_of_the_unit():
+    mesh = load('<unit meter="0.01"/>' + Z_UP, scale=(100, -100, 100))
+    assert mesh.shape.bounds.tolist() == [[0, -2, 0], [1, 0, 3]]
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def test_positions_keep_double_precision():
+    value = 0.1234567890123456
+    mesh = load(Z_UP, vertices=f"0 0 0 {value!r} 0 0 0 2 0 0 0 3")
+    assert value in mesh.shape.vertices[:, 0]
+    assert float(np.float32(value)) != value
+
+
+@pytest.mark.parametrize(
+    ("transforms", "upper"),
+    [
+        ("<translate>1 2 3</translate>", [2, 4, 6]),
+        ("<translate>1 0 0</translate><scale>2 2 2</scale>", [3, 4, 6]),
+        ("<rotate>0 0 1 90</rotate>", [0, 1, 3]),
+        ("<rotate>0 0 2 -270</rotate><rotate>1 0 0 0</rotate>", [0, 1, 3]),
+        ("<matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>", [6, 2, 3]),
+        ("<scale>1 1 -1</scale>", [1, 2, 0]),
+        ("<scale>0.1 0.1 0.1</scale>", [0.1, 0.2, 3 * 0.1]),
+    ],
+)
+def test_node_transforms_are_applied_in_order_and_keep_faces_outward(transforms, upper):
+    nodes = f'<node>{transforms}<instance_geometry url="#g"/></node>'
+    mesh = load(Z_UP, nodes=nodes)
+    assert mesh.shape.bounds[1].tolist() == upper
+    assert signed_volume(mesh.shape) > 0
+
+
+def test_nested_nodes_and_instances_are_all_placed():
+    inner = '<node><translate>0 0 10</translate><instance_geometry url="#g"/></node>'
+    nodes = (
+        f'<node><translate>5 0 0</translate>{inner}</node><node><instance_node url="#n"/></node>'
+    )
+    library = '<library_nodes><node id="n"><instance_geometry url="#g"/></node></library_nodes>'
+    text = document(Z_UP, nodes=nodes).decode()
+    text = text.replace("<library_visual_scenes>", library + "<library_visual_scenes>")
+    mesh = mesh_from_bytes(text.encode(), "m.dae")
+    assert mesh.n_triangles == 8
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [6, 2, 13]]
+
+
+def test_polygons_of_several_primitives_are_kept_and_cut_inside():
+    dart = "2 2 0 0 1 0 -2 2 0 0 0 0"
+    shared = '<input semantic="VERTEX" source="#v" offset="0"/>'
+    primitives = (
+        f'<polylist count="1">{shared}<vcount>4</vcount><p>0 1 2 3</p></polylist>'
+        f'<polygons count="1">{shared}<p>3 2 1 0</p></polygons>'
+        f'<lines count="1">{shared}<p>0 1</p></lines>'
+    )
+    mesh = load(Z_UP, vertices=dart, primitives=primitives)
+    areas = [mesh.shape.face(i) for i in range(mesh.shape.n_faces)]
+    area = sum(np.linalg.norm(np.cross(f[1] - f[0], f[2] - f[0])) / 2 for f in areas)
+    assert mesh.n_triangles == 4
+    assert area == pytest.approx(4)
+
+
+def test_triangle_strips_turn_every_other_triangle():
+    strip = (
+        '<tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
+        "<p>{}</p></tristrips>"
+    )
+    mesh = load(Z_UP, primitives=strip.format("0 2 1 3") + strip.format("1 3 0 2"))
+    assert mesh.shape.closed and mesh.shape.oriented
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def test_missing_textures_and_materials_do_not_matter():
+    images = '<library_images><image id="i"><init_from>no.png</init_from></image></library_images>'
+    nodes = (
+        '<node><instance_geometry url="#g"><bind_material><technique_common>'
+        '<instance_material symbol="m" target="#none"/></technique_common></bind_material>'
+        "</instance_geometry></node>"
+    )
+    assert load(Z_UP, nodes=nodes, more=images).n_triangles == 4
+
+
+SHORT = (
+    '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
+    "<vcount>4</vcount><p>0 1 2</p></polylist>"
+)
+OUTSIDE = (
+    '<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 9</p></triangles>'
+)
+
+
+@pytest.mark.parametrize(
+    ("data", "fault"),
+    [
+        (b"", BadSyntax),
+        (b"<COLLADA", BadSyntax),
+        (b"<robot/>", BadSyntax),
+        (document(Z_UP, nodes="<node/>"), EmptyMesh),
+        (
+            document(Z_UP).replace(b"<scene>", b"<extra>").replace(b"</scene>", b"</extra>"),
+            EmptyMesh,
+        ),
+        (document(Z_UP, vertices="nan 0 0 1 0 0 0 2 0 0 0 3"), NotFinite),
+        (document(Z_UP, vertices="x 0 0 1 0 0 0 2 0 0 0 3"), BadSyntax),
+        (document('<unit meter="0"/>' + Z_UP), BadDimension),
+        (document('<unit meter="-1"/>' + Z_UP), BadDimension),
+        (document(Z_UP, primitives=SHORT), BadSyntax),
+        (document(Z_UP, primitives=OUTSIDE), (BadSyntax, BadPolygon)),
+        (document(Z_UP, nodes='<node><instance_geometry url="#no"/></node>'), BadSyntax),
+        (
+            document(Z_UP, nodes='<node><skew>1</skew><instance_geometry url="#g"/></node>'),
+            BadSyntax,
+        ),
+    ],
+)
+def test_each_fault_is_one_line_with_the_file(data, fault):
+    with pytest.raises(fault) as caught:
+        mesh_from_bytes(data, "m.dae")
+    assert str(caught.value).startswith("m.dae: ")
+    assert "\n" not in str(caught.value)
+
+
+def with_accessor(accessor: str, numbers: str, **kwargs) -> bytes:
+    """The wedge's document with another accessor over other numbers."""
+    text = document(Z_UP, vertices=numbers, **kwargs).decode()
+    return re.sub(r"<accessor.*</accessor>", accessor, text, flags=re.DOTALL).encode()
+
+
+XYZ = "".join(f'<param name="{name}" type="float"/>' for name in "XYZ")
+
+
+@pytest.mark.parametrize(
+    ("accessor", "numbers"),
+    [
+        (
+            f'<accessor source="#pa" count="4" offset="2" stride="3">{XYZ}</accessor>',
+            f"9 9 {WEDGE}",
+        ),
+        (
+            f'<accessor source="#pa" count="4" stride="4">{XYZ}</accessor>',
+            "0 0 0 7 1 0 0 7 0 2 0 7 0 0 3",
+        ),
+        (
+            f'<accessor source="#pa" count="4" stride="4"><param type="float"/>{XYZ}</accessor>',
+            "7 0 0 0 7 1 0 0 7 0 2 0 7 0 0 3",
+        ),
+        (
+            '<accessor source="#pa" count="4" stride="3"><param name="Z"/><param name="X"/><param name="Y"/>'
+            "</accessor>",
+            "0 0 0 0 1 0 0 0 2 3 0 0",
+        ),
+        ('<accessor source="#pa" count="4" stride="3"/>', WEDGE),
+    ],
+)
+def test_positions_are_taken_as_the_accessor_says(accessor, numbers):
+    mesh = mesh_from_bytes(with_accessor(accessor, numbers), "m.dae")
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [1, 2, 3]]
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def primitive(kind: str, count: int, inside: str, inputs: str = SHARED) -> str:
+    return f'<{kind} count="{count}">{inputs}{inside}</{kind}>'
+
+
+NODE = '<instance_geometry url="#g"/>'
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (
+            with_accessor(f'<accessor source="#pa" count="5" stride="3">{XYZ}</accessor>', WEDGE),
+            "number 14",
+        ),
+        (
+            with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE),
+            "stride 2",
+        ),
+        (
+            with_accessor(f'<accessor source="#pa" count="-4" stride="3">{XYZ}</accessor>', WEDGE),
+            "count -4",
+        ),
+        (
+            with_accessor(
+                '<accessor source="#pa" count="4" stride="3"><param name="S"/></accessor>', WEDGE
+            ),
+            "S",
+        ),
+        (document(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
+        (
+            document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'),
+            "its count is 5",
+        ),
+        (
+            document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")),
+            "count is 2",
+        ),
+        (document(Z_UP, primitives=primitive("polygons", 2, "<p>0 1 2</p>")), "its count is 2"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 -1</p>")), "vertex -1"),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 4294967298</p>")),
+            "vertex 4294967298",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, f"<p>0 1 {2**64}</p>")),
+            "whole number",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")),
+            "'1_0' is not a whole number",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")),
+            "<p> holds <b>",
+        ),
+        (
+            document(
+                Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")
+            ),
+            "holes (<ph>)",
+        ),
+        (document(Z_UP, vertices=WEDGE.replace("3", "3_0")), "'3_0' is not a number"),
+        (document('<unit meter="0,01"/>' + Z_UP), "<unit meter='0,01'> is given"),
+        (document('<unit meter="inch"/>' + Z_UP), "<unit meter='inch'> is given"),
+        (document('<unit name="inch"/>' + Z_UP), "<unit name='inch'> is given"),
+        (document("<up_axis>W_UP</up_axis>"), "<up_axis> is 'W_UP'; X_UP, Y_UP, Z_UP"),
+        (
+            document(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'),
+            "units of 1 and 0.5 m",
+        ),
+        (
+            document(
+                Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"
+            ),
+            "<matrix>: the last row is [0.0, 0.0, 0.0, 2.0]; 0 0 0 1",
+        ),
+        (
+            document(Z_UP, nodes=f"<node><translate>1 0</translate>{NODE}</node>"),
+            "<translate>: 2 numbers; 3",
+        ),
+        (document(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
+        (document(Z_UP, nodes=f"<node><rotate>0 0 0 9</rotate>{NODE}</node>"), "a direction"),
+        (
+            document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1),
+            "entities",
+        ),
+        (
+            document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"),
+            "nested more than 100 deep",
+        ),
+    ],
+)
+def test_what_would_be_another_surface_is_refused(data, says):
+    with pytest.raises(BadInput) as caught:
+        mesh_from_bytes(data, "m.dae")
+    assert says in str(caught.value)
+    assert str(caught.value).startswith("m.dae: ")
+
+
+def tenfold(n_levels: int) -> bytes:
+    """Nodes of which each places the one below it ten times."""
+    library = f'<node id="n0">{NODE}</node>' + "".join(
+        f'<node id="n{k + 1}">{f"""<instance_node url="#n{k}"/>""" * 10}</node>'
+        for k in range(n_levels)
+    )
+    nodes = f'<node><instance_node url="#n{n_levels}"/></node>'
+    text = document(Z_UP, nodes=nodes).decode()
+    return text.replace(
+        "<library_visual", f"<library_nodes>{library}</library_nodes><library_visual", 1
+    ).encode()
+
+
+@pytest.mark.slow
+def test_nodes_that_place_each_other_tenfold_are_counted():
+    assert mesh_from_bytes(tenfold(2), "m.dae").n_triangles == 400
+    for n_levels in (6, 40):
+        with pytest.raises(BadSyntax, match=r"more than 20,000 copies of nodes"):
+            mesh_from_bytes(tenfold(n_levels), "m.dae")
+
+
+def test_a_node_that_places_itself_is_refused():
+    nodes = '<node id="a"><instance_node url="#a"/></node>'
+    with pytest.raises(BadSyntax, match="place themselves"):
+        load(Z_UP, nodes=nodes)
+
+
+def test_an_id_that_two_geometries_have_is_refused():
+    twice = '<library_geometries><geometry id="g"/></library_geometries>'
+    with pytest.raises(BadSyntax, match="2 <geometry> elements have the id 'g'"):
+        load(Z_UP, more=twice)

@@ -1,0 +1,366 @@
+"""Mesh files to solids: nothing lost, nothing moved, nothing turned inside out, and each fault in
+one line.
+"""
+
+import struct
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from clearance.errors import (
+    BadDimension,
+    BadPolygon,
+    BadSyntax,
+    EmptyMesh,
+    MissingFile,
+    NotFinite,
+)
+from clearance.formats.mesh.mesh_file import OPEN, mesh_from_bytes, read_mesh, triangles_from_bytes
+from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl, cube_stl, signed_volume, text_stl
+
+CUBE_CORNERS = CUBE[CUBE_TRIANGLES]
+
+CUBE_OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in CUBE.tolist()) + (
+    "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n"
+)
+
+
+def as_triangle_set(corners) -> set:
+    """Triangles as exact coordinates, first corner least, orientation kept."""
+    found = set()
+    for triangle in np.asarray(corners, dtype=float):
+        points = [tuple(Fraction(float(x)) for x in point) for point in triangle]
+        i = points.index(min(points))
+        found.add(tuple(points[i:] + points[:i]))
+    return found
+
+
+@pytest.mark.parametrize("write", [binary_stl, text_stl])
+def test_stl_in_both_forms_is_the_same_cube(write):
+    mesh = mesh_from_bytes(write(CUBE_CORNERS), "cube.STL")
+    assert (mesh.n_triangles, mesh.shape.n_faces, len(mesh.shape.vertices)) == (12, 6, 8)
+    assert signed_volume(mesh.shape) == 1
+    assert mesh.shape.closed
+    assert mesh.notes == ()
+
+
+def test_binary_stl_that_begins_with_solid_is_binary():
+    data = binary_stl(CUBE_CORNERS, header=b"solid written by a careless exporter")
+    assert mesh_from_bytes(data, "cube.stl").n_triangles == 12
+
+
+def test_text_stl_of_several_solids_keeps_all():
+    data = text_stl(CUBE_CORNERS[:4]) + text_stl(CUBE_CORNERS[4:]).upper()
+    assert signed_volume(mesh_from_bytes(data, "cube.stl").shape) == 1
+
+
+def test_single_precision_values_are_kept_and_nearly_equal_points_stay_apart():
+    near = np.nextafter(np.float32(0.1), np.float32(1))
+    corners = np.array(
+        [[[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, -1, 0], [near, 0, 0]]],
+        dtype=np.float32,
+    )
+    mesh = mesh_from_bytes(binary_stl(corners), "near.stl")
+    assert as_triangle_set(corners) == as_triangle_set([mesh.shape.face(i) for i in range(2)])
+    assert len(mesh.shape.vertices) == 5
+
+
+def test_minus_zero_and_zero_are_one_point():
+    corners = np.array([[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[-0.0, 0, 0], [0, 1, 0], [-1, 0, 1]]])
+    assert len(mesh_from_bytes(binary_stl(corners), "m.stl").shape.vertices) == 4
+
+
+def test_zero_area_triangles_go_only_where_their_neighbours_cover_them():
+    covered = [[[-0.5, -0.5, -0.5], [0.5, -0.5, -0.5], [0.5, -0.5, -0.5]]]
+    mesh = mesh_from_bytes(binary_stl(np.concatenate([CUBE_CORNERS, covered])), "m.stl")
+    assert mesh.shape.n_faces == 6
+    assert mesh.notes == ("1 triangle has no area and is covered by its neighbours",)
+    whisker = [[[2, 0, 0], [3, 0, 0], [4, 0, 0]]]
+    mesh = mesh_from_bytes(binary_stl(np.concatenate([CUBE_CORNERS, whisker])), "m.stl")
+    assert mesh.shape.bounds[1].tolist() == [4, 0.5, 0.5]
+    assert (
+        "1 triangle has no area; 1 is kept as a face, because nothing else covers it"
+        in mesh.notes[0]
+    )
+
+
+def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
+    both = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:, ::-1]])
+    (note,) = mesh_from_bytes(binary_stl(both), "m.stl").notes
+    assert note.startswith("it holds each face once for each side: what is wholly inside")
+    (note,) = mesh_from_bytes(binary_stl(np.concatenate([both, CUBE_CORNERS + 3.0])), "m.stl").notes
+    assert note.startswith("1 of its 2 parts holds")
+    assert mesh_from_bytes(binary_stl(CUBE_CORNERS), "m.stl").notes == ()
+
+
+def test_obj_polygons_are_the_same_cube():
+    mesh = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
+    assert (mesh.n_triangles, mesh.shape.n_faces) == (12, 6)
+    assert signed_volume(mesh.shape) == 1
+
+
+def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
+    lines = CUBE_OBJ.splitlines()
+    faces = [
+        "o first", "usemtl red", lines[8], "usemtl blue", lines[9], "g left right",
+        "f 1/1/1 5/2/1 6/3/1 2/4/1", "o second", "usemtl red", "f 3//1 4//1 8//1 7//1", "s off",
+        "usemtl", lines[12], "l 1 2", "f 2/9 6/9 8/9 4/9",
+    ]  # fmt: skip
+    text = "\n".join(
+        ["# two materials", "mtllib missing.mtl", *lines[:8], "vn 0 0 1", "vt 0 0", *faces]
+    )
+    mesh = mesh_from_bytes(text.encode(), "cube.obj")
+    expected = as_triangle_set(CUBE_CORNERS)
+    whole = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
+    assert mesh.n_triangles == len(expected) == 12
+    assert signed_volume(mesh.shape) == signed_volume(whole.shape) == 1
+    assert mesh.shape.closed
+
+
+def test_obj_relative_indices_count_from_their_own_line():
+    triangle = "v 0 0 {0}\nv 1 0 {0}\nv 0 1 {0}\nf -3 -2 -1\n"
+    data = (triangle.format(0) + triangle.format(5)).encode()
+    triangles = triangles_from_bytes(data, "m.obj")
+    heights = triangles.vertices[triangles.corners][:, :, 2]
+    assert heights.tolist() == [[0, 0, 0], [5, 5, 5]]
+
+
+def test_obj_concave_polygon_does_not_reach_outside_itself():
+    data = b"v 2 2 0\nv 0 1 0\nv -2 2 0\nv 0 0 0\nf 1 2 3 4\n"
+    triangles = triangles_from_bytes(data, "dart.obj")
+    a, b, c = (triangles.vertices[triangles.corners[:, i]] for i in range(3))
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(2)
+
+
+def test_obj_continued_lines_tabs_colours_and_comments():
+    data = b"v 0 0 0 1 0 0\r\nv\t1 0 0 # corner\r\nv 0 1 0\r\nf 1 \\\r\n 2 3 # face\r\n"
+    assert triangles_from_bytes(data, "m.obj").corners.tolist() == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize("scale", [2, 2.0, (2, 2, 2), (2.0, -2, 2), -2, (-2, -2, 2), (-2, -2, -2)])
+@pytest.mark.parametrize(("name", "data"), [("c.stl", cube_stl()), ("c.obj", CUBE_OBJ.encode())])
+def test_scale_keeps_faces_outward_even_when_it_mirrors(name, data, scale):
+    shape = mesh_from_bytes(data, name, scale).shape
+    assert signed_volume(shape) == 8
+    assert shape.bounds.tolist() == [[-1, -1, -1], [1, 1, 1]]
+
+
+def test_scale_of_each_axis_and_mirroring_move_points_where_they_belong():
+    corners = CUBE_CORNERS + np.array([1, 2, 3])
+    shape = mesh_from_bytes(binary_stl(corners), "m.stl", (-2, 3, 0.5)).shape
+    assert shape.bounds.tolist() == [[-3, 4.5, 1.25], [-1, 7.5, 1.75]]
+    assert signed_volume(shape) == pytest.approx(3)
+
+
+@pytest.mark.parametrize("scale", [0, (1, 0, 1), float("nan"), float("inf"), (1, 2), 1e308])
+def test_a_scale_that_leaves_no_solid_is_refused(scale):
+    far = binary_stl(CUBE_CORNERS * 100)
+    with pytest.raises(BadDimension, match=r"^m\.stl: scale"):
+        mesh_from_bytes(far, "m.stl", scale)
+
+
+@pytest.mark.parametrize("suffix", ["ply", "off", "glb", "stl", "obj"])
+def test_formats_that_trimesh_writes_come_back_whole(suffix):
+    import trimesh
+
+    box = trimesh.creation.box(extents=(1, 2, 4))
+    written = box.export(file_type=suffix)
+    data = written.encode() if isinstance(written, str) else written
+    mesh = mesh_from_bytes(data, f"box.{suffix}")
+    assert (mesh.n_triangles, mesh.shape.n_faces) == (12, 6)
+    assert signed_volume(mesh.shape) == pytest.approx(8)
+    size = mesh.shape.bounds[1] - mesh.shape.bounds[0]
+    assert size.tolist() == ([1, 4, 2] if suffix == "glb" else [1, 2, 4])  # glTF is y up
+
+
+def test_nearly_equal_points_of_a_ply_stay_apart():
+    rows = ["0 0 0", "1 0 0", "0 1 0", "0 0 1e-9", "1 0 1e-9", "0 1 1e-9"]
+    head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\n"
+    head += (
+        "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    data = (head + "\n".join([*rows, "3 0 1 2", "3 3 4 5", ""])).encode()
+    assert len(mesh_from_bytes(data, "m.ply").shape.vertices) == 6
+
+
+NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], [0, 1, 0]]]]))
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "fault", "says"),
+    [
+        ("m.stl", binary_stl(np.zeros((0, 3, 3))), EmptyMesh, "no faces"),
+        ("m.stl", b"solid nothing\nendsolid nothing\n", EmptyMesh, "no faces"),
+        ("m.stl", b"", BadSyntax, "not an STL file: 0 bytes"),
+        ("m.stl", cube_stl()[:-20], BadSyntax, "not an STL file"),
+        ("m.stl", cube_stl() + b"more", BadSyntax, "not an STL file"),
+        ("m.stl", b"\x89PNG" * 50, BadSyntax, "not an STL file"),
+        ("m.stl", text_stl(CUBE_CORNERS)[:600], BadSyntax, "cut off"),
+        (
+            "m.stl",
+            text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1),
+            BadSyntax,
+            "closed outer loop",
+        ),
+        ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"x", 1), BadSyntax, "three vertices"),
+        ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"", 1), BadSyntax, "three vertices"),
+        ("m.stl", NAN_STL, NotFinite, "face 12"),
+        ("m.stl", text_stl(CUBE_CORNERS).replace(b"0.5", b"inf", 1), NotFinite, "face 0"),
+        ("m.obj", b"", EmptyMesh, "no faces"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\n", EmptyMesh, "no faces"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n", BadPolygon, "face 0 has 2 vertices"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", BadPolygon, "vertex 3"),
+        ("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", BadSyntax, "line 4: 'f 1 2 0'"),
+        ("m.obj", b"v 0 0 0\nf -1 -1 -2\n", BadSyntax, "line 2"),
+        ("m.obj", b"v 0 0\n", BadSyntax, "line 1: 'v 0 0'"),
+        ("m.obj", b"v 0 0 x\n", BadSyntax, "line 1"),
+        ("m.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", NotFinite, "face 0"),
+        ("m.obj", b"v 0 0 0\ncurv 0 1 1\n", BadSyntax, "line 2: free-form"),
+        ("m.ply", b"ply\nformat ascii 1.0\n", BadSyntax, "not a PLY file"),
+        ("m.ply", b"", BadSyntax, "PLY"),
+        ("m.off", b"OFX\n", BadSyntax, "OFF"),
+        ("m.glb", b"glTF\0\0", BadSyntax, "GLB"),
+        ("m.3ds", b"", BadSyntax, "unknown mesh format '.3ds'; .stl, .obj, .dae"),
+        ("mesh", b"", BadSyntax, "unknown mesh format ''"),
+    ],
+)
+def test_each_fault_is_one_line_with_the_file(name, data, fault, says):
+    with pytest.raises(fault) as caught:
+        mesh_from_bytes(data, name)
+    assert says in str(caught.value)
+    assert str(caught.value).startswith(name)
+    assert "\n" not in str(caught.value)
+
+
+def test_points_that_no_face_uses_do_not_matter():
+    data = b"v nan 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"
+    assert len(mesh_from_bytes(data, "m.obj").shape.vertices) == 3
+
+
+def test_files_are_read_from_disk(tmp_path):
+    (tmp_path / "cube.stl").write_bytes(cube_stl())
+    assert signed_volume(read_mesh(tmp_path / "cube.stl", scale=0.5)) == 0.125
+    with pytest.raises(MissingFile, match=r"there is no file 'no\.stl'"):
+        read_mesh(tmp_path / "no.stl")
+    (tmp_path / "folder.stl").mkdir()
+    with pytest.raises(MissingFile, match="is a folder"):
+        read_mesh(tmp_path / "folder.stl")
+
+
+def test_fifty_thousand_triangles_are_loaded_as_they_are():
+    n = 159
+    heights = np.random.default_rng(3).random((n, n)).astype(np.float32)
+    x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    grid = np.stack([x, y, heights], axis=2).astype("<f4")
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+    corners = np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3)
+    facets = np.zeros(len(corners), dtype=[("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
+    facets["c"] = corners
+    data = bytes(80) + struct.pack("<I", len(facets)) + facets.tobytes()
+    mesh = mesh_from_bytes(data, "land.stl")
+    assert mesh.n_triangles == mesh.shape.n_faces == 49928
+    assert len(mesh.shape.vertices) == n * n
+
+
+def test_a_closed_mesh_that_is_inside_out_is_turned_and_noted():
+    mesh = mesh_from_bytes(binary_stl(CUBE_CORNERS[:, ::-1]), "m.stl")
+    assert signed_volume(mesh.shape) == 1
+    assert mesh.notes == ("the closed surface was inside out and is turned round",)
+
+
+def test_a_cavity_stays_a_cavity():
+    hollow = np.concatenate([CUBE_CORNERS * 4, CUBE_CORNERS[:, ::-1]])
+    mesh = mesh_from_bytes(binary_stl(hollow), "m.stl")
+    assert signed_volume(mesh.shape) == pytest.approx(63)
+    assert mesh.notes == ()
+
+
+def test_a_hollow_mesh_that_is_inside_out_is_turned_with_its_cavity():
+    hollow = np.concatenate([CUBE_CORNERS * 4 - 1.5, CUBE_CORNERS[:, ::-1]])
+    mesh = mesh_from_bytes(binary_stl(hollow[:, ::-1]), "m.stl")
+    assert signed_volume(mesh.shape) == pytest.approx(63)
+    assert mesh.notes == ("2 of its 2 parts were inside out and are turned round",)
+
+
+def test_of_several_parts_those_that_are_inside_out_are_counted():
+    corners = np.concatenate(
+        [CUBE_CORNERS, CUBE_CORNERS[:, ::-1] + 3.0, CUBE_CORNERS[:, ::-1] + 6.0]
+    )
+    mesh = mesh_from_bytes(binary_stl(corners), "m.stl")
+    assert mesh.notes == ("2 of its 3 parts were inside out and are turned round",)
+    assert signed_volume(mesh.shape) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_two_sided_mesh_is_not_said_to_be_inside_out(seed):
+    moved = CUBE_CORNERS + np.random.default_rng(seed).uniform(-9, 9, 3).astype(np.float32)
+    both = np.concatenate([moved, moved[::-1, ::-1]])
+    (note,) = mesh_from_bytes(binary_stl(both), "m.stl").notes
+    assert note.startswith("it holds each face once for each side")
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_flat_closed_surface_is_not_said_to_be_inside_out(seed):
+    fan = np.random.default_rng(seed).normal(size=(6, 3)) * [1, 1, 0]
+    turned = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    a, b, c, d = (fan[:4] + 7.0) @ turned
+    sides = np.array([[a, b, c], [a, c, d], [a, d, b], [b, d, c]])
+    for way in (sides, sides[:, ::-1]):
+        assert "inside out" not in " ".join(mesh_from_bytes(text_stl(way), "m.stl").notes)
+
+
+def test_exact_copies_of_faces_are_left_out_with_a_note():
+    again = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[3:5], np.roll(CUBE_CORNERS[7:8], 1, axis=1)])
+    mesh = mesh_from_bytes(binary_stl(again), "m.stl")
+    assert mesh.notes == ("3 exact copies of faces are left out",)
+    assert mesh.n_triangles == 15
+    assert signed_volume(mesh.shape) == 1
+    assert mesh.shape.closed and mesh.shape.component_closed.all()
+    one = mesh_from_bytes(binary_stl(np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:1]])), "m.stl")
+    assert one.notes == ("1 exact copy of a face is left out",)
+
+
+def test_a_face_once_for_each_side_is_no_copy():
+    both = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:, ::-1]])
+    (note,) = mesh_from_bytes(binary_stl(np.concatenate([both, both])), "m.stl").notes[1:]
+    assert note.startswith("it holds each face once for each side")
+
+
+def test_open_surfaces_are_noted_and_parts_are_counted():
+    assert mesh_from_bytes(binary_stl(CUBE_CORNERS[1:]), "m.stl").notes == (OPEN,)
+    two = np.concatenate([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0])
+    assert mesh_from_bytes(binary_stl(two), "m.stl").notes == (
+        "1 of its 2 parts is open: it has no inside",
+    )
+
+
+def test_obj_lines_end_where_lines_end_and_numbers_are_numbers():
+    data = "v 0 0 0 # a\u2028v 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".encode()
+    assert triangles_from_bytes(data, "m.obj").corners.tolist() == [[0, 1, 2]]
+    for old, new in [
+        (b"v 1 0 0", b"v 1_0 0 0"),
+        (b"f 1 2 3", b"f 1 2 0_3"),
+        (b"v 0 1", b"v 0 \xd9\xa1"),
+    ]:
+        with pytest.raises(BadSyntax, match="line"):
+            mesh_from_bytes(data.replace(old, new), "m.obj")
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("call other.obj", "other files"),
+        ("bzp 1 2 3", "free-form"),
+        ("face 1 2 3", "'face 1 2 3' cannot be read"),
+    ],
+)
+def test_obj_lines_that_may_hold_faces_are_refused(line, says):
+    with pytest.raises(BadSyntax, match=f"line 4.*{says}|{says}"):
+        mesh_from_bytes(f"v 0 0 0\nv 1 0 0\nv 0 1 0\n{line}\nf 1 2 3\n".encode(), "m.obj")
+
+
+def test_text_stl_of_many_loops_is_read_once():
+    data = b"solid a\n" + b"facet normal 0 0 1\n" + b"outer loop\n" * 100_000 + b"endsolid a\n"
+    with pytest.raises(BadSyntax, match="closed outer loop"):
+        mesh_from_bytes(data, "m.stl")

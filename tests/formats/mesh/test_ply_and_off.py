@@ -1,0 +1,193 @@
+"""PLY and OFF: all that the header says is read, in every form, and a file that holds less or more is refused."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadInput, BadSyntax
+from clearance.formats.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
+from tests.formats.making import CUBE, CUBE_TRIANGLES, signed_volume
+
+QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+
+
+def header(
+    kind, n_points, *, coordinates="double", element="face", n_faces=12, more="", newline="\n"
+):
+    lines = ["ply", f"format {kind} 1.0", "comment made by a test", f"element vertex {n_points}"]
+    lines += [f"property {coordinates} {axis}" for axis in "xyz"] + [
+        line for line in [more] if line
+    ]
+    lines += [
+        f"element {element} {n_faces}",
+        "property list uchar int vertex_indices",
+        "end_header",
+        "",
+    ]
+    return newline.join(lines).encode()
+
+
+def text_ply(faces, points=CUBE, newline="\n", **kwargs) -> bytes:
+    rows = [" ".join(map(repr, row)) for row in np.asarray(points, dtype=float).tolist()]
+    rows += [" ".join(map(str, [len(face), *face])) for face in faces]
+    head = header("ascii", len(points), n_faces=len(faces), newline=newline, **kwargs)
+    return head + newline.join([*rows, ""]).encode()
+
+
+def binary_ply(faces, order="<", points=CUBE, **kwargs) -> bytes:
+    kind = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]
+    body = np.asarray(points).astype(order + "f8").tobytes()
+    body += b"".join(struct.pack(f"{order}B{len(f)}i", len(f), *f) for f in faces)
+    return header(kind, len(points), n_faces=len(faces), **kwargs) + body
+
+
+FORMS = [
+    text_ply,
+    lambda faces: text_ply(faces, newline="\r\n"),
+    lambda faces: text_ply(faces, newline="\r"),
+    binary_ply,
+    lambda faces: binary_ply(faces, ">"),
+]
+
+
+@pytest.mark.parametrize("write", FORMS)
+@pytest.mark.parametrize(
+    "faces", [CUBE_TRIANGLES.tolist(), QUADS, [*QUADS[:5], [1, 5, 7], [1, 7, 3]]]
+)
+def test_a_cube_is_a_cube_in_every_form(write, faces):
+    mesh = mesh_from_bytes(write(faces), "m.ply")
+    assert (mesh.n_triangles, mesh.shape.n_faces, signed_volume(mesh.shape)) == (12, 6, 1)
+
+
+@pytest.mark.parametrize("write", [text_ply, binary_ply])
+def test_concave_polygons_cover_no_more_than_themselves(write):
+    dart = np.array([[2, 2, 0], [0, 1, 0], [-2, 2, 0], [0, 0, 0]])
+    triangles = triangles_from_bytes(write([[0, 1, 2, 3]], points=dart), "m.ply")
+    a, b, c = (triangles.vertices[triangles.corners[:, i]] for i in range(3))
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(2.0)
+
+
+STRIP = [0, 2, 1, 3, -1, 1, 3, 0, 2]
+
+
+@pytest.mark.parametrize("write", [text_ply, binary_ply])
+def test_strips_are_read(write):
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
+    data = write([STRIP], points=points, element="tristrips")
+    mesh = mesh_from_bytes(data, "m.ply")
+    assert mesh.n_triangles == 4
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def test_strips_beside_faces_are_read_as_well():
+    data = text_ply(CUBE_TRIANGLES.tolist()[:11])
+    more = b"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    data = data.replace(b"end_header\n", more) + b"3 1 7 3\n"
+    assert signed_volume(mesh_from_bytes(data, "m.ply").shape) == 1
+
+
+@pytest.mark.parametrize("write", [text_ply, binary_ply])
+def test_other_properties_and_elements_are_passed_over(write):
+    data = write(CUBE_TRIANGLES.tolist())
+    if write is text_ply:
+        data = data.replace(b"\nelement face", b"\nproperty uchar red\nelement face")
+        head, _, body = data.partition(b"end_header\n")
+        lines = body.split(b"\n")
+        lines[:8] = [line + b" 255" for line in lines[:8]]
+        edges = b"element edge 1\nproperty int vertex1\nproperty int vertex2\n"
+        data = head + edges + b"end_header\n" + b"\n".join(lines) + b"0 1\n"
+    assert signed_volume(mesh_from_bytes(data, "m.ply").shape) == 1
+
+
+@pytest.mark.parametrize("write", FORMS)
+@pytest.mark.parametrize("faces", [CUBE_TRIANGLES.tolist(), [*QUADS[:5], [1, 5, 7], [1, 7, 3]]])
+def test_a_ply_file_that_is_cut_off_anywhere_is_refused(write, faces):
+    data = write(faces)
+    last = len(data.rstrip()) - 1 if b"ascii" in data else len(data)
+    for end in [*range(0, last, 5), last - 1]:
+        with pytest.raises(BadInput):
+            mesh_from_bytes(data[:end], "m.ply")
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (text_ply(QUADS) + b"3 0 1 2\n", "1 lines more than its header says"),
+        (binary_ply(QUADS) + b"\1\2", "2 bytes more than its header says"),
+        (binary_ply(QUADS).replace(b"face 6", b"face 2000000000"), "do not fit in the file"),
+        (text_ply(QUADS).replace(b"face 6", b"face 2000000000"), "cut off"),
+        (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 2 7"), "row 0 has 6 numbers"),
+        (text_ply(QUADS).replace(b"4 0 1 3 2", b"5 0 1 3 2"), "row 0 has 5 numbers"),
+        (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 -2"), "vertex -2"),
+        (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 8"), "vertex 8"),
+        (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 1_0"), "'1_0' is not a whole number"),
+        (text_ply(QUADS).replace(b"-0.5", b"-0.5 1", 1), "row 0 has 4 numbers"),
+        (text_ply(QUADS).replace(b"double z", b"double w"), "no vertex property 'z'"),
+        (text_ply(QUADS).replace(b"double z", b"double y"), "'y' is there twice"),
+        (
+            text_ply(QUADS).replace(b"double z", b"triple z"),
+            "the PLY header has the line 'property triple z'",
+        ),
+        (text_ply(QUADS).replace(b"vertex_indices", b"texcoord"), "0 lists of vertex indices"),
+        (text_ply(QUADS).replace(b"uchar int", b"uchar float"), "vertex indices are fractions"),
+        (text_ply(QUADS).replace(b"format ascii", b"format binary"), "not a PLY file"),
+        (text_ply([], CUBE), "no faces"),
+        (text_ply([[0, 1]], CUBE), "face 0 has 2 vertices"),
+    ],
+)
+def test_a_ply_file_that_does_not_add_up_is_refused(data, says):
+    with pytest.raises(BadInput) as caught:
+        mesh_from_bytes(data, "m.ply")
+    assert says in str(caught.value)
+
+
+def off(faces=QUADS, points=CUBE, head="OFF\n", colour="") -> bytes:
+    rows = [" ".join(map(repr, row)) for row in np.asarray(points, dtype=float).tolist()]
+    rows += [" ".join(map(str, [len(face), *face])) + colour for face in faces]
+    return (f"{head}{len(points)} {len(faces)} 0\n" + "\n".join([*rows, ""])).encode()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        off(),
+        off(CUBE_TRIANGLES.tolist()),
+        off(head="OFF "),
+        off(head="# a cube\nOFF # here\n\n"),
+        off(colour=" 255 0 0 # red"),
+        off(points=np.concatenate([CUBE, CUBE], axis=1), head="NOFF\n"),
+        off().replace(b"\n", b"\r\n"),
+    ],
+)
+def test_an_off_cube_is_a_cube(data):
+    mesh = mesh_from_bytes(data, "m.off")
+    assert (mesh.n_triangles, mesh.shape.n_faces, signed_volume(mesh.shape)) == (12, 6, 1)
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (off() + b"3 0 1 2\n", "15 lines below its header; 8 points and 6 faces"),
+        (off().replace(b"4 0 1 3 2", b"5 0 1 3 2"), "face 0 has 4 numbers, and names 5 corners"),
+        (off().replace(b"4 0 1 3 2", b"3 0 1 3 2 1 1 1 1 1"), "face 0 has 9 numbers"),
+        (off().replace(b"4 0 1 3 2", b"4 0 1 3 8"), "vertex 8"),
+        (off().replace(b"4 0 1 3 2", b"4 0 1 3 \xd9\xa2"), "is not a whole number"),
+        (off().replace(b"-0.5 -0.5 -0.5", b"-0.5 -0.5", 1), "point 0 has 2 coordinates"),
+        (off().replace(b"8 6 0", b"8 -6 0"), "the counts are"),
+        (off(head="4OFF\n"), "not an OFF file"),
+        (off(head="OFF BINARY\n"), "header"),
+        (off([]), "no faces"),
+    ],
+)
+def test_an_off_file_that_does_not_add_up_is_refused(data, says):
+    with pytest.raises(BadInput) as caught:
+        mesh_from_bytes(data, "m.off")
+    assert says in str(caught.value)
+
+
+def test_an_off_file_that_is_cut_off_anywhere_is_refused():
+    data = off()
+    for end in [*range(0, len(data.rstrip()) - 1, 5), len(data.rstrip()) - 2]:
+        with pytest.raises(BadSyntax):
+            mesh_from_bytes(data[:end], "m.off")

@@ -1,0 +1,156 @@
+"""Polygons cut into triangles: the pieces cover the polygon, all of it, and nothing else."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance.errors import BadPolygon
+from clearance.formats.mesh import polygon_cut
+from clearance.formats.mesh.polygon_cut import cut_rings
+
+L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
+DART = np.array([[0, 0], [2, 2], [0, 1], [-2, 2]], dtype=float)
+
+
+def cut_polygons(vertices, polygons):
+    """(m, 3) the triangles of polygons that are given one by one."""
+    corners = np.array([i for polygon in polygons for i in polygon], dtype=np.int64)
+    return cut_rings(
+        vertices, corners, np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    )
+
+
+def placed(flat, axes=(0, 1)):
+    points = np.zeros((len(flat), 3))
+    points[:, list(axes)] = flat
+    return points
+
+
+def area_vectors(points, triangles):
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return np.cross(b - a, c - a) / 2
+
+
+@pytest.mark.parametrize("axes", [(0, 1), (1, 2), (2, 0), (1, 0), (2, 1), (0, 2)])
+@pytest.mark.parametrize("shape", [L_SHAPE, DART, L_SHAPE[::-1], np.roll(L_SHAPE, 3, axis=0)])
+def test_a_concave_polygon_is_covered_without_overlap(shape, axes):
+    points = placed(shape, axes)
+    triangles = cut_polygons(points, [list(range(len(points)))])
+    vectors = area_vectors(points, triangles)
+    total = vectors.sum(axis=0)
+    x, y = shape.T
+    true_area = abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+    assert len(triangles) == len(points) - 2
+    assert np.linalg.norm(total) == pytest.approx(true_area, abs=1e-15)
+    # no triangle turns the other way, so the areas add up only if nothing overlaps
+    assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(true_area, abs=1e-15)
+    assert (vectors @ total >= 0).all()
+
+
+def test_a_fan_would_have_been_wrong_here():
+    points = placed(DART)
+    fan = np.array([[0, 1, 2], [0, 2, 3]])[:, [0, 1, 2]]
+    from_tip = np.array([[1, 2, 3], [1, 3, 0]])
+    cut = cut_polygons(points, [[1, 2, 3, 0]])
+    assert np.linalg.norm(area_vectors(points, from_tip), axis=1).sum() > 2.1
+    assert np.linalg.norm(area_vectors(points, cut), axis=1).sum() == pytest.approx(2.0)
+    assert np.linalg.norm(area_vectors(points, fan), axis=1).sum() == pytest.approx(2.0)
+
+
+def test_polygons_of_several_sizes_keep_their_order():
+    points = placed(np.array([[0, 0], [1, 0], [1, 1], [0, 1], [-1, 0.5]]))
+    triangles = cut_polygons(points, [[0, 1, 2, 3], [0, 1, 2], [0, 1, 2, 3, 4]])
+    assert triangles.tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 1, 2], [0, 2, 3], [0, 3, 4]]
+
+
+def test_a_polygon_that_crosses_itself_is_refused():
+    with pytest.raises(BadPolygon, match="face 1 crosses itself"):
+        cut_polygons(placed(np.array([[0, 0], [1, 1], [1, 0], [0, 1]])), [[0, 1, 2], [0, 1, 2, 3]])
+
+
+def test_a_face_of_two_vertices_is_refused():
+    with pytest.raises(BadPolygon, match="face 0 has 2 vertices"):
+        cut_polygons(placed(L_SHAPE), [[0, 1]])
+
+
+@given(
+    radii=st.lists(st.integers(1, 8), min_size=4, max_size=9),
+    turn=st.integers(0, 8),
+    backwards=st.booleans(),
+)
+def test_star_shaped_polygons_are_covered(radii, turn, backwards):
+    n = len(radii)
+    angles = 2 * np.pi * np.arange(n) / n
+    shape = np.array(radii)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    points = placed(np.roll(shape, turn, axis=0)[:: -1 if backwards else 1])
+    vectors = area_vectors(points, cut_polygons(points, [list(range(n))]))
+    total = np.linalg.norm(vectors.sum(axis=0))
+    assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(total, rel=1e-12)
+
+
+def star(n):
+    angles = 2 * np.pi * np.arange(n) / n
+    radii = 1.0 + 0.5 * (np.arange(n) % 2)
+    return radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def comb(n):
+    teeth = np.column_stack([np.arange(n), np.where(np.arange(n) % 2, 50.0, 0.0)])
+    return np.concatenate([[[-1.0, -1.0], [n, -1.0]], teeth[::-1]])
+
+
+@pytest.mark.parametrize(
+    "shape", [star(1600), comb(1600), star(1600)[::-1], np.roll(comb(900), 7, axis=0)]
+)
+def test_faces_of_very_many_corners_are_covered(shape):
+    points = placed(shape, (2, 0))
+    vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))
+    total = vectors.sum(axis=0)
+    assert (vectors @ total >= 0).all()
+    assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(np.linalg.norm(total), rel=1e-12)
+
+
+def test_a_star_takes_work_far_below_the_square_of_its_corners(monkeypatch):
+    n = 20_000
+    monkeypatch.setattr(polygon_cut, "MOST_WORK", n * n // 100)
+    assert len(cut_polygons(placed(star(n)), [list(range(n))])) == n - 2
+
+
+def test_the_work_is_bounded_for_all_polygons_of_a_piece(monkeypatch):
+    monkeypatch.setattr(polygon_cut, "MOST_WORK", 40_000)
+    points = placed(comb(400))
+    polygon = list(range(len(points)))
+    cut_polygons(points, [polygon])
+    with pytest.raises(BadPolygon, match=r"face \d+ of 402 corners is too intricate"):
+        cut_polygons(points, [polygon] * 30)
+
+
+def test_a_hole_that_is_joined_by_a_cut_stays_open():
+    outer, inner = [[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [1, 2], [2, 2], [2, 1]]
+    points = placed(np.array([*outer, outer[0], *inner, inner[0]], dtype=float))
+    vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))
+    assert (vectors[:, 2] >= 0).all()
+    assert vectors[:, 2].sum() == 15
+
+
+def test_collinear_corners_and_corners_far_apart_in_size_are_covered():
+    shape = np.array([[0, 0], [1, 0], [2, 0], [3, 0], [3, 3], [1.5, 1e-200], [0, 3]])
+    for scale in (1.0, 1e200, 1e-100):
+        triangles = cut_polygons(placed(shape * scale), [list(range(7))])
+        assert len(triangles) == 5
+        assert (area_vectors(placed(shape), triangles)[:, 2] >= 0).all()
+
+
+@given(seed=st.integers(0, 10_000), n=st.integers(4, 40))
+def test_random_rings_are_covered_or_refused(seed, n):
+    shape = np.random.default_rng(seed).integers(0, 6, (n, 2)).astype(float)
+    points = placed(shape)
+    try:
+        triangles = cut_polygons(points, [list(range(n))])
+    except BadPolygon:
+        return
+    vectors = area_vectors(points, triangles)[:, 2]
+    x, y = shape.T
+    assert vectors.sum() == (np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+    assert (vectors >= 0).all() or (vectors <= 0).all()

@@ -1,0 +1,323 @@
+"""Columns of tables as logs have them: called otherwise, of joints that follow others, of no joint at all."""
+
+import io
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.case.case_file import load_case
+from clearance.case.recorded_run import with_recorded
+from clearance.cli import run
+from clearance.errors import BadInput, BadPose, BadShape, BadSyntax, MissingKey, UnknownJoint
+from clearance.formats.motion.trajectory_file import read_trajectory
+from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from tests.formats.making import ARM, PATH, write_case
+from tests.formats.making_case import TWO_JOINTS, changed, load_small
+
+TURNS = {"shoulder": True, "lift": False}
+
+
+def read(text, turns=TURNS, **choice):
+    data = text.encode()
+    request = TrajectoryRequest(
+        lambda: io.BytesIO(data), len(data), choice=Choice(**choice), turns=turns
+    )
+    return read_trajectory(request, "path.csv")
+
+
+WAYS = [
+    ("Time,shoulder,lift\n0,1,2\n1,3,4\n", []),
+    ("t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
+    ("Timestamp,shoulder,lift\n0,1,2\n1,3,4\n", ["column 'Timestamp' is taken for time"]),
+    ("t_ms,shoulder,lift\n0,1,2\n1000,3,4\n", ["column 't_ms' is taken for time", "read in milliseconds: 'time'"]),
+    ("T [s],shoulder,lift\n0,1,2\n1,3,4\n", ["column 'T [s]' is taken for time"]),
+    (
+        "timestamp_ns,shoulder,lift\n0,1,2\n1000000000,3,4\n",
+        ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
+    ),
+    ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
+    ("% time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
+    ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
+    ("#t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
+    ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
+    ("time,shoulder/position [rad],lift\n0,1,2\n1,3,4\n", []),
+    ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs or blanks"]),
+    ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", ["columns are separated by tabs or blanks"]),
+    (
+        "# t shoulder lift\r\n0.0 1 2\r\n1.0 3 4\r\n",
+        ["columns are separated by tabs or blanks", "column 't' is taken for time"],
+    ),
+    (
+        "time\tshoulder\tlift\n0\t1,0\t2\n1\t3\t4,0\n",
+        ["columns are separated by tabs or blanks, decimals written with commas"],
+    ),
+    ("time,shoulder,lift,\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
+    ("time,shoulder,lift\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
+    ("time,shoulder,lift,\n0,1,2\n1,3,4\n", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "notes"), WAYS)
+def test_headers_of_other_programs_are_taken(text, notes):
+    trajectory, told = read(text)
+    assert trajectory.joint_names == ("shoulder", "lift")
+    assert trajectory.times.tolist() == [0.0, 1.0]
+    assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
+    assert list(told) == [f"path.csv: {note}" for note in notes]
+
+
+def test_velocities_go_with_positions_that_are_called_so():
+    text = "time,shoulder/position,shoulder/velocity\n0,1,5\n1,3,7\n"
+    trajectory, _ = read(text)
+    assert trajectory.joint_names == ("shoulder",)
+    assert trajectory.velocities.tolist() == [[5], [7]]
+
+
+def test_a_joint_that_is_called_t_is_no_time():
+    with pytest.raises(MissingKey, match="no column 'time'"):
+        read("t,shoulder\n0,1\n", {"t": True, "shoulder": True})
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "says"),
+    [
+        ("t,timestamp,shoulder\n0,1,2\n", MissingKey, "'t', 'timestamp' could each be it; did you mean 't'?"),
+        ("0,1,2\n1,3,4\n", MissingKey, "'0,1,2', begins with a number: there is no header; joints: [the names"),
+        ("17,base,elbow,0.0,0.0\n", MissingKey, "begins with a number: there is no header"),
+        (",time,shoulder\n0,0,1\n", BadSyntax, "column 1 of the header has no name"),
+        ("0\t1\t2\n", MissingKey, "the columns beside time, in order] (--joints)"),
+        ("time,shoulder,\n0,1,\n1,2\n", BadShape, "line 3: 2 columns; the header has 3"),
+        ("T [deg],shoulder\n0,1\n", BadInput, "column 'T [deg]' is a time, not in deg"),
+    ],
+)  # fmt: skip
+def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
+    with pytest.raises(fault) as caught:
+        read(text)
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+LOG = (
+    "status,timestamp,target_q_0,actual_q_0,target_q_1,actual_q_1,current\n"
+    "RUNNING,100,9,0.1,9,0.02,nan\nRUNNING,101,9,0.2,9,0.03,\n"
+)
+TAKEN = "{time: timestamp, shoulder: actual_q_0, lift: actual_q_1}"
+
+
+def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
+    case = changed("path.csv", f"path.csv, columns: {TAKEN}")
+    made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=LOG)
+    trajectory = made.robots[0].trajectory
+    assert trajectory.joint_names == ("shoulder", "lift")
+    assert trajectory.times.tolist() == [100, 101]
+    assert trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
+    told = "path.csv: columns not read: 'status', 'target_q_0', 'target_q_1', 'current'"
+    assert told in made.notes
+
+
+def test_a_first_row_with_a_unit_behind_a_blank_is_one_column():
+    with pytest.raises(MissingKey, match="no column 'time' in the header 'elbow'"):
+        read("elbow [deg]\n1\n")
+
+
+def test_the_error_on_a_log_can_be_pasted(tmp_path):
+    with pytest.raises(UnknownJoint, match="unknown joint 'status'") as caught:
+        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=LOG)
+    assert f"; columns: {TAKEN} maps each joint to its column (--columns)" in str(caught.value)
+    own = "time,shoulder,lift [mm],x1\n0,0.1,20,4\n1,0.2,30,4\n"
+    with pytest.raises(UnknownJoint, match="unknown joint 'x1'") as caught:
+        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=own)
+    hint = 'columns: [time, shoulder, "lift [mm]"]'
+    assert f"; {hint} reads these columns only (--columns)" in str(caught.value)
+    case = changed("path.csv", f"path.csv, {hint}")
+    made = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=own)
+    assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
+
+
+NOT_TAKEN = [
+    (",time,shoulder,lift", "[time, shoulder, lift]"),
+    (",shoulder,lift", '{time: "(column 1)", shoulder: shoulder, lift: lift}'),
+    ("__time,/js/lift/position,/js/lift/effort,/js/shoulder/position",
+     "{time: __time, shoulder: /js/shoulder/position, lift: /js/lift/position}"),
+    ("time_from_start,shoulder,lift", "{time: time_from_start, shoulder: shoulder, lift: lift}"),
+    ("Zeit,Shoulder,Lift", "{time: Zeit, shoulder: Shoulder, lift: Lift}"),
+    ("time,shoulder_pos,lift_pos", "{time: time, shoulder: shoulder_pos, lift: lift_pos}"),
+    ("time,shoulder,lift,shoulder/velocity,lift/velocity,shoulder/effort,lift/effort",
+     "[time, shoulder, lift, shoulder/velocity, lift/velocity]"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("header", "hint"), NOT_TAKEN)
+def test_each_error_on_a_header_has_columns_that_can_be_pasted(tmp_path, header, hint):
+    n = header.count(",")
+    log = f"{header}\n" + "".join(
+        ",".join([str(i), *[repr(0.01 * i)] * n]) + "\n" for i in range(3)
+    )
+    with pytest.raises((UnknownJoint, MissingKey)) as caught:
+        load_small(tmp_path, urdf=TWO_JOINTS, trajectory=log)
+    assert f"columns: {hint} " in str(caught.value) and "\n" not in str(caught.value)
+    case = changed("path.csv", f"path.csv, columns: {hint}")
+    asked = load_small(tmp_path, case, urdf=TWO_JOINTS, trajectory=log).robots[0].trajectory
+    assert sorted(asked.joint_names) == ["lift", "shoulder"] and asked.n_steps == 3
+
+
+def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
+    text = "stamp_ms,q0 [deg],q1_mm\n0,90,20\n1000,180,30\n"
+    columns = (("time", "stamp_ms"), ("shoulder", "q0 [deg]"), ("lift", "q1_mm"))
+    trajectory, _ = read(text, columns=columns)
+    assert trajectory.times.tolist() == [0, 1]
+    assert trajectory.positions == pytest.approx(np.array([[np.pi / 2, 0.02], [np.pi, 0.03]]))
+
+
+@pytest.mark.parametrize(
+    ("columns", "fault", "says"),
+    [
+        ("[time, sholder]", MissingKey, "'sholder', which `columns` names; did you mean 'shoulder'"),
+        ("[shoulder]", MissingKey, "`columns` names no 'time'"),
+        ("{time: time, elbow: shoulder}", UnknownJoint, "unknown joint 'elbow'"),
+        ("[]", BadInput, "trajectory.columns: [] is given; 1 values are needed"),
+        ("3", BadInput, "trajectory.columns: 3 is given"),
+    ],
+)  # fmt: skip
+def test_columns_that_are_not_there_are_refused(tmp_path, columns, fault, says):
+    with pytest.raises(fault) as caught:
+        load_small(tmp_path, changed("path.csv", f"path.csv, columns: {columns}"))
+    assert says in str(caught.value)
+
+
+@pytest.mark.slow
+def test_a_long_log_is_read_whole(tmp_path):
+    """Beyond what is read in one go, with text in a column that is left out and little in others."""
+    rows = "".join(f"{i},,{i * 1e-6!r},ok\n" for i in range(150_000))
+    (tmp_path / "long.csv").write_text("time,none,shoulder,status\n" + rows)
+    case = changed("path.csv", "long.csv, columns: [time, shoulder]")
+    positions = load_small(tmp_path, case).robots[0].trajectory.positions
+    assert positions[:, 0].tolist() == [i * 1e-6 for i in range(150_000)]
+
+
+FINGERS = TWO_JOINTS.replace(
+    "</robot>",
+    '<link name="finger"/><joint name="other" type="prismatic"><parent link="upper"/>'
+    '<child link="finger"/><mimic joint="lift" multiplier="-2" offset="0.01"/>'
+    '<limit lower="-1" upper="1"/></joint></robot>',
+)
+
+
+def test_a_column_of_a_joint_that_follows_is_taken_where_it_agrees(tmp_path):
+    rows = "time,shoulder,other [mm],lift\n0,0.1,-30.01,0.02\n1,0.2,-49.95,0.03\n"
+    made = load_small(tmp_path, urdf=FINGERS, trajectory=rows)
+    assert made.robots[0].trajectory.joint_names == ("shoulder", "lift")
+    assert made.robots[0].trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
+    assert (
+        "path.csv: columns of mimic joints agree with the joints that they follow: 'other'"
+        in made.notes
+    )
+    off = rows.replace("-49.95", "-49.8")
+    with pytest.raises(BadInput, match=r"'other' follows 'lift', and is 0\.0002 m off that at 1 s"):
+        load_small(tmp_path, urdf=FINGERS, trajectory=off)
+    alone = "time,other\n0,0.1\n"
+    with pytest.raises(UnknownJoint, match="joint 'other' mimics 'lift' and cannot be set"):
+        load_small(tmp_path, urdf=FINGERS, trajectory=alone)
+
+
+def test_a_message_with_accelerations_may_tell_of_a_joint_that_follows(tmp_path):
+    """Its own points are those of the joints that are left, as the samples between them are."""
+    point = "{positions: %s, velocities: [0, 0], accelerations: [0.1, -0.2], time_from_start: %d}"
+    points = [point % ([0.01 * i, 0.01 - 0.02 * i], i) for i in range(2)]
+    text = f"joint_names: [lift, other]\npoints: [{', '.join(points)}]\n"
+    case = changed("path.csv", "path.yaml")
+    made = load_small(tmp_path, case, urdf=FINGERS, path__yaml=text).robots[0].trajectory
+    assert made.joint_names == ("lift",) and made.positions.shape == (made.n_steps, 1)
+    assert made.written.positions.tolist() == [[0.0], [0.01]]
+    assert made.written.accelerations.tolist() == [[0.1], [0.1]]
+
+
+FREE = ARM.replace('type="revolute"', 'type="floating"')
+WAY = [
+    (0.0, [0, 0, 1], [0, 0, 0, 1]),
+    (1.0, [1, 0, 1], [0, 0, 0.6, 0.8]),
+    (2.0, [1, 2, 1], [0.1, 0.2, 0.98**0.5 * 0.6, 0]),
+    (3.0, [1, 2, 3], [0, 0, -0.6, 0.8]),
+]
+
+
+def logged(header, turned=lambda quaternion: quaternion):
+    """The way as a log, its quaternions of length one but for `turned`."""
+    rows = []
+    for time, place, quaternion in WAY:
+        unit = turned(np.array(quaternion) / np.linalg.norm(quaternion))
+        rows.append(",".join(map(repr, [time, *place, *unit.tolist()])))
+    return "\n".join([header, *rows, ""])
+
+
+PARTS = [f"shoulder/{part}" for part in ("x", "y", "z", "qx", "qy", "qz", "qw")]
+
+
+def test_a_free_base_may_be_logged_with_a_quaternion(tmp_path):
+    made = load_small(tmp_path, urdf=FREE, trajectory=logged(",".join(["time", *PARTS])))
+    trajectory = made.robots[0].trajectory
+    parts = ("x", "y", "z", "yaw", "pitch", "roll")
+    assert trajectory.joint_names == tuple(f"shoulder/{part}" for part in parts)
+    for row, (_, place, quaternion) in zip(trajectory.positions, WAY, strict=True):
+        unit = np.array(quaternion) / np.linalg.norm(quaternion)
+        expected = pose_from_quaternion(place, unit)
+        assert np.allclose(pose_from_rpy(row[:3], row[:2:-1]), expected, atol=1e-14)
+    assert np.abs(np.diff(trajectory.positions[:, [3, 5]], axis=0)).max() <= np.pi
+    assert any("quaternions of 'shoulder' are read as yaw, pitch and roll" in n for n in made.notes)
+
+
+def test_a_free_base_of_other_names_is_taken_by_columns(tmp_path):
+    names = ["px", "py", "pz", "qx", "qy", "qz", "qw"]
+    pairs = dict(zip(["time", *PARTS], ["t", *names], strict=True))
+    told = ", ".join(f"{part}: {name}" for part, name in pairs.items())
+    case = changed("path.csv", f"path.csv, columns: {{{told}}}")
+    made = load_small(tmp_path, case, urdf=FREE, trajectory=logged(",".join(["t", *names])))
+    straight = load_small(tmp_path, urdf=FREE, trajectory=logged(",".join(["time", *PARTS])))
+    one, other = (case.robots[0].trajectory for case in (made, straight))
+    assert one.joint_names == other.joint_names and np.array_equal(one.positions, other.positions)
+
+
+def test_quaternions_of_a_base_that_say_no_angles_are_refused(tmp_path):
+    header = ",".join(["time", *PARTS])
+    with pytest.raises(BadPose, match="line 2: the quaternion"):
+        load_small(tmp_path, urdf=FREE, trajectory=logged(header, lambda q: 0.9 * q))
+    up = np.array([0.0, 0.5**0.5, 0.0, 0.5**0.5])
+    with pytest.raises(BadInput, match=r"line 2: 'shoulder' is pitched by 90\.0 degrees"):
+        load_small(tmp_path, urdf=FREE, trajectory=logged(header, lambda q: up))
+
+
+def test_a_recorded_log_is_taken_by_columns(tmp_path):
+    path = write_case(
+        tmp_path, trajectory=PATH, log__csv="t,q0,volts\n0,0,48\n0.5,0.251,48\n1,0.5,4\n"
+    )
+    columns = {"time": "t", "shoulder": "q0"}
+    case = with_recorded(load_case(path), tmp_path / "log.csv", columns=columns)
+    assert case.robots[0].trajectory.positions[:, 0].tolist() == [0, 0.251, 0.5]
+    how = {"motion": "recorded", "recorded": tmp_path / "log.csv", "certify": False}
+    again = cl.check(path, **how, recorded_columns=columns)
+    assert again.record.case.robots[0].trajectory.positions[1, 0] == 0.251
+
+
+def test_new_takes_columns_and_writes_what_they_are(tmp_path, monkeypatch, capsys):
+    post = "obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}, pose: {xyz: [2, 0, 0]}}]\n"
+    write_case(tmp_path, urdf=TWO_JOINTS, trajectory=LOG, scene__yaml=post)
+    monkeypatch.chdir(tmp_path)
+    words = [
+        "new",
+        "out",
+        "--robot",
+        "arm.urdf",
+        "--scene",
+        "scene.yaml",
+        "--trajectory",
+        "path.csv",
+    ]
+    words.append("--columns")
+    assert run([*words, "time=timestamp,shoulder=actual_q_0,lift=actual_q_1"]) == 0
+    assert "columns not read: 'status'" in (tmp_path / "out" / "case.yaml").read_text()
+    made = load_case(tmp_path / "out" / "case.yaml").robots[0].trajectory
+    assert made.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
+    capsys.readouterr()
+    assert run([*words, "time=,shoulder"]) == 2
+    assert "is not a list of columns such as time,elbow=q3" in capsys.readouterr().err

@@ -1,0 +1,208 @@
+"""Tables as other programs write them (units, semicolons, no header, no times); each way is told in a note."""
+
+import io
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance import check
+from clearance.cli import run
+from clearance.errors import (
+    BadInput,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    ClearanceError,
+    DuplicateName,
+    MissingKey,
+)
+from clearance.formats.motion.trajectory_file import read_trajectory
+from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from tests.examples import examples
+from tests.formats.making import write_case
+from tests.formats.making_case import TWO_JOINTS, changed, load_small
+
+TURNS = {"shoulder": True, "lift": False}
+DEGREES = ("deg", "mm")
+
+
+def read(text: str | bytes, turns=TURNS, **choice):
+    data = text.encode() if isinstance(text, str) else text
+    request = TrajectoryRequest(
+        lambda: io.BytesIO(data), len(data), choice=Choice(**choice), turns=turns
+    )
+    return read_trajectory(request, "path.csv")
+
+
+DEG = math.pi / 180
+WAYS = {
+    "brackets": ("time [s],shoulder [deg],lift [mm]\n0,10,5\n1,20,7\n", {}),
+    "parentheses": ("time (ms),shoulder(deg),lift (mm)\n0,10,5\n1000,20,7\n", {}),
+    "endings": ("time_ms,shoulder_deg,lift_mm\n0,10,5\n1000,20,7\n", {}),
+    "units": ("time,shoulder,lift\n0,10,5\n1,20,7\n", {"units": DEGREES}),
+    "semicolons": ("time;shoulder [deg];lift\n0;10.0;0.005\n1;20;0.007\n", {}),
+    "decimal commas": ("time;shoulder_deg;lift\n0;10,0;0,005\n1,0;2e1;7e-3\n", {}),
+    "no header": ("0,10,5\n1,20,7\n", {"joints": ("shoulder_deg", "lift [mm]")}),
+    "time last": ("10,5,0\n20,7,1\n", {"joints": ("shoulder", "lift", "time"), "units": DEGREES}),
+    "period": ("shoulder [deg],lift\n10,0.005\n20,0.007\n", {"period": 1.0}),
+    "numbers alone": ("\n10;5\n\n20;7\n", {"joints": ("shoulder", "lift"), "period": 1.0, "units": DEGREES}),
+    "commas alone": ("0,0;10,0;5\n1;20;7,0", {"joints": ("shoulder", "lift"), "units": DEGREES}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_every_way_gives_the_same_motion(way):
+    text, choice = WAYS[way]
+    trajectory, notes = read(text, **choice)
+    assert trajectory.joint_names == ("shoulder", "lift")
+    assert trajectory.times.tolist() == [0.0, 1.0]
+    assert trajectory.positions.tolist() == [[10 * DEG, 0.005], [20 * DEG, 0.007]]
+    assert any("in degrees: 'shoulder'" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("way", "notes"),
+    [
+        ("brackets", ["read in degrees: 'shoulder'; in millimetres: 'lift'"]),
+        ("parentheses", ["read in degrees: 'shoulder'; in millimetres: 'lift'; in milliseconds: 'time'"]),
+        (
+            "decimal commas",
+            ["columns are separated by semicolons, decimals written with commas", "read in degrees: 'shoulder'"],
+        ),
+        (
+            "no header",
+            [
+                "no header; the columns are time, shoulder_deg, lift [mm]",
+                "read in degrees: 'shoulder'; in millimetres: 'lift'",
+            ],
+        ),
+        ("period", ["no times; rows follow each other every 1 s, from 0", "read in degrees: 'shoulder'"]),
+    ],
+)  # fmt: skip
+def test_what_was_taken_how_is_told(way, notes):
+    text, choice = WAYS[way]
+    assert read(text, **choice).notes == tuple(f"path.csv: {note}" for note in notes)
+
+
+def test_a_plain_table_has_no_notes():
+    assert read("time,shoulder [rad],lift (m)\n0,1,2\n").notes == ()
+
+
+def test_velocities_are_in_the_unit_of_their_joint_a_second():
+    text = "time,shoulder [deg],shoulder/velocity [deg/s]\n0,10,90\n1,20,0\n"
+    assert read(text).trajectory.velocities.tolist() == [[90 * DEG], [0.0]]
+    text = "time,lift,lift/velocity\n0,10,90\n1,20,0\n"
+    assert read(text, units=DEGREES).trajectory.velocities.tolist() == [[0.09], [0.0]]
+
+
+def test_a_joint_that_is_called_so_is_that_joint():
+    turns = {"shoulder_deg": True, "shoulder": True, "a [deg]": False}
+    trajectory, notes = read("time,shoulder_deg,a [deg]\n0,1,2\n", turns)
+    assert trajectory.joint_names == ("shoulder_deg", "a [deg]") and not notes
+    assert trajectory.positions.tolist() == [[1, 2]]
+    assert read("time,elbow_deg\n0,1\n").trajectory.joint_names == ("elbow_deg",)
+
+
+def test_numbers_with_commas_are_read_to_the_last_bit():
+    values = [0.1, 1 / 3, 1e-300, 123456.789012345, -7e22]
+    rows = "".join(f"{i};{value!r}\n".replace(".", ",") for i, value in enumerate(values))
+    assert read("time;shoulder\n" + rows).trajectory.positions[:, 0].tolist() == values
+
+
+@pytest.mark.parametrize(
+    ("text", "choice", "fault", "says"),
+    [
+        ("time,shoulder [mm]\n0,1\n", {}, BadInput, "column 'shoulder [mm]' is an angle, not in mm; rad or deg"),
+        ("time [deg],shoulder\n0,1\n", {}, BadInput, "column 'time [deg]' is a time, not in deg; s or ms"),
+        ("time,shoulder,shoulder_deg\n0,1,2\n", {}, DuplicateName, "column 'shoulder' is there twice"),
+        ("time,shoulder [deg],shoulder/velocity\n0,1,2\n", {}, BadInput, "units of both, or of none"),
+        ("time;shoulder;lift\n0;1,5;2.5\n", {}, BadSyntax, "'2.5' in column 'lift' is not a number; decimals"),
+        ("time;shoulder\n0;1.000,5\n", {}, BadSyntax, "line 2: '1.000,5' in column 'shoulder'"),
+        ("time;shoulder\n0;1;2\n", {}, BadShape, "line 2: 3 columns; the header has 2"),
+        ("shoulder\n1\n", {}, MissingKey, "there is no column 'time'"),
+        ("time,shoulder\n0,1\n", {"period": 0.1}, BadInput, "a column 'time', and a period of 0.1 s"),
+        ("time,shoulder\n0,1\n", {"joints": ("shoulder",)}, BadSyntax, "line 1: 'time' in column 'time'"),
+        ("0,1,2\n", {"joints": ("shoulder",)}, BadShape, "line 1: 3 columns; there are 2 names"),
+        ("0,1\n\n0,2\n", {"joints": ("shoulder",)}, BadTime, "line 3: time 0.0 follows 0.0"),
+        ("", {"joints": ("shoulder",)}, BadShape, "there are no rows"),
+        ("1\n2\n3\n", {"joints": ("shoulder",), "period": 1e308}, BadInput, "a time or a position is NaN"),
+    ],
+)  # fmt: skip
+def test_each_fault_is_one_line_with_its_place(text, choice, fault, says):
+    with pytest.raises(fault) as caught:
+        read(text, **choice)
+    told = str(caught.value)
+    assert says in told
+    assert told.startswith("path.csv: ") and "\n" not in told
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_table_cut_off_anywhere_is_refused_in_one_line_or_is_shorter(way):
+    text, choice = WAYS[way]
+    for end in range(len(text)):
+        try:
+            trajectory, _ = read(text[:end], **choice)
+        except ClearanceError as error:
+            assert str(error).startswith("path.csv: ") and "\n" not in str(error)
+        else:
+            assert trajectory.n_steps <= 2
+
+
+@examples(300)
+@given(st.data())
+def test_any_table_is_read_or_refused(data):
+    text, choice = WAYS[data.draw(st.sampled_from(sorted(WAYS)))]
+    damaged = bytearray(text.encode())
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(damaged)))
+        damaged[at : at + data.draw(st.integers(0, 4))] = data.draw(
+            st.sampled_from([b";", b",", b".", b"\n", b'"', b"[deg]", b"_deg", b"\xff"])
+            | st.binary(max_size=2)
+        )
+    try:
+        read(bytes(damaged), **choice)
+    except ClearanceError as error:
+        assert "\n" not in str(error)
+
+
+def as_case(folder, rows: str, given: str = "file: path.csv"):
+    return load_small(folder, changed("file: path.csv", given), urdf=TWO_JOINTS, trajectory=rows)
+
+
+def test_a_case_says_how_its_table_is_written(tmp_path):
+    given = "file: path.csv, joints: [shoulder, lift], period: 0.5, units: {angle: deg, length: mm}"
+    case = as_case(tmp_path, "10;5,0\n20;7,0\n", given)
+    assert case.robots[0].trajectory.positions.tolist() == [[10 * DEG, 0.005], [20 * DEG, 0.007]]
+    assert "path.csv: read in degrees: 'shoulder'; in millimetres: 'lift'" in case.notes
+    plain = as_case(tmp_path, f"time,shoulder,lift\n0,{10 * DEG!r},0.005\n0.5,{20 * DEG!r},0.007\n")
+    assert (check(case).record.clearances == check(plain).record.clearances).all()
+
+
+def test_degrees_without_a_word_stay_suspect(tmp_path):
+    rows = "time;shoulder\n0;0\n1;90\n"
+    told = [notice.text for notice in check(as_case(tmp_path, rows)).record.notices]
+    assert any("is this degrees?" in text for text in told)
+    case = as_case(tmp_path, rows, "file: path.csv, units: {angle: deg}")
+    assert not any("is this degrees?" in notice.text for notice in check(case).record.notices)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ("units: {angle: grad}", "trajectory.units.angle: 'grad' is given; 'rad' or 'deg'"),
+        ("units: {angel: deg}", "unknown key 'angel'; did you mean 'angle'?"),
+        ("period: 0", "trajectory.period: 0 is given; greater than 0"),
+        ("joints: []", "trajectory.joints: [] is given"),
+        ("joints: [shouldr, lift]", "unknown joint 'shouldr'; did you mean 'shoulder'?"),
+        ("period: 1", "there is a column 'time', and a period of 1 s"),
+    ],
+)
+def test_the_command_line_says_it_in_one_line(tmp_path, capsys, given, says):
+    rows = "0,0,0\n" if "shouldr" in given else "time,shoulder,lift\n0,0,0\n"
+    case = changed("file: path.csv", f"file: path.csv, {given}")
+    path = write_case(tmp_path, case, urdf=TWO_JOINTS, trajectory=rows)
+    assert run(["check", str(path)]) == 2
+    told = capsys.readouterr().err.strip()
+    assert says in told and told.count("\n") == 0

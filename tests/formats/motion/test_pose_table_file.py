@@ -1,0 +1,85 @@
+"""Tables of poses: columns by name, exact numbers, and no cut-off file that is read as something else."""
+
+import io
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance.errors import BadInput
+from clearance.formats.motion.pose_formats import read_poses
+from clearance.formats.motion.pose_table_file import COLUMNS, parse_pose_table
+from clearance.formats.motion.pose_table_request import PoseRequest
+
+TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
+
+
+def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
+    whole = parse_pose_table(TEXT.encode(), "door.csv")
+    header = TEXT.index("\n") + 1
+    for n in range(len(TEXT)):
+        try:
+            cut = parse_pose_table(TEXT[:n].encode(), "door.csv")
+        except BadInput as error:
+            assert "\n" not in str(error)
+            continue
+        assert n > header
+        rows = len(cut)
+        assert np.array_equal(cut.times, whole.times[:rows])
+        assert np.array_equal(cut.positions, whole.positions[:rows])
+        assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
+
+
+@given(st.permutations(COLUMNS), st.data())
+def test_columns_may_be_in_any_order(order, data):
+    number = st.floats(-1e3, 1e3, allow_subnormal=False)
+    values = dict.fromkeys(COLUMNS, 0.0) | {name: data.draw(number) for name in "xyz"} | {"qw": 1.0}
+    line = ",".join(repr(values[name]) for name in order)
+    table = parse_pose_table(f"{','.join(order)}\n{line}\n".encode(), "door.csv")
+    assert table.positions.tolist() == [[values[name] for name in "xyz"]]
+    assert table.quaternions.tolist() == [[0, 0, 0, 1]] and table.times.tolist() == [0]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_line_ends_blank_lines_and_spaces(end):
+    text = TEXT.replace("\n", f" {end}{end}")
+    again, whole = (
+        parse_pose_table(text.encode(), "a.csv"),
+        parse_pose_table(TEXT.encode(), "a.csv"),
+    )
+    assert np.array_equal(again.columns, whole.columns)
+
+
+@given(st.lists(st.floats(-10, 10, allow_subnormal=False), min_size=4, max_size=4))
+def test_a_quaternion_is_read_or_its_line_is_named(numbers):
+    length = float(np.linalg.norm(numbers))
+    cells = ",".join(map(repr, numbers))
+    try:
+        table = parse_pose_table(f"time,x,y,z,qx,qy,qz,qw\n0,0,0,0,{cells}\n".encode(), "a.csv")
+    except BadInput as error:
+        assert "a.csv: line 2: the quaternion" in str(error) and abs(length - 1) > 0.9e-3
+    else:
+        assert np.abs(table.quaternions[0] * length - numbers).max() < 1e-12
+
+
+DIGITS = (
+    "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0.707,0.707\n2,0,0,0,0.5,0.5,0.5,0.5\n"
+)
+STAMPED = "\n---\n".join(
+    f"header: {{stamp: {{sec: {i}, nanosec: 0}}, frame_id: map}}\n"
+    f"pose: {{position: {{x: 0, y: 0, z: 0}}, orientation: {{x: 0, y: 0, z: {z}, w: {w}}}}}"
+    for i, (z, w) in enumerate([(0, 1), (0.707, 0.707)])
+)
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.csv", DIGITS), ("a.yaml", STAMPED)])
+def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(name, text):
+    data = text.encode()
+    table, notes = read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
+    assert table.quaternions[1].tolist() == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5], abs=1e-15)
+    told = "1 quaternion is rounded to three digits or so and made of length 1"
+    assert [note for note in notes if "rounded" in note] == [told]
+    bad = text.replace("0.707", "0.7").encode()
+    with pytest.raises(BadInput, match=r"0\.98994"):
+        read_poses(PoseRequest(lambda: io.BytesIO(bad), len(bad)), name)

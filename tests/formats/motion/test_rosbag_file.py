@@ -1,0 +1,242 @@
+"""Bags in all three containers: what was planned, what was done, which topic, and nothing but our own errors."""
+
+from pathlib import Path
+
+import pytest
+
+from clearance import check
+from clearance.cli import run
+from clearance.errors import BadInput, BadShape, BadTime, ClearanceError, NotFinite
+from clearance.formats.motion.trajectory_request import Choice
+from clearance.formats.timed_files import load_trajectory
+from tests.formats.making import write_case
+from tests.formats.making_case import TWO_JOINTS, changed
+
+pytest.importorskip("rosbags", reason="bags are made by rosbags")
+
+from tests.examples import first_fast
+from tests.formats.making_bags import (
+    CONTAINERS,
+    EVENT,
+    displayed,
+    goal,
+    goal_event,
+    planned,
+    state,
+    without_definitions,
+    write_bag,
+)
+
+MOVE = planned([0.1, 0.0], [0.3, 0.05])
+STATES = [state(i, [0.1 * i, 0.0]) for i in range(3)]
+
+
+def read(path: Path, **choice):
+    return load_trajectory(path, Choice(**choice))
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_what_was_planned_comes_back(tmp_path, container):
+    path = write_bag(tmp_path, container, {"/plan": [MOVE]})
+    trajectory, _ = read(path)
+    assert trajectory.joint_names == ("shoulder", "lift")
+    assert trajectory.times.tolist() == [0.0, 1.1]
+    assert trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+    assert trajectory.velocities.tolist() == [[0.0, 0.5], [0.0, 0.5]]
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_what_was_done_comes_back(tmp_path, container):
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": STATES}))
+    assert trajectory.times.tolist() == [0.0, 1.0, 2.0]
+    assert trajectory.positions.tolist() == [[0.0, 0.0], [0.1, 0.0], [0.2, 0.0]]
+    assert trajectory.velocities is None
+    assert "recorded joint states: joints move linearly between them" in notes[0]
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_of_several_topics_one_is_chosen(tmp_path, container):
+    path = write_bag(tmp_path, container, {"/plan": [MOVE, MOVE], "/joint_states": STATES})
+    with pytest.raises(
+        BadInput, match=r"several topics: /joint_states \(JointState\), /plan \(Joint"
+    ):
+        read(path)
+    assert read(path, topic="/joint_states").trajectory.n_steps == 3
+    with pytest.raises(BadInput, match="the file holds 2 trajectories"):
+        read(path, topic="/plan")
+    assert read(path, topic="/plan", which=2).trajectory.n_steps == 2
+    with pytest.raises(BadInput, match="did you mean '/plan'"):
+        read(path, topic="/plam")
+    with pytest.raises(BadInput, match="'which' says nothing about recorded joint states"):
+        read(path, topic="/joint_states", which=1)
+    with pytest.raises(BadInput, match="'units' says nothing about messages in a bag"):
+        read(path, topic="/plan", units=("deg", "m"))
+
+
+@pytest.mark.parametrize("container", first_fast(CONTAINERS[1:], 1))
+def test_a_message_of_moveit_brings_its_definition(tmp_path, container):
+    path = write_bag(tmp_path, container, {"/display": [displayed(MOVE)]})
+    assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+    path = write_bag(tmp_path / "more", container, {"/display": [displayed(MOVE, MOVE)]})
+    with pytest.raises(
+        BadInput, match=r"holds 2 trajectories: 1: trajectory\[0\].joint_trajectory, 2 points"
+    ):
+        read(path)
+
+
+def test_a_goal_of_an_action_is_a_topic_in_ros_1(tmp_path):
+    path = write_bag(tmp_path, "bag", {"/arm/follow_joint_trajectory/goal": [goal(MOVE)]})
+    assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+
+
+@pytest.mark.parametrize("container", CONTAINERS[1:])
+def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
+    """Client and server tell of one goal, and of its response, which holds none."""
+    topic = "/arm/follow_joint_trajectory/_action/send_goal/_service_event"
+    other = planned([0.2, 0.0], [0.4, 0.0], [0.5, 0.0])
+    events = [goal_event(1, MOVE), goal_event(1, MOVE), goal_event(1)]
+    path = write_bag(tmp_path / "one", container, {topic: events})
+    assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+    path = write_bag(tmp_path / "two", container, {topic: [*events, goal_event(2, other)]})
+    with pytest.raises(BadInput, match="holds 2 trajectories"):
+        read(path)
+    assert read(path, which=2).trajectory.n_steps == 3
+    with pytest.raises(BadInput, match=f"{topic.split('_')[0]}"):
+        read(path, topic="/arm")
+    assert EVENT.endswith("_SendGoal_Event")
+
+
+@pytest.mark.slow
+def test_a_bag_without_definitions_is_read_by_ours(tmp_path):
+    bag = without_definitions(write_bag(tmp_path / "a", "rosbag2 sqlite3", {"/plan": [MOVE]}))
+    assert read(bag).trajectory.n_steps == 2
+    bag = write_bag(tmp_path / "b", "rosbag2 sqlite3", {"/display": [displayed(MOVE)]})
+    trajectory, _ = read(without_definitions(bag))
+    assert trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+
+
+def test_recorded_velocities_are_said_not_to_be_followed(tmp_path):
+    moving = [state(i, [0.1 * i, 0.0], velocities=[0.1, 0.0]) for i in range(3)]
+    trajectory, notes = read(write_bag(tmp_path, "mcap", {"/joint_states": moving}))
+    assert trajectory.velocities is None
+    assert any("recorded velocities are not followed" in note for note in notes)
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, container):
+    """Each joint has its own samples exactly, and lies straight between them at the other's times."""
+    arm = [state(2 * i, [float(i), 1.0 - i]) for i in range(16)]
+    grip = [state(2 * i + 1, [0.01 * i], ["finger"]) for i in range(15)]
+    mixed = [one for pair in zip(arm, grip, strict=False) for one in pair] + [arm[-1]]
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": mixed}))
+    assert trajectory.joint_names == ("shoulder", "lift", "finger")
+    assert trajectory.times.tolist() == list(range(29))
+    shoulder, lift, finger = trajectory.positions.T
+    assert shoulder.tolist() == [0.5 * i for i in range(1, 30)]
+    assert (shoulder + lift == 1.0).all() and finger[::2].tolist() == [0.01 * i for i in range(15)]
+    assert finger[1] == pytest.approx(0.005, abs=1e-17)
+    assert any("2 messages at the ends are left out" in note for note in notes)
+
+
+def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
+    bag = write_bag(tmp_path / "a", "mcap", {"/joint_states": [STATES[1], STATES[0]]})
+    with pytest.raises(BadTime, match="message 2: its time is not after"):
+        read(bag)
+    other = state(3, [0.0], ["gripper"])
+    bag = write_bag(tmp_path / "b", "mcap", {"/joint_states": [*STATES, other]})
+    with pytest.raises(
+        BadInput, match="joint 'gripper' is known from 3 s on, 'shoulder' until 2 s"
+    ):
+        read(bag)
+    for names in (["shoulder", "lift", "x"], ["shoulder", "shoulder"]):
+        bag = write_bag(
+            tmp_path / names[-1], "mcap", {"/joint_states": [state(0, [0.0, 1.0], names)]}
+        )
+        with pytest.raises(BadShape, match="message 1: 2 positions of shoulder, "):
+            read(bag)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_a_bag_cut_off_is_refused_in_one_line_or_is_read(tmp_path, container):
+    path = write_bag(tmp_path, container, {"/joint_states": STATES})
+    file = max(path.iterdir(), key=lambda one: one.stat().st_size) if path.is_dir() else path
+    data = file.read_bytes()
+    for end in range(0, len(data), max(1, len(data) // 150)):
+        file.write_bytes(data[:end])
+        try:
+            assert read(path).trajectory.n_steps <= 3
+        except ClearanceError as error:
+            assert "\n" not in str(error)
+
+
+def test_a_case_names_a_bag(tmp_path, capsys):
+    bag = write_bag(
+        tmp_path,
+        "rosbag2 sqlite3",
+        {"/s": [state(i, [0.1 * i, 0.0, 7.0], ["shoulder", "lift", "x"]) for i in range(3)]},
+    )
+    case = write_case(tmp_path, changed("file: path.csv", f"file: {bag.name}"), urdf=TWO_JOINTS)
+    record = check(case).record
+    assert len(record.clearances) == 3
+    assert any("joints that cannot be set are left out: x" in note for note in record.case.notes)
+    assert {source.path for source in record.case.sources} >= {f"{bag.name}/metadata.yaml"}
+    assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 0
+    inside = bag / "metadata.yaml"
+    before = inside.read_bytes()
+    assert run(["convert", str(bag), str(inside), "--force"]) == 2
+    assert "which this run reads" in capsys.readouterr().err and inside.read_bytes() == before
+    write_case(tmp_path, changed("file: path.csv", f"file: {bag.name}, topic: /t"), urdf=TWO_JOINTS)
+    capsys.readouterr()
+    assert run(["check", str(case)]) == 2
+    told = capsys.readouterr().err.strip()
+    assert f"{bag.name}: the bag has no trajectories or joint states of topic '/t'" in told
+    assert told.count("\n") == 0
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_messages_without_a_stamp_are_of_the_time_of_their_receipt(tmp_path, container):
+    bare = [state(None, [0.1 * i, 0.0]) for i in range(3)]
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": bare}))
+    assert trajectory.times.tolist() == [0.0, 1.0, 2.0]
+    assert any("3 of 3 messages have no stamp: the time of receipt is used" in n for n in notes)
+
+
+def test_a_hole_is_suspect_in_a_case_and_refused_by_convert(tmp_path, capsys):
+    """50 messages a second but for 1 s to 3 s, in which the arm may have been anywhere."""
+    times = [i / 50 for i in range(201) if i <= 50 or i >= 150]
+    bag = write_bag(tmp_path, "mcap", {"/s": [state(t, [0.0, 0.0]) for t in times]})
+    case = write_case(
+        tmp_path, changed("path.csv", str(bag.relative_to(tmp_path))), urdf=TWO_JOINTS
+    )
+    verdict = check(case).verdict
+    assert verdict.status == "suspect"
+    assert [(one.kind, "shoulder, lift from 1 to 3 s" in one.text) for one in verdict.suspects] == [
+        ("gaps", True)
+    ]
+    assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 2
+    told = capsys.readouterr().err
+    assert "no message of shoulder, lift from 1 to 3 s" in told and told.strip().count("\n") == 0
+    said = changed("path.csv", f"{bag.relative_to(tmp_path)}, gaps: hold")
+    assert check(write_case(tmp_path, said, urdf=TWO_JOINTS)).verdict.passed
+
+
+@pytest.mark.parametrize("container", first_fast(CONTAINERS, 2))
+def test_positions_that_are_no_numbers_are_left_out_by_message_and_joint(tmp_path, container):
+    """The lift is not known at 0 s, the shoulder not at 10 s: it goes straight from 9 to 11 s."""
+    states = [[0.1 * i, 0.01 * i] for i in range(21)]
+    states[0][1], states[10][0] = float("nan"), float("inf")
+    messages = [state(i, row) for i, row in enumerate(states)]
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": messages}))
+    assert trajectory.times.tolist() == list(range(20))
+    assert trajectory.positions[0].tolist() == [0.1, 0.01]
+    assert trajectory.positions[9] == pytest.approx([1.0, 0.1], abs=1e-15)
+    told = "positions that are NaN or infinite are left out: 'shoulder' in message 11, 'lift' in message 1"
+    assert any(note.endswith(told) for note in notes)
+
+
+def test_a_joint_without_any_number_is_refused(tmp_path):
+    messages = [state(i, [0.1 * i, float("nan")]) for i in range(3)]
+    path = write_bag(tmp_path, "mcap", {"/joint_states": messages})
+    with pytest.raises(NotFinite, match="no message has a finite position of joint 'lift'"):
+        read(path)

@@ -1,0 +1,312 @@
+"""One sample is no motion: the verdict is of a pose, a goal needs its start, and what messages say is used."""
+
+import io
+import json
+
+import numpy as np
+import pytest
+
+from clearance import check, load_case
+from clearance.cli import run
+from clearance.errors import BadInput, BadShape, BadTime, MissingKey, UnknownJoint
+from clearance.formats.motion.trajectory_file import read_trajectory
+from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.world.cubic import positions_along
+from clearance.world.plausibility import notices_of
+from tests.formats.making_case import TWO_JOINTS, changed, load_small
+from tests.formats.making_messages import ROS2
+
+SRDF = (
+    '<robot name="arm"><group_state name="home" group="arm"><joint name="shoulder" value="-0.5"/>'
+    '<joint name="lift" value="0.02"/></group_state></robot>'
+)
+
+
+def point(time, *positions, **more):
+    return {"positions": list(positions), "time_from_start": time, **more}
+
+
+def plan(*points, names=("shoulder",), **more):
+    return {"joint_names": list(names), "points": list(points), **more}
+
+
+def state(positions, velocities=(), **more):
+    joints = {"name": [*positions], "position": [*positions.values()], "velocity": [*velocities]}
+    return {"joint_state": joints, **more}
+
+
+def displayed(trajectory, start, **more):
+    """A DisplayTrajectory of one segment."""
+    return {"trajectory": [{"joint_trajectory": trajectory}], "trajectory_start": start, **more}
+
+
+def read(message, which=None):
+    data = json.dumps(message).encode()
+    choice = Choice(which)
+    request = TrajectoryRequest(lambda: io.BytesIO(data), len(data), choice=choice)
+    return read_trajectory(request, "path.json")
+
+
+def load(folder, message, key="", urdf=TWO_JOINTS, robot="", **files):
+    case = changed(
+        "file: path.csv", f"file: path.json{key}", "urdf: arm.urdf", f"urdf: arm.urdf{robot}"
+    )
+    return load_small(folder, case, urdf=urdf, path__json=json.dumps(message), **files)
+
+
+def kinds(case):
+    return [one.kind for one in notices_of(case)]
+
+
+GOAL = plan(point(4.0, 1.0, 0.05), names=("shoulder", "lift"))
+
+
+@pytest.mark.parametrize("time", ["0", "-1"])
+def test_a_table_of_one_row_is_a_single_pose(tmp_path, capsys, time):
+    case = load_small(tmp_path, trajectory=f"time,shoulder\n{time},0.5\n")
+    assert kinds(case) == []
+    found = check(case)
+    assert found.verdict.text() == "clear at a single pose" and found.verdict.basis == "pose"
+    assert run(["check", str(tmp_path / "case.yaml")]) == 0
+    told = capsys.readouterr().out
+    assert "CLEAR at a single pose" in told and "every moment" not in told
+    assert " mm at this pose\n" in told
+    assert run(["check", str(tmp_path / "case.yaml"), "--samples-only"]) == 0
+    assert "CLEAR at a single pose" in capsys.readouterr().out
+
+
+def test_a_motion_is_none(tmp_path):
+    assert check(load_small(tmp_path)).verdict.text() == "clear"
+
+
+def test_a_goal_without_a_start_is_suspect_in_whatever_format(tmp_path):
+    says = (
+        "the trajectory of robot 'arm' has one sample, at 4 s: the motion to this goal is not measured; give its "
+        "start at 0 s with trajectory: {start_state: …}, or give the sample the time 0 to check a single pose"
+    )
+    for case in (load(tmp_path, GOAL), load_small(tmp_path, trajectory="time,shoulder\n4,1\n")):
+        assert [(one.kind, one.text) for one in notices_of(case)] == [("start", says)]
+        found = check(case, need="minimum")
+        assert found.verdict.exit_code == 2
+        assert found.verdict.text() == "suspect (would be clear at a single pose)"
+
+
+LATE = plan(point(4.0, 1.0, 0.05), point(6.0, 0.0, 0.05), names=("shoulder", "lift"))
+
+
+def test_the_way_to_a_first_point_after_0_s_is_said_in_the_headline(tmp_path):
+    says = (
+        "not measured: how robot 'arm' comes to its first point at 4 s; "
+        "give its start at 0 s with trajectory: {start_state: …}"
+    )
+    case = load(tmp_path, LATE)
+    assert [one.text for one in notices_of(case)] == [says]
+    found = check(case, need="minimum").verdict
+    assert found.exit_code == 0 and list(found.warnings) == [says]
+    assert kinds(load(tmp_path, LATE, ", start_state: {shoulder: 0, lift: 0}")) == []
+    start = state({"shoulder": 0.0, "lift": 0.0})
+    assert kinds(load(tmp_path, displayed(LATE, start))) == []
+    assert kinds(load_small(tmp_path, trajectory="time,shoulder\n4,1\n6,0\n")) == []
+
+
+def test_a_new_case_keeps_that_the_way_to_the_first_point_is_not_known(tmp_path, capsys):
+    load(tmp_path, LATE)
+    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
+    files = {"robot": "arm.urdf", "trajectory": "path.json", "scene": "scene.yaml"}
+    asked = [word for key, name in files.items() for word in (f"--{key}", str(tmp_path / name))]
+    assert run(["new", str(tmp_path / "made"), *asked]) == 0
+    case = load_case(tmp_path / "made" / "case.yaml")
+    assert kinds(case) == ["start"]
+    assert "start_state: {shoulder: 0.0, lift: 0.0}" in (tmp_path / "made/case.yaml").read_text()
+
+
+def test_a_start_in_the_case_makes_it_a_motion(tmp_path):
+    case = load(tmp_path, GOAL, ", start_state: {shoulder: -0.5, lift: 0.02}")
+    asked = case.robots[0].trajectory
+    assert kinds(case) == [] and asked.times.tolist() == [0.0, 4.0]
+    assert asked.positions.tolist() == [[-0.5, 0.02], [1.0, 0.05]]
+    said = "joints start from rest in start_state at 0 s and go to the first sample at 4 s as between samples"
+    assert any(said in note for note in case.notes)
+    assert check(case, need="minimum").verdict.text() == "clear"
+    named = load(tmp_path, GOAL, ", start_state: home", robot=", srdf: arm.srdf", arm__srdf=SRDF)
+    assert named.robots[0].trajectory.positions.tolist() == asked.positions.tolist()
+
+
+def test_with_velocities_it_starts_from_rest(tmp_path):
+    goal = plan(point(4.0, 1.0, velocities=[0.5]))
+    asked = load(tmp_path, goal, ", start_state: {shoulder: 0}").robots[0].trajectory
+    assert asked.velocities.tolist() == [[0.0], [0.5]]
+
+
+def test_with_accelerations_it_goes_on_a_quintic_from_rest(tmp_path):
+    """From rest to rest the quintic is s^3 (10 - 15 s + 6 s^2): at a quarter 0.103516 of the way."""
+    goal = plan(point(4.0, 1.0, velocities=[0.0], accelerations=[0.0]))
+    for message, key in (
+        (goal, ", start_state: {shoulder: 0}"),
+        (displayed(goal, state({"shoulder": 0.0})), ""),
+    ):
+        asked = load(tmp_path, message, key).robots[0].trajectory
+        assert asked.points.times.tolist() == [0.0, 4.0]
+        assert positions_along(asked, np.array([1.0]))[0, 0] == pytest.approx(0.103516, abs=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("key", "fault", "says"),
+    [
+        ("{shoulder: 0}", MissingKey, "start_state: it has no position of 'lift'"),
+        ("{shoulder: 0, lft: 0}", UnknownJoint, "start_state: unknown joint 'lft'; did you mean 'lift'"),
+        ("home", MissingKey, "start_state: state 'home' is in no file"),
+        ("1.5", BadInput, "start_state"),
+    ],
+)  # fmt: skip
+def test_a_start_that_is_none_is_refused(tmp_path, key, fault, says):
+    with pytest.raises(fault, match=says):
+        load(tmp_path, GOAL, f", start_state: {key}")
+
+
+def test_a_start_is_refused_where_nothing_comes_before_the_first_sample(tmp_path):
+    message = plan(point(0.0, 0.1), point(1.0, 0.2))
+    with pytest.raises(BadTime, match="the trajectory begins at 0 s itself; no start_state"):
+        load(tmp_path, message, ", start_state: {shoulder: 0}")
+    with pytest.raises(BadInput, match="the trajectory does not move 'lift'"):
+        load(tmp_path, plan(point(1.0, 0.1)), ", start_state: {shoulder: 0, lift: 0}")
+
+
+def test_the_start_of_a_message_is_used():
+    trajectory, notes = read(displayed(plan(point(4.0, 1.0)), state({"shoulder": -0.5})))
+    assert trajectory.times.tolist() == [0.0, 4.0]
+    assert trajectory.positions.tolist() == [[-0.5], [1.0]]
+    assert notes == (
+        "path.json: joints start in trajectory_start at 0 s and go to the first point at 4 s as between points",
+    )
+    moving = displayed(plan(point(4.0, 1.0, velocities=[0.0])), state({"shoulder": -0.5}, [0.25]))
+    assert read(moving).trajectory.velocities.tolist() == [[0.25], [0.0]]
+
+
+def test_so_it_is_where_the_first_of_several_points_is_later():
+    message = displayed(plan(point(0.5, 0.1), point(1.0, 0.2)), state({"shoulder": 0.0}))
+    assert read(message).trajectory.times.tolist() == [0.0, 0.5, 1.0]
+    assert read(displayed(plan(point(0.5, 0.1)), {"is_diff": True})).trajectory.n_steps == 1
+
+
+def test_what_the_start_says_of_other_joints_and_another_place_is_told():
+    start = state({"shoulder": 0.3, "finger": 0.04, "thumb": 0.0})
+    trajectory, notes = read(displayed(plan(point(0.0, 0.1), point(1.0, 0.2)), start))
+    assert trajectory.positions[0, 0] == 0.1
+    told = " | ".join(notes)
+    assert (
+        "trajectory_start also has joints that the trajectory does not move {finger: 0.04, thumb: 0}"
+        in told
+    )
+    assert "has joint 'shoulder' 0.2 off the first point, at 0 s; the point is used" in told
+    _, notes = read(displayed(plan(point(1.0, 0.1, 0.0), names=("shoulder", "lift")), start))
+    assert any("trajectory_start is not used: it has no position of lift" in note for note in notes)
+
+
+def test_a_later_segment_does_not_begin_at_the_start():
+    segments = [{"joint_trajectory": plan(point(t, 0.1))} for t in (1.0, 2.0)]
+    message = {"trajectory": segments, "trajectory_start": state({"shoulder": 0.0})}
+    assert read(message, 1).trajectory.times.tolist() == [0.0, 1.0]
+    trajectory, notes = read(message, 2)
+    assert trajectory.times.tolist() == [2.0]
+    assert notes == (
+        "path.json: the first point is at 2 s; how the robot gets there is not in the file",
+        "path.json: fields beside the points, not read: trajectory_start",
+    )
+
+
+@pytest.mark.parametrize(
+    ("start", "says"),
+    [
+        ({"name": ["a"], "position": []}, "trajectory_start.joint_state: position is"),
+        ({"name": ["a"], "position": ["x"]}, "a finite number for each name"),
+        ({"name": ["a"], "position": [0.0], "velocity": [1, 2]}, "velocity is"),
+    ],
+)
+def test_a_start_that_is_no_state_is_refused(start, says):
+    with pytest.raises(BadShape, match=says):
+        read(displayed(plan(point(1.0, 0.1), names=("a",)), {"joint_state": start}))
+
+
+UNREAD = [
+    ("header", {"frame_id": "base", "stamp": {"sec": 3, "nanosec": 0}}, "header.frame_id 'base'"),
+    ("path_tolerance", [{"name": "shoulder", "position": 0.1}], "path_tolerance"),
+    ("goal_time_tolerance", {"sec": 1, "nanosec": 0}, "goal_time_tolerance"),
+    ("model_id", "arm", "model_id 'arm'"),
+    ("header", {"frame_id": "", "stamp": {"sec": 3, "nanosec": 0}}, None),
+    ("path_tolerance", [], None),
+    ("goal_id", {"id": "7"}, None),
+    ("pose", {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}, None),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "named"), UNREAD)
+def test_what_a_message_says_beside_its_points_is_named(key, value, named):
+    trajectory = plan(point(0.0, 0.1), point(1.0, 0.2))
+    for message in ({key: value, "trajectory": trajectory}, trajectory | {key: value}):
+        notes = read(message).notes
+        assert notes == (
+            (f"path.json: fields beside the points, not read: {named}",) if named else ()
+        )
+
+
+def test_what_aliases_repeat_is_looked_at_once():
+    """Thirty lists that each hold the one before ten times, and nothing."""
+    lists = "".join(f"  - &l{i} [{', '.join([f'*l{i - 1}'] * 10)}]\n" for i in range(1, 30))
+    plain = "joint_names: [a]\npoints: [{positions: [0], time_from_start: 0}]\n"
+    text = f"path_tolerance:\n  - &l0 []\n{lists}{plain}"
+    request = TrajectoryRequest(lambda: io.BytesIO(text.encode()), len(text))
+    assert read_trajectory(request, "path.yaml").notes == ()
+
+
+def test_what_a_start_state_says_beside_its_joints_is_named():
+    box = {"link_name": "tip", "object": {"id": "box"}}
+    start = state({"shoulder": 0.0}, attached_collision_objects=[box], is_diff=True)
+    notes = read(displayed(plan(point(0.0, 0.0), point(1.0, 0.1)), start)).notes
+    said = (
+        "path.json: fields beside the points, not read: trajectory_start.attached_collision_objects"
+    )
+    assert notes == (said,)
+
+
+@pytest.mark.parametrize("key", ["multi_dof_joint_trajectory", "multi_dof_trajectory"])
+@pytest.mark.parametrize("depth", [0, 1, 2])
+def test_what_a_base_does_beside_is_refused_at_any_depth(key, depth):
+    """A base that moves is never left out, wherever the message has it."""
+    base = {"joint_names": ["world_joint"], "points": [{"time_from_start": 0.0}]}
+    message = {"trajectory": plan(point(0.0, 0.1), point(1.0, 0.2)), key: base}
+    for _ in range(depth):
+        message = {"goal": message}
+    where = "goal." * depth
+    with pytest.raises(BadInput, match=rf"{where}{key}: 1 points of joints with several degrees"):
+        read(message)
+
+
+def test_a_new_case_of_a_goal_proposes_its_start(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    load(tmp_path, plan(point(4.0, 1.0)))
+    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
+    words = [
+        "new",
+        "out",
+        "--robot",
+        "arm.urdf",
+        "--trajectory",
+        "path.json",
+        "--scene",
+        "scene.yaml",
+    ]
+    assert run(words) == 0
+    path = tmp_path / "out" / "case.yaml"
+    assert kinds(load_case(path)).count("start") == 1
+    (line,) = [one for one in path.read_text().splitlines() if "start_state" in one]
+    taken = line.removeprefix("# ").partition("  #")[0]
+    assert taken == "trajectory: {file: trajectory.csv, start_state: {shoulder: 0.0}}"
+    path.write_text(path.read_text().replace("trajectory: trajectory.csv  #", f"{taken}  #"))
+    case = load_case(path)
+    assert "start" not in kinds(case) and case.robots[0].trajectory.times.tolist() == [0.0, 4.0]
+
+
+def test_the_frame_of_a_message_stands_in_the_notes_of_the_case(tmp_path):
+    case = load_small(tmp_path, changed("path.csv", "path.yaml"), urdf=TWO_JOINTS, path__yaml=ROS2)
+    assert "path.yaml: fields beside the points, not read: header.frame_id 'base'" in case.notes

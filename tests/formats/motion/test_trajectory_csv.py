@@ -1,0 +1,124 @@
+"""CSV trajectories: columns by name, exact numbers, and the line of every fault."""
+
+import numpy as np
+import pytest
+
+from clearance.errors import (
+    BadDimension,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+)
+from clearance.formats.motion.trajectory_file import parse_trajectory
+
+
+def parse(text: str):
+    return parse_trajectory(text.encode(), "path.csv")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time,b,a\n0,1,2\n1,3,4\n",
+        "b,a,time\n1,2,0\n3,4,1\n",
+        "b,time,a\r\n1,0,2\r\n3,1,4",
+        "\n\nb, time ,a\n\n 1 , 0 , 2\n\n\n3,1,4\n\n",
+        '\ufeff"b","time","a"\n"1","0","2"\n3,1,4\n',
+        "time,b,a\n0,1e0,+2.0\n1,3.,4E+0\n",
+    ],
+)
+def test_time_may_be_any_column_and_joints_keep_their_order(text):
+    trajectory = parse(text)
+    assert trajectory.joint_names == ("b", "a")
+    assert trajectory.times.tolist() == [0, 1]
+    assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time,b,a,b/velocity,a/velocity\n0,1,2,5,6\n1,3,4,7,8\n",
+        "a/velocity,b,time,b/velocity,a\n6,1,0,5,2\n8,3,1,7,4\n",
+        "time, b ,a, a/velocity ,b/velocity\r\n0,1,2,6,5\r\n1,3,4,8,7",
+    ],
+)
+def test_velocity_columns_go_with_their_joints(text):
+    trajectory = parse(text)
+    assert trajectory.joint_names == ("b", "a")
+    assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
+    assert trajectory.velocities.tolist() == [[5, 6], [7, 8]]
+
+
+def test_a_file_without_velocities_has_none():
+    assert parse("time,a,velocity\n0,1,2\n").velocities is None
+
+
+def test_numbers_are_read_to_the_last_bit():
+    values = np.random.default_rng(7).normal(size=300) * 10.0 ** np.arange(-150, 150)
+    rows = "".join(f"{i},{value!r}\n" for i, value in enumerate(values.tolist()))
+    assert parse("time,a\n" + rows).positions[:, 0].tolist() == values.tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "says"),
+    [
+        ("", BadSyntax, "path.csv: the file is empty"),
+        (" \n\n", BadSyntax, "path.csv: the file is empty"),
+        ("time,a\n", BadShape, "no rows"),
+        ("time,a\n\n", BadShape, "no rows"),
+        ("time\n0\n", BadShape, "no joint column"),
+        ("a,b\n0,1\n", MissingKey, "no column 'time'"),
+        ("time:a\n0:1\n", MissingKey, "separated by commas"),
+        ("time,a,a\n0,1,2\n", DuplicateName, "column 'a' is there twice"),
+        ("time,time,a\n0,1,2\n", DuplicateName, "column 'time'"),
+        ("time,,a\n0,1,2\n", BadSyntax, "column 2 of the header"),
+        ("time,a\n0,1\n1\n", BadShape, "line 3: 1 columns; the header has 2"),
+        ("time,a\n0,1\n1,2,3\n", BadShape, "line 3: 3 columns; the header has 2"),
+        ("time,a\n0,1\n\n1,x1\n", BadSyntax, "line 4: 'x1' in column 'a' is not a number"),
+        ("time,a\n0,\n", BadSyntax, "line 2: '' in column 'a' is not a number"),
+        ("time,a\n0,NA\n", BadSyntax, "'NA' in column 'a'"),
+        ("time,a\n0,1_0\n", BadSyntax, "'1_0' in column 'a'"),
+        ("time,a\n0,0x1p3\n", BadSyntax, "'0x1p3' in column 'a'"),
+        ("time,a\n0,true\n", BadSyntax, "'true' in column 'a'"),
+        ("time,a\n0,1\n\n1,nan\n", NotFinite, "line 4: nan in column 'a'"),
+        ("time,a\n0,1\n1,-inf\n", NotFinite, "line 3: -inf in column 'a'"),
+        ("time,a\nnan,1\n", NotFinite, "line 2: nan in column 'time'"),
+        ("time,a\n0,1\n1,1\n\n1,2\n", BadTime, "line 5: time 1.0 follows 1.0"),
+        ("time,a\n0,1\n-1,1\n", BadTime, "line 3: time -1.0 follows 0.0"),
+        ("time,arm,amr/velocity\n0,1,2\n", MissingKey, "'amr/velocity' is the velocity of 'amr'"),
+        ("time,arm,amr/velocity\n0,1,2\n", MissingKey, "did you mean 'arm'?"),
+        ("time,a/velocity\n0,1\n", MissingKey, "'a', which has no column"),
+        ("time,a,time/velocity\n0,1,1\n", MissingKey, "'time', which has no column"),
+        ("time,a,a/velocity/velocity\n0,1,1\n", MissingKey, "'a/velocity', which has no column"),
+        (
+            "time,a,b,b/velocity\n0,1,1,1\n",
+            MissingKey,
+            "joint 'a' has no column 'a/velocity', joint 'b'",
+        ),
+        (
+            "time,a,a/velocity,a/velocity\n0,1,1,1\n",
+            DuplicateName,
+            "column 'a/velocity' is there twice",
+        ),
+        ("time,a,a/velocity\n0,1,1\n1,1,nan\n", NotFinite, "line 3: nan in column 'a/velocity'"),
+        ("time,a,a/velocity\n0,1,x\n", BadSyntax, "line 2: 'x' in column 'a/velocity'"),
+        ("time,a,a/velocity\n0,1,1\n0,1,1\n", BadTime, "line 3: time 0.0 follows 0.0"),
+        ("time,a,a/velocity\n0,1,1\n1,1,1e200\n", BadDimension, "joint 'a' has a velocity"),
+    ],
+)
+def test_each_fault_is_one_line_with_its_place(text, fault, says):
+    with pytest.raises(fault) as caught:
+        parse(text)
+    assert says in str(caught.value)
+    assert str(caught.value).startswith("path.csv: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_not_text_is_refused():
+    for data in (b"time,a\n0,\xff\xfe\n", b"\x89PNG\r\n\x1a\n\0\0\0"):
+        with pytest.raises((BadSyntax, MissingKey)) as caught:
+            parse_trajectory(data, "path.csv")
+        assert "\n" not in str(caught.value)

@@ -1,0 +1,91 @@
+"""Velocities in a trajectory file: what is told of them, what is refused, and that the proof goes by them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from clearance import check, load_case
+from clearance.errors import MissingKey, UnknownJoint
+from clearance.world.case import PlacedRobot
+from clearance.world.cubic import positions_along
+from clearance.world.joint_limits import notices_on_joints
+from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+from tests.formats.making import write_case
+
+
+def notes(positions, velocities, kind=JointKind.REVOLUTE):
+    joint = Joint("elbow", kind, "a", "b", np.eye(4), lower=-1.0, upper=1.0)
+    robot = Robot("robot", ("a", "b"), (joint,), ())
+    columns = [np.array(values, dtype=float)[:, None] for values in (positions, velocities)]
+    asked = Trajectory(np.arange(len(positions), dtype=float), ("elbow",), *columns)
+    placed = PlacedRobot(robot, asked)
+    return [
+        notice.text for notice in (*notices_on_motion(placed), *notices_on_joints(placed, "warn"))
+    ]
+
+
+def test_a_cubic_that_leaves_the_limits_between_samples_is_told():
+    assert notes([0.9, 0.9, 0.0], [0.8, -0.8, -1.0]) == [
+        "joint 'elbow' leaves its limits -1 to 1 rad by up to 0.1 rad between two samples, "
+        "on the cubic that its velocities make, in 1 of 2 intervals"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("positions", "velocities"),
+    [
+        ([0.9, 0.9, 0.0], [0.3, -0.3, -1.0]),
+        ([1.0, 1.0], [0.0, 0.0]),
+        ([-1.0, 1.0], [0.0, 0.0]),
+        ([0.1 + 0.2, 0.7], [0.4, 0.4]),
+        ([0.5], [9.0]),
+    ],
+)
+def test_what_stays_within_its_limits_is_not(positions, velocities):
+    assert notes(positions, velocities) == []
+
+
+def test_beyond_at_the_samples_is_told_once():
+    told = notes([0.5, 1.5, 0.5], [0.0, 0.0, 0.0])
+    assert len(told) == 1
+    assert told[0].endswith("in 1 of 3 steps")
+
+
+def test_degrees_a_second_are_told():
+    positions = np.sin(np.linspace(0.0, 3.0, 20))
+    velocities = np.gradient(positions)
+    assert not any("CHECK UNITS" in note for note in notes(positions, velocities))
+    told = notes(positions, np.degrees(velocities))
+    assert any("velocities of joint 'elbow'" in note and "degrees/s" in note for note in told)
+    told = notes(positions, 1000.0 * velocities, JointKind.PRISMATIC)
+    assert any("is this mm/s?" in note for note in told)
+    assert notes([0.0, 0.0], [1e-4, 1e-4]) == []
+
+
+def test_a_case_file_is_certified_on_the_cubics_of_its_trajectory(tmp_path):
+    rows = "time,shoulder,shoulder/velocity\n0,0.3,0.8\n1,0.3,-0.8\n"
+    case = load_case(write_case(tmp_path, trajectory=rows))
+    asked = case.robots[0].trajectory
+    assert asked.velocities.tolist() == [[0.8], [-0.8]]
+    run = check(case, certify=True)
+    times = np.linspace(0.0, 1.0, 501)
+    sampled = Trajectory(times, asked.joint_names, positions_along(asked, times))
+    finer = replace(case, robots=(replace(case.robots[0], trajectory=sampled),))
+    least = check(finer).record.clearances.min()
+    bound = run.record.certificate.lower_bound[0]
+    assert least < run.record.clearances.min() - 1e-3
+    assert least - 2e-4 <= bound <= least
+
+
+def test_a_velocity_of_a_joint_that_the_robot_lacks_is_refused(tmp_path):
+    path = write_case(tmp_path, trajectory="time,elbow,elbow/velocity\n0,0,0\n")
+    with pytest.raises(UnknownJoint, match="unknown joint 'elbow'"):
+        load_case(path)
+    path = write_case(tmp_path, trajectory="time,shoulder,sholder/velocity\n0,0,0\n")
+    with pytest.raises(
+        MissingKey, match=r"path.csv.*'sholder', which has no column; did you mean 'shoulder'"
+    ):
+        load_case(path)

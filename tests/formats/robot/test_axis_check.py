@@ -1,0 +1,110 @@
+"""COLLADA up axes in a URDF: the ROS way by default, suspect where the shapes fit only the other way."""
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadInput
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.formats import read_robot
+from clearance.formats.robot.request import RobotRequest
+from clearance.world.notice import Severity
+from tests.formats.making import CUBE, CUBE_TRIANGLES, binary_stl
+from tests.formats.making_case import changed, load_small
+from tests.formats.making_urdf import joint, link, robot
+from tests.formats.mesh.test_collada_file import document
+
+BAR = CUBE * [0.1, 0.2, 1.0] + [0.0, 0.0, 0.5]
+"""A bar that stands on its joint, one metre along z."""
+
+LYING = BAR[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
+"""The bar as a program with y up writes it: what is turned to z up is `BAR`."""
+
+
+def dae(corners: np.ndarray, up: str = "Y_UP") -> bytes:
+    numbers = " ".join(map(str, corners.ravel().tolist()))
+    primitives = (
+        f'<triangles count="{len(CUBE_TRIANGLES)}"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>{' '.join(map(str, CUBE_TRIANGLES.ravel()))}</p></triangles>"
+    )
+    asset = f'<unit meter="1"/><up_axis>{up}</up_axis>'
+    return document(asset, numbers, primitives)
+
+
+def shape(kind: str, file: str) -> str:
+    return f'<{kind}><geometry><mesh filename="{file}"/></geometry></{kind}>'
+
+
+def load(
+    folder, way="ros", geometry="collision", *, collision="bar.dae", visual="seen.stl", **files
+):
+    """A robot of one bar below a base, and what stands at the bar's far end."""
+    files = {"seen.stl": binary_stl(BAR[CUBE_TRIANGLES])} | {
+        k.replace("__", "."): v for k, v in files.items()
+    }
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    bar = shape("collision", collision) + (shape("visual", visual) if visual else "")
+    at_end = '<origin xyz="0 0 1"/><limit lower="-1" upper="1"/>'
+    path = folder / "bar.urdf"
+    joints = joint("j", "a", "b"), joint("k", "b", "c", inner=at_end)
+    path.write_text(robot(link("", "a"), link(bar, "b"), link("", "c"), *joints))
+    request = RobotRequest(path, (), geometry, way)
+    return read_robot(request, MeshStore(InputFiles(folder)))
+
+
+def test_ros_leaves_a_file_as_it_lies_and_file_turns_it(tmp_path):
+    as_it_lies = load(tmp_path, bar__dae=dae(LYING)).bodies[0].shape.bounds
+    assert as_it_lies.tolist() == [LYING.min(axis=0).tolist(), LYING.max(axis=0).tolist()]
+    turned = load(tmp_path, "file", bar__dae=dae(LYING)).bodies[0].shape.bounds
+    assert turned.tolist() == [BAR.min(axis=0).tolist(), BAR.max(axis=0).tolist()]
+
+
+def test_shapes_that_lie_together_only_the_other_way_are_suspect(tmp_path):
+    (notice,) = load(tmp_path, "ros", bar__dae=dae(LYING)).notices
+    assert (notice.severity, notice.kind) == (Severity.SUSPECT, "axis")
+    assert "shapes of 1 link lie apart with robot: {collada_up_axis: ros}" in notice.text
+    assert notice.text.endswith("together with file: 'b'")
+    (notice,) = load(tmp_path, "file", bar__dae=dae(BAR)).notices
+    assert notice.text.endswith("together with ros: 'b'")
+
+
+@pytest.mark.parametrize(
+    ("way", "corners", "up"), [("ros", BAR, "Y_UP"), ("file", LYING, "Y_UP"), ("ros", BAR, "Z_UP")]
+)
+def test_shapes_that_lie_together_are_not(tmp_path, way, corners, up):
+    assert load(tmp_path, way, bar__dae=dae(corners, up)).notices == ()
+
+
+def test_where_both_shapes_turn_together_the_joints_tell(tmp_path):
+    for visual in ("bar.dae", ""):
+        (notice,) = load(tmp_path, "ros", visual=visual, bar__dae=dae(LYING)).notices
+        assert (notice.severity, notice.kind) == (Severity.SUSPECT, "axis")
+        assert notice.text.endswith("at them with file: 'b'")
+        assert load(tmp_path, "file", visual=visual, bar__dae=dae(LYING)).notices == ()
+        assert load(tmp_path, "ros", visual=visual, bar__dae=dae(BAR)).notices == ()
+
+
+def test_shapes_that_agree_neither_way_say_nothing(tmp_path):
+    other = binary_stl((BAR * 0.1 + [3.0, 0.0, 0.0])[CUBE_TRIANGLES])
+    assert load(tmp_path, "ros", seen__stl=other, bar__dae=dae(CUBE)).notices == ()
+
+
+def test_pictures_are_not_read_where_no_tag_turns_a_file(tmp_path):
+    found = load(tmp_path, visual="no.stl", bar__dae=dae(BAR, "Z_UP"))
+    assert found.notices == ()
+
+
+def test_a_case_chooses_the_way(tmp_path):
+    urdf = robot(
+        link(shape("collision", "bar.dae"), "base"),
+        link("", "tip"),
+        joint("shoulder", "base", "tip"),
+    )
+    case = changed("arm.urdf", "arm.urdf, collada_up_axis: file")
+    turned = load_small(tmp_path, case, urdf=urdf, bar__dae=dae(LYING)).robots[0].robot
+    assert turned.bodies[0].shape.bounds[1].tolist() == BAR.max(axis=0).tolist()
+    with pytest.raises(
+        BadInput, match=r"robot\.collada_up_axis: 'z' is given; 'ros' or 'file' is needed"
+    ):
+        load_small(tmp_path, changed("arm.urdf", "arm.urdf, collada_up_axis: z"))

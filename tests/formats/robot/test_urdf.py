@@ -1,0 +1,351 @@
+"""URDF to a robot: shapes in their link's frame, and joints as written."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadSyntax
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.mesh_store import MeshStore
+from clearance.formats.robot.formats import read_robot
+from clearance.formats.robot.request import RobotRequest
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import link_poses, moving_positions
+from clearance.world.mimics import followers
+from clearance.world.notice import Severity
+from clearance.world.robot import JointKind
+from clearance.world.trajectory import Trajectory
+from tests.formats.making import ARM, cube_stl, signed_volume
+from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
+
+
+def world_from_link(robot, **positions):
+    empty = Trajectory(np.zeros(1), (), np.zeros((1, 0)))
+    placed = PlacedRobot(robot, empty)
+    given = np.array([list(positions.values())], dtype=float).reshape(1, -1)
+    poses = link_poses(placed, moving_positions(placed, tuple(positions), given))[0]
+    return dict(zip(robot.link_names, poses, strict=True))
+
+
+def test_an_arm_has_its_links_joints_and_bodies(tmp_path):
+    arm = load_urdf(tmp_path, ARM)
+    assert arm.name == "arm"
+    assert arm.link_names == ("base", "upper", "tip")
+    assert [j.name for j in arm.joints] == ["shoulder", "flange"]
+    assert [body.name for body in arm.bodies] == ["base", "upper"]
+    assert [body.origin for body in arm.bodies] == ["box", "upper.stl"]
+    shoulder = arm.joints[0]
+    assert (shoulder.kind, shoulder.lower, shoulder.upper) == (JointKind.REVOLUTE, -1, 1)
+    assert shoulder.axis.tolist() == [0, 0, 1]
+    assert shoulder.parent_from_joint[:3, 3].tolist() == [0, 0, 0.1]
+    assert arm.bodies[1].shape.bounds.tolist() == [[-0.5, -0.5, 0], [0.5, 0.5, 1]]
+    assert arm.notes == ("arm.urdf: 1 link without any shape: tip",)
+
+
+def test_several_elements_of_a_link_are_one_body_in_the_link_frame(tmp_path):
+    parts = [
+        collision('<box size="2 4 6"/>', '<origin xyz="10 0 0" rpy="0 0 1.5707963267948966"/>'),
+        collision('<mesh filename="upper.stl" scale="1 1 -2"/>', '<origin xyz="0 0 5"/>'),
+        collision('<mesh filename="upper.stl" scale="0.5"/>'),
+        "<visual><geometry><sphere radius='100'/></geometry></visual>",
+    ]
+    body = load_urdf(tmp_path, robot(link("".join(parts)))).bodies[0]
+    assert signed_volume(body.shape) == pytest.approx(48 + 2 + 0.125)
+    assert body.shape.bounds[1] == pytest.approx([12, 1, 6])
+    assert body.shape.bounds[0] == pytest.approx([-0.5, -1, -3])
+    assert body.origin == "box, upper.stl, upper.stl"
+
+
+@pytest.mark.parametrize(
+    ("shape", "size", "volume"),
+    [
+        ('<box size="1,2,3"/>', [1, 2, 3], 6),
+        ('<cylinder radius="0.5" length="2"/>', [1, 1, 2], np.pi / 2),
+        pytest.param('<sphere radius="0.5"/>', [1, 1, 1], np.pi / 6, marks=pytest.mark.slow),
+        pytest.param(
+            '<capsule radius="0.5" length="2"/>',
+            [1, 1, 3],
+            np.pi / 2 + np.pi / 6,
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, size, volume):
+    body = load_urdf(tmp_path, robot(link(collision(shape)))).bodies[0]
+    extent = body.shape.bounds[1] - body.shape.bounds[0]
+    assert (extent >= size).all()
+    assert extent == pytest.approx(size, abs=2 * 1.01e-4)
+    assert volume <= signed_volume(body.shape) * (1 + 1e-15) <= volume * 1.002
+
+
+def test_visual_geometry_when_asked(tmp_path):
+    elements = (
+        collision('<box size="1 1 1"/>')
+        + "<visual><geometry><box size='2 2 2'/></geometry></visual>"
+    )
+    assert signed_volume(load_urdf(tmp_path, robot(link(elements))).bodies[0].shape) == 1
+    shape = load_urdf(tmp_path, robot(link(elements)), geometry="visual").bodies[0].shape
+    assert signed_volume(shape) == 8
+
+
+def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
+    origin = '<origin xyz="1 2 3" rpy="0.3 -0.4 0.5"/>'
+    arm = load_urdf(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin))
+    )
+
+    def turn(axis, angle):
+        i, k = [(1, 2), (2, 0), (0, 1)][axis]
+        matrix = np.eye(3)
+        matrix[i, i] = matrix[k, k] = np.cos(angle)
+        matrix[i, k], matrix[k, i] = -np.sin(angle), np.sin(angle)
+        return matrix
+
+    pose = arm.joints[0].parent_from_joint
+    assert pose[:3, 3].tolist() == [1, 2, 3]
+    expected = turn(2, 0.5) @ turn(1, -0.4) @ turn(0, 0.3)
+    assert pose[:3, :3] == pytest.approx(expected, abs=1e-15)
+
+
+def test_links_come_parents_first_whatever_the_file_says(tmp_path):
+    arm = load_urdf(
+        tmp_path,
+        robot(
+            link("", "c"),
+            link("", "b"),
+            link("", "a"),
+            joint("bc", "b", "c"),
+            joint("ab", "a", "b"),
+        ),
+    )
+    assert arm.link_names == ("a", "b", "c")
+    assert [j.name for j in arm.joints] == ["ab", "bc"]
+
+
+SLIDE = '<axis xyz="1 0 0"/><limit lower="0" upper="9"/>'
+
+
+def test_mimic_chains_follow_their_master(tmp_path):
+    arm = load_urdf(
+        tmp_path,
+        robot(
+            *(link("", name) for name in "abcd"),
+            joint(
+                "third", "c", "d", "prismatic", SLIDE + '<mimic joint="second" multiplier="-3"/>'
+            ),
+            joint("first", "a", "b", "prismatic", SLIDE),
+            joint(
+                "second",
+                "b",
+                "c",
+                "prismatic",
+                SLIDE + '<mimic joint="first" multiplier="2" offset="1"/>',
+            ),
+        ),
+    )
+    assert [j.name for j in arm.moving_joints] == ["first"]
+    poses = world_from_link(arm, first=0.5)
+    assert [poses[name][0, 3] for name in "abcd"] == [0, 0.5, 2.5, -3.5]
+
+
+def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
+    arm = load_urdf(
+        tmp_path,
+        robot(
+            *(link("", name) for name in "abcd"),
+            joint("still", "a", "b", "fixed", ""),
+            joint("slide", "a", "c", "prismatic", SLIDE + '<mimic joint="still" offset="0.25"/>'),
+            joint(
+                "turn",
+                "a",
+                "d",
+                "continuous",
+                '<axis xyz="0 0 1"/><mimic joint="still" offset="0.5"/>',
+            ),
+        ),
+    )
+    assert arm.moving_joints == ()
+    assert "joint 'slide' follows fixed joint 'still' and stays at 0.25" in arm.notes[0]
+    poses = world_from_link(arm)
+    assert poses["c"][:3, 3].tolist() == [0.25, 0, 0]
+    assert poses["d"][:2, 0] == pytest.approx([np.cos(0.5), np.sin(0.5)])
+
+
+def test_a_fixed_joint_that_mimics_is_fixed(tmp_path):
+    arm = load_urdf(
+        tmp_path,
+        robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", '<mimic joint="gone"/>')),
+    )
+    assert arm.joints[0].kind is JointKind.FIXED
+    assert arm.joints[0].mimic is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "inner", "limits"),
+    [
+        ("revolute", '<limit lower="-2" upper="1" effort="1" velocity="1"/>', (-2, 1)),
+        ("revolute", '<limit upper="1"/>', (0, 1)),
+        ("revolute", '<limit effort="1" velocity="1"/>', (-np.inf, np.inf)),
+        ("revolute", "", (-np.inf, np.inf)),
+        ("continuous", '<limit lower="-2" upper="1"/>', (-np.inf, np.inf)),
+        ("prismatic", '<limit lower="0.1" upper="0.1"/>', (0.1, 0.1)),
+    ],
+)
+def test_limits(tmp_path, kind, inner, limits):
+    arm = load_urdf(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner))
+    )
+    assert (arm.joints[0].lower, arm.joints[0].upper) == limits
+
+
+@pytest.mark.parametrize("axis", ["0 0 1e-200", "0 0 1e200", "0 0 7"])
+def test_axes_get_length_one(tmp_path, axis):
+    inner = f'<axis xyz="{axis}"/><limit lower="0" upper="1"/>'
+    arm = load_urdf(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "revolute", inner))
+    )
+    assert arm.joints[0].axis.tolist() == [0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("given", "place"),
+    [
+        ("package://pkg/meshes/part.stl", "dirs/pkg/meshes"),
+        ("package://pkg/meshes/part.stl", "dirs/meshes"),
+        ("package://pkg/meshes/part.stl", "dirs"),
+        ("package://pkg/meshes/part.stl", "meshes"),
+        ("model://pkg/meshes/part.stl", "dirs/pkg/meshes"),
+        ("meshes/part.stl", "meshes"),
+        ("./meshes/../meshes/part.stl", "meshes"),
+        ("meshes\\part.stl", "meshes"),
+        ("file://{folder}/meshes/part.stl", "meshes"),
+        ("{folder}/meshes/part.stl", "meshes"),
+    ],
+)
+def test_meshes_are_found(tmp_path, given, place):
+    (tmp_path / "dirs").mkdir()
+    (tmp_path / place).mkdir(parents=True, exist_ok=True)
+    (tmp_path / place / "part.stl").write_bytes(cube_stl())
+    mesh = f'<mesh filename="{given.format(folder=tmp_path)}"/>'
+    arm = load_urdf(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
+    assert arm.bodies[0].origin == f"{place}/part.stl"
+
+
+def test_the_longest_match_of_a_package_path_wins(tmp_path):
+    for place, scale in (("one", 1), ("two/pkg", 2)):
+        (tmp_path / place).mkdir(parents=True)
+        (tmp_path / place / "part.obj").write_text(
+            f"v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n"
+        )
+    mesh = collision('<mesh filename="package://pkg/part.obj"/>')
+    arm = load_urdf(tmp_path, robot(link(mesh)), [tmp_path / "one", tmp_path / "two"])
+    assert arm.bodies[0].origin == "two/pkg/part.obj"
+
+
+def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
+    extra = (
+        "<inertial><mass value='heavy'/></inertial><!-- note --><material/><contact/>"
+        + collision("<!-- the shape --><box size='1 1 1'/>")
+    )
+    urdf = robot(
+        link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->"
+    )
+    assert load_urdf(tmp_path, urdf).bodies[0].shape.n_faces == 6
+
+
+def test_a_default_namespace_changes_nothing(tmp_path):
+    elements = link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b")
+    plain = robot(*elements)
+    named = plain.replace("<robot ", '<robot xmlns="http://drake.mit.edu" ', 1)
+    prefixed = (
+        plain.replace("<", "<u:")
+        .replace("<u:/", "</u:")
+        .replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
+    )
+    expected = load_urdf(tmp_path, plain)
+    for text in (named, prefixed):
+        found = load_urdf(tmp_path, text)
+        assert found.link_names == expected.link_names
+        assert [body.shape.n_faces for body in found.bodies] == [6, 6]
+        assert [j.name for j in found.joints] == [j.name for j in expected.joints]
+
+
+def test_elements_of_another_namespace_are_passed_over(tmp_path):
+    other = '<x:joint xmlns:x="urn:x" name="k"/>'
+    found = load_urdf(tmp_path, robot(link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b"), other))
+    assert [j.name for j in found.joints] == ["j"]
+
+
+def test_a_robot_that_a_package_brings(tmp_path):
+    pytest.importorskip("pybullet_data")
+    files = InputFiles(tmp_path)
+    path = resolved("pybullet_data:kuka_iiwa/model.urdf", tmp_path)
+    arm = read_robot(RobotRequest(path), MeshStore(files))
+    assert len(arm.bodies) == 8
+    assert len(arm.moving_joints) == 7
+    assert {source.path.split(":")[0] for source in files.sources} == {"pybullet_data"}
+    assert arm.bodies[0].origin == "pybullet_data:kuka_iiwa/meshes/link_0.stl"
+    assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
+
+
+@pytest.mark.slow
+def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
+    """Neither links in a row nor joints that follow each other in a row are gone through by recursion."""
+    n = 3000
+    follows = '<origin xyz="0 0 0.001"/><mimic joint="j{}" multiplier="1" offset="0.001"/>'
+    links = [link(BOX, f"l{i}") for i in (0, n)] + [link("", f"l{i}") for i in range(1, n)]
+    joints = [joint("j0", "l0", "l1")]
+    joints += [
+        joint(f"j{i}", f"l{i}", f"l{i + 1}", inner=follows.format(i - 1)) for i in range(1, n)
+    ]
+    joints.reverse()  # those that follow come before what they follow
+    arm = load_urdf(tmp_path, robot(*links, *joints))
+    assert arm.link_names == tuple(f"l{i}" for i in range(n + 1))
+    last = followers(arm)[-1]
+    assert (last.joint.name, last.master, last.factor) == (f"j{n - 1}", "j0", 1.0)
+    assert last.offset == pytest.approx(0.001 * (n - 1), rel=1e-12)
+
+
+def test_elements_in_each_other_without_end_are_refused(tmp_path):
+    deep = "<x>" * 100_000 + "</x>" * 100_000
+    with pytest.raises(BadSyntax, match="not XML"):
+        load_urdf(tmp_path, robot(link(BOX), deep))
+
+
+@pytest.mark.parametrize(
+    "empty",
+    [
+        "<collision/>",
+        "<collision><geometry/></collision>",
+        collision('<sphere radius="0"/>'),
+        collision('<box size="0 0.0 .0"/>'),
+        collision('<cylinder radius="0" length="-0.0"/>'),
+    ],
+)
+def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, empty):
+    arm = load_urdf(tmp_path, robot(link(BOX + empty), link(empty, "b"), joint("j", "a", "b")))
+    assert [body.name for body in arm.bodies] == ["a"]
+    assert np.array_equal(arm.bodies[0].shape.vertices, cl.box((1.0, 1.0, 1.0)).vertices)
+    (notice,) = arm.notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
+    assert notice.text.endswith("measured: link 'a' collision[1], link 'b' collision[0]")
+
+
+def test_pictures_of_no_size_are_no_matter_where_they_are_not_measured(tmp_path):
+    for geometry in ("collision", "collision_or_visual"):
+        arm = load_urdf(tmp_path, robot(link(BOX + "<visual/>")), geometry=geometry)
+        assert len(arm.bodies) == 1 and not arm.notices
+
+
+def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):
+    joints = [
+        joint("j", "a", "b", inner=""),
+        joint("k", "b", "c", "prismatic", '<limit effort="1" velocity="1"/>'),
+        joint("l", "c", "d"),
+        joint("m", "d", "e", "continuous", ""),
+    ]
+    arm = load_urdf(tmp_path, robot(*(link(BOX, name) for name in "abcde"), *joints))
+    told = "arm.urdf: joints without <limit>, taken as unlimited: 'j', 'k'"
+    assert [note for note in arm.notes if "without <limit>" in note] == [told]

@@ -1,0 +1,139 @@
+"""Everything in a URDF file that cannot be meant is refused in one line, with file and element."""
+
+import pytest
+
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    BadShape,
+    BadSyntax,
+    DuplicateName,
+    MissingFile,
+    MissingKey,
+    NotFinite,
+    UnknownJoint,
+    UnknownLink,
+)
+from tests.formats.making_urdf import BOX, collision, joint, link, load_urdf, robot
+
+A_B = link("", "a") + link("", "b")
+
+
+@pytest.mark.parametrize(
+    ("urdf", "fault", "says"),
+    [
+        ("", BadSyntax, "not XML"),
+        ("not xml at all", BadSyntax, "not XML"),
+        (robot(A_B)[:-5], BadSyntax, "not XML"),
+        ("<sdf/>", BadSyntax, "this is an SDF world or model, not a URDF file"),
+        (robot(), BadInput, "no links"),
+        (
+            '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arm/></robot>',
+            BadSyntax,
+            "xacro",
+        ),
+        (robot("<link/>"), MissingKey, "link[0]: <link> has no name"),
+        (robot(link("", "a"), link("", "a")), DuplicateName, "two links have the name 'a'"),
+        (robot(A_B), BadInput, "links 'a', 'b' have no parent"),
+        (robot(A_B, joint("j", "a", "b"), joint("j", "a", "b")), DuplicateName, "two joints"),
+        (
+            robot(A_B, joint("j", "a", "b"), joint("k", "a", "b")),
+            BadInput,
+            "child of joints 'j' and 'k'",
+        ),
+        (robot(A_B, joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
+        (robot(A_B, link("", "c"), joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
+        (robot(A_B, joint("j", "a", "a")), BadInput, "circle"),
+        (robot(A_B, joint("j", "base", "b")), UnknownLink, "joint 'j': unknown parent link 'base'"),
+        (robot(A_B, joint("j", "a", "bb")), UnknownLink, "joint 'j': unknown child link 'bb'"),
+        (
+            robot(A_B, '<joint name="j" type="fixed"><parent link="a"/></joint>'),
+            MissingKey,
+            "0 <child>",
+        ),
+        (
+            robot(A_B, '<joint name="j"><parent link="a"/></joint>'),
+            MissingKey,
+            "<joint> has no type",
+        ),
+        (robot(A_B, joint("j", "a", "b", "ball")), BadInput, "joint 'j': type 'ball'"),
+        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 0 0"/>')), BadInput, "axis is 0 0 0"),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1"/>')),
+            BadShape,
+            "joint 'j' axis: xyz='0 1'",
+        ),
+        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1 nan"/>')), NotFinite, "xyz="),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<origin xyz="0 1 x"/>')),
+            BadShape,
+            "joint 'j' origin",
+        ),
+        (robot(A_B, joint("j", "a", "b", inner='<origin rpy="0 ${pi} 0"/>')), BadShape, "${pi}"),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<limit lower="2" upper="1"/>')),
+            BadInput,
+            "lower limit 2",
+        ),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<mimic joint="k"/>')),
+            UnknownJoint,
+            "unknown joint 'k'",
+        ),
+        (robot(A_B, joint("j", "a", "b", inner='<mimic joint="j"/>')), BadInput, "circle"),
+        (robot(link(BOX + collision("<cone/>"))), BadInput, "collision[1] geometry: <cone>"),
+        (
+            robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))),
+            BadInput,
+            "<box>, <sphere>",
+        ),
+        (robot(link(collision('<box size="1 1"/>'))), BadShape, "size='1 1' is given; 3 numbers"),
+        (robot(link(collision("<box/>"))), MissingKey, "<box> has no size"),
+        (robot(link(collision('<box size="1 -1 1"/>'))), BadDimension, "-1"),
+        (robot(link(collision('<box size="1 1 0"/>'))), BadDimension, "link 'a' collision[0]"),
+        (robot(link(collision('<cylinder radius="1" length="nan"/>'))), NotFinite, "length='nan'"),
+        (robot(link(collision("<mesh/>"))), MissingKey, "<mesh> has no filename"),
+        (
+            robot(link(collision('<mesh filename="no.stl"/>'))),
+            MissingFile,
+            "collision[0]: there is no mesh",
+        ),
+        (
+            robot(link(collision('<mesh filename="package://p/no.stl"/>'))),
+            MissingFile,
+            "package_dirs",
+        ),
+        (
+            robot(link(collision('<mesh filename="http://x/no.stl"/>'))),
+            BadSyntax,
+            "http://x/no.stl",
+        ),
+        (
+            robot(link(collision('<mesh filename="upper.stl" scale="0 1 1"/>'))),
+            BadDimension,
+            "upper.stl: scale",
+        ),
+        (
+            robot(link(collision('<mesh filename="upper.stl" scale="1 1"/>'))),
+            BadShape,
+            "1 or 3 numbers",
+        ),
+        (
+            robot(link(collision('<mesh filename="arm.urdf"/>'))),
+            BadSyntax,
+            "unknown mesh format '.urdf'",
+        ),
+    ],
+)
+def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, says):
+    with pytest.raises(fault) as caught:
+        load_urdf(tmp_path, urdf)
+    assert says in str(caught.value)
+    assert str(caught.value).startswith("arm.urdf: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_entities_among_the_elements_are_refused(tmp_path):
+    text = "<!DOCTYPE robot [<!ENTITY b '<link name=\"a\"/>'>]>" + robot("&b;")
+    with pytest.raises(BadSyntax, match="&b; stands for something among the elements"):
+        load_urdf(tmp_path, text)

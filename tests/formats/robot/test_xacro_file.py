@@ -1,0 +1,260 @@
+"""xacro: what it makes, only where it is asked for; what it reads is hashed, what it cannot do is one line."""
+
+import json
+import math
+
+import pytest
+
+from clearance import check, load_case
+from clearance.cli import run
+from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, UnknownKey
+from clearance.formats.files.input_files import InputFiles
+from clearance.formats.robot import request as robot_request
+from clearance.formats.robot.request import RobotRequest
+from clearance.formats.robot.urdf import xacro_file
+from clearance.formats.robot.urdf.robot import load_urdf
+from clearance.formats.robot.urdf.xacro_file import expanded
+from clearance.formats.robot.urdf.xacro_process import ChildWatch, evaluated
+from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
+
+pytestmark = pytest.mark.cold  # xacro runs in a process of its own
+
+CASE = """robot: {{urdf: arm/urdf/arm.urdf.xacro, {0}}}
+scene: {{obstacles: [{{name: post, box: {{size: [0.1, 0.1, 1]}}, pose: {{xyz: [2, 0, 0]}}}}]}}
+trajectory: path.csv
+"""
+
+
+def write_case(folder, keys="xacro: true"):
+    write_package(folder)
+    (folder / "path.csv").write_text("time,shoulder\n0,0\n1,0.5\n")
+    path = folder / "case.yaml"
+    path.write_text(CASE.format(keys))
+    return path
+
+
+def made(path, args=(), package_dirs=()):
+    request = RobotRequest(path, package_dirs, xacro=True, xacro_args=args)
+    return expanded(request, InputFiles(path.parent))
+
+
+def body(inner, name="r"):
+    return f'<robot name="{name}" {NAMESPACE}>{inner}</robot>'
+
+
+def test_it_is_what_the_written_out_urdf_is(tmp_path):
+    case = load_case(write_case(tmp_path, "xacro: true, xacro_args: {size: 0.3}"))
+    base, upper = case.robots[0].robot.bodies
+    assert base.shape.vertices.max() == 0.15 and upper.shape.vertices.max() == 0.1
+    (tmp_path / "arm" / "urdf" / "arm.urdf").write_bytes(
+        made(tmp_path / "arm" / "urdf" / "arm.urdf.xacro", (("size", "0.3"),)).urdf
+    )
+    (tmp_path / "plain.yaml").write_text(CASE.format("name: arm").replace(".xacro", ""))
+    ours, plain = (check(path).record for path in (case, load_case(tmp_path / "plain.yaml")))
+    assert ours.clearances.tobytes() == plain.clearances.tobytes()
+
+
+def test_modules_that_are_not_compiled_yet_are_no_fault(tmp_path, monkeypatch):
+    main = write_package(tmp_path)
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path / "empty"))
+    assert b"<robot" in made(main).urdf
+
+
+def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
+    case = load_case(write_case(tmp_path))
+    searched = [source.path for source in case.sources if not source.is_file]
+    assert searched == ["(lookup) package arm_description"]
+    paths = [source.path for source in case.sources if source.is_file]
+    assert paths == [
+        "arm/urdf/arm.urdf.xacro", "arm/urdf/parts.xacro", "arm/urdf/sizes.yaml", "case.yaml", "path.csv",
+    ]  # fmt: skip
+    (note,) = [note for note in case.robots[0].robot.notes if "xacro evaluated it" in note]
+    assert "the Python in it and in arm/urdf/parts.xacro, arm/urdf/sizes.yaml;" in note
+    assert note.endswith("defaults size:=0.2")
+
+
+def test_it_is_never_evaluated_unasked(tmp_path):
+    path = write_case(tmp_path, "name: arm")
+    with pytest.raises(BadSyntax, match=r"xacro evaluates Python in it: `xacro: true` beside urdf"):
+        load_case(path)
+    (tmp_path / "plain.xacro").write_text("<robot name='a'><link name='b'/></robot>")
+    with pytest.raises(BadSyntax, match="this is a xacro file"):
+        load_urdf(tmp_path / "plain.xacro")
+    (tmp_path / "arm.urdf").write_text(body("<xacro:property name='a' value='1'/><link name='b'/>"))
+    with pytest.raises(BadSyntax, match="this is a xacro file, not a URDF file; xacro evaluates"):
+        load_urdf(tmp_path / "arm.urdf")
+
+
+def test_a_comment_makes_no_xacro_file(tmp_path):
+    box = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    (tmp_path / "a.urdf").write_text(
+        f"<robot name='a'><!-- <xacro:x/> --><link name='b'>{box}</link></robot>"
+    )
+    assert load_urdf(tmp_path / "a.urdf").link_names == ("b",)
+
+
+def test_arguments(tmp_path):
+    path = write_case(tmp_path, "xacro: true, xacro_args: {sise: 1}")
+    with pytest.raises(UnknownKey, match=r"asks for the argument 'sise'; did you mean 'size'\?"):
+        load_case(path)
+    path.write_text(CASE.format("xacro_args: {size: 1}"))
+    with pytest.raises(BadInput, match=r"robot.xacro_args: arguments of xacro, which is not used"):
+        load_case(path)
+    path.write_text(CASE.format("xacro: true, xacro_args: {size: [1]}"))
+    with pytest.raises(BadInput, match=r"robot\.xacro_args\.size"):
+        load_case(path)
+    assert robot_request.checked_args({"a": True, "b": 0.1, "c": "x y"}) == (
+        ("a", "true"), ("b", "0.1"), ("c", "x y"),
+    )  # fmt: skip
+
+
+def test_packages_are_found_by_our_rules(tmp_path, monkeypatch):
+    main = write_package(tmp_path / "src")
+    lone = tmp_path / "lone.xacro"
+    lone.write_text(main.read_text())
+    with pytest.raises(BadSyntax, match=r"there is no package 'arm_description'; looked for it in"):
+        made(lone)
+    found = [made(lone, package_dirs=(tmp_path / "src" / "arm",)).urdf, made(main).urdf]
+    assert len({urdf.partition(b"<robot")[2] for urdf in found}) == 1
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "src" / "arm"))
+    (note,) = [note for note in made(lone).notes if "ROS_PACKAGE_PATH" in note]
+    assert "leads to $(find arm_description) as src/arm" in note
+
+
+def test_a_package_in_a_workspace_is_found_by_its_manifest(tmp_path):
+    main = write_package(tmp_path / "src")
+    lone = tmp_path / "lone.xacro"
+    lone.write_text(main.read_text())
+    assert b'name="upper"' in made(lone, package_dirs=(tmp_path / "src",)).urdf
+
+
+def test_defaults_that_are_paths_are_the_same_on_every_machine(tmp_path):
+    main = MAIN.replace('default="0.2"', 'default="$(find arm_description)/urdf/sizes.yaml"')
+    path = write_package(tmp_path, main.replace("$(arg size)", "${1 if '$(arg size)' else 2}"))
+    assert made(path).notes[0].endswith("defaults size:=sizes.yaml")
+
+
+def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
+    path = write_case(tmp_path, "xacro: true, srdf: arm.srdf.xacro, joints: {state: up}")
+    state = (
+        '<group_state name="up" group="${g}"><joint name="shoulder" value="${pi/4}"/></group_state>'
+    )
+    (tmp_path / "arm.srdf.xacro").write_text(body(f'<xacro:property name="g" value="a"/>{state}'))
+    path.write_text(path.read_text().replace("trajectory: path.csv", "").replace(
+        "pose: {xyz: [2, 0, 0]}", "moves: door.csv"))  # fmt: skip
+    (tmp_path / "door.csv").write_text("time,x,y,z,qx,qy,qz,qw\n0,2,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n")
+    case = load_case(path)
+    assert case.robots[0].fixed_positions == {"shoulder": math.pi / 4}
+    assert "arm.srdf.xacro" in [source.path for source in case.sources]
+    path.write_text(path.read_text().replace("arm/urdf/arm.urdf.xacro, xacro: true", "plain.urdf"))
+    (tmp_path / "plain.urdf").write_bytes(made(tmp_path / "arm/urdf/arm.urdf.xacro").urdf)
+    with pytest.raises(BadSyntax, match="not an SRDF file; `xacro: true` beside urdf"):
+        load_case(path)
+
+
+@pytest.mark.parametrize(
+    ("inner", "fault", "says"),
+    [
+        ('<link name="${nothing}"/>', BadSyntax, "name 'nothing' is not defined when evaluating"),
+        ('<link name="$(arg nothing)"/>', BadSyntax, "Undefined substitution argument nothing"),
+        ('<xacro:include filename="no.xacro"/>', MissingFile, "there is no file 'no.xacro'"),
+        ("<xacro:nothing/>", BadSyntax, "unknown macro name: xacro:nothing"),
+        ("<link>", BadSyntax, "arm.urdf.xacro: line 1: xacro: mismatched tag"),
+        ('<xacro:include filename="arm.urdf.xacro"/>', BadSyntax, "without end"),
+        (
+            '<link name="${(lambda: [c for c in ().__class__.__base__.__subclasses__() if c.__name__ == '
+            "'Popen'][0](['true']))()}\"/>",
+            BadSyntax,
+            "arm.urdf.xacro: xacro: ",
+        ),
+    ],
+)
+def test_what_stops_it_is_told_in_one_line(tmp_path, inner, fault, says):
+    with pytest.raises(fault) as caught:
+        made(write_package(tmp_path, body(inner)))
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_the_place_is_the_included_file(tmp_path):
+    path = write_package(tmp_path, parts=PARTS.replace("</robot>", "\n\n"))
+    with pytest.raises(
+        BadSyntax, match=r"^arm.urdf.xacro: parts.xacro: line 7: xacro: no element found$"
+    ):
+        made(path)
+
+
+def test_an_entity_is_refused(tmp_path):
+    document = '<!DOCTYPE robot [<!ENTITY e "x">]>' + body('<link name="&e;"/>')
+    with pytest.raises(BadSyntax, match="an entity is declared"):
+        made(write_package(tmp_path, document))
+
+
+@pytest.mark.slow  # the least limit that there is, one second
+def test_work_without_end_is_ended(tmp_path, monkeypatch):
+    monkeypatch.setattr(xacro_file, "MOST_WORK", 1)
+    path = write_package(
+        tmp_path, body('<link name="${len([i for i in range(10**12) if 0 > i])}"/>')
+    )
+    with pytest.raises(BadSyntax, match="xacro came to no end"):
+        made(path)
+
+
+def test_more_than_reading_is_refused():
+    watch = ChildWatch()
+    watch.on = True
+    watch("open", ("/a/b.xacro", "r", 0))
+    watch("open", ("/a/b.pyc", "rb", 0))
+    assert [*watch.opened] == ["/a/b.xacro"]
+    for event, arguments in [
+        ("socket.connect", (None, None)),
+        ("subprocess.Popen", ("true", [], None, None)),
+        ("open", ("/a/b", "w", 0)),
+        ("open", ("/a/b", None, 1)),
+        ("os.remove", ("/a/b", -1)),
+    ]:
+        with pytest.raises(Exception, match="refused"):
+            watch(event, arguments)
+
+
+def test_a_file_cut_off_anywhere_is_refused(tmp_path):
+    macro = (
+        f'<a {NAMESPACE}><xacro:macro name="m" params="n"><link name="${{n}}"/></xacro:macro></a>'
+    )
+    main = body('<xacro:include filename="b"/><xacro:m n="${1+1}"/>')
+    path, other = tmp_path / "a", tmp_path / "b"
+    for texts in [(main, macro[:i]) for i in range(len(macro))] + [
+        (main[:i], macro) for i in range(len(main) + 1)
+    ]:
+        path.write_text(texts[0])
+        other.write_text(texts[1])
+        answer = evaluated(path, {}, ChildWatch())
+        if texts == (main, macro):
+            assert b'<link name="2"/>' in answer["urdf"].encode()
+        else:
+            assert answer["problem"] and answer["file"]
+
+
+def test_a_file_cut_off_is_one_line_of_ours(tmp_path):
+    for end in range(0, len(MAIN) - 2, 240):
+        with pytest.raises(ClearanceError) as caught:
+            made(write_package(tmp_path, MAIN[:end]))
+        assert "\n" not in str(caught.value)
+
+
+def test_the_command_line_asks_for_it(tmp_path, capsys):
+    path = str(write_package(tmp_path))
+    assert run(["srdf", "make", path, "--xacro", "--xacro-arg", "size:=0.5"]) == 0
+    assert 'link1="base"' in capsys.readouterr().out
+    assert run(["srdf", "make", path]) == 2
+    assert "--xacro, allows that" in capsys.readouterr().err
+    assert run(["srdf", "make", path, "--xacro-arg", "size:=0.5"]) == 2
+    assert "--xacro-arg says nothing without --xacro" in capsys.readouterr().err
+    assert run(["srdf", "make", path, "--xacro", "--xacro-arg", "size"]) == 2
+    assert "'size' is not an argument; name:=value" in capsys.readouterr().err
+
+
+def test_the_summary_has_its_files(tmp_path, capsys):
+    assert run(["check", str(write_case(tmp_path)), "--json"]) == 0
+    inputs = json.loads(capsys.readouterr().out)["inputs"]
+    assert "arm/urdf/parts.xacro" in json.dumps(inputs)

@@ -1,0 +1,300 @@
+"""MoveIt's scenes: messages, robowflex's lists and `.scene` text; what they are, and what is told of the rest."""
+
+import re
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, UnknownLink
+from clearance.world.notice import Severity
+from clearance.world.pairs import measured_pairs
+from clearance.world.rules import matches
+from tests.formats.making import CUBE, cube_stl
+from tests.formats.making_case import CASE, load_small
+from tests.formats.making_cell import load_cell
+from tests.formats.making_moveit import (
+    FIRST,
+    LISTS,
+    MESSAGE,
+    NAMED,
+    SECOND,
+    content_of,
+    obstacles_of,
+)
+
+
+def place(obstacle):
+    return obstacle.world_from_body[:3, 3].tolist()
+
+
+def test_objects_of_a_message_stand_where_they_are(tmp_path):
+    made = obstacles_of(tmp_path, MESSAGE)
+    assert list(made) == ["post", "tool"] and place(made["post"]) == [1, 2, 0]
+    box = cl.box((0.1, 0.1, 1.0))
+    assert np.array_equal(made["post"].body.shape.vertices, box.vertices)
+    assert made["tool"].mount.on == "tip" and made["tool"].mount.pose[2, 3] == 0.1
+
+
+def test_lists_are_read_too_and_frames_followed(tmp_path):
+    made = obstacles_of(tmp_path, LISTS)
+    assert {name: place(one) for name, one in made.items()} == {
+        "can/0": [0.5, 0, 4],
+        "can/1": [0.25, 0, 4],
+    }
+    can = cl.cylinder(radius=0.03, length=0.14)
+    assert np.array_equal(made["can/0"].body.shape.vertices, can.vertices)
+    assert np.array_equal(made["can/1"].world_from_body[:2, :2], -np.eye(2))
+    notes = content_of(tmp_path, LISTS).notes
+    assert notes == ("cell.yaml: frame 'base_link' is taken for the world of the case",)
+
+
+def test_what_may_touch_and_padding_go_into_the_case(tmp_path):
+    case = load_small(tmp_path, NAMED, cell__yaml=MESSAGE)
+    rows = [row.between for row in case.allow]
+    assert rows == [("base", "post")]
+    assert case.robots[0].padding == {"upper": 0.01}
+    told = "\n".join(case.notes)
+    for said in (
+        "the robot's state is not taken",
+        "1 pairs of the scene's file may touch",
+        "1 allowed pairs of the scene's file are left out: of two links",
+        "bodies that are not there are left out: ghost",
+        "padding of the scene's file is a distance",
+        "padding of links that are not there is left out: 'ghost'",
+    ):
+        assert said in told
+    assert cl.check(case).worst["clearance"] == pytest.approx(0.05, abs=0.02)
+
+
+def test_what_a_robot_holds_is_carried_all_the_time(tmp_path):
+    message = MESSAGE.replace("touch_links: [upper]", "touch_links: [upper, finger_of_another]")
+    case = load_small(tmp_path, NAMED, cell__yaml=message)
+    (carry,) = case.carries
+    assert (carry.part, carry.by, carry.touch) == ("tool", "tip", ("upper",))
+    assert (carry.window.start, carry.window.end) == (0.0, np.inf)
+    told = "\n".join(case.notes)
+    assert "attached objects of the scene's file are carried all the time: tool by tip" in told
+    assert "touch_links that are not there are left out: finger_of_another" in told
+    apart = {(one.link, one.obstacle) for one in cl.check(case).pair_minima}
+    assert apart == {("base", "tool"), ("post", "tool"), ("upper", "post")}
+
+
+def test_what_the_case_carries_is_left_to_it(tmp_path):
+    text = NAMED + "carry: [{part: tool, by: tip, from: 0.5, touch: ['*']}]\n"
+    (carry,) = load_small(tmp_path, text, cell__yaml=MESSAGE).carries
+    assert carry.window.start == 0.5 and carry.touch == ("*",)
+
+
+def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
+    """One cell, of log odds -0.405 and +0.847: free, and occupied."""
+    for bytes_, found in (([31, -103, -49, -66, 0], 0), ([220, 217, 88, 63, 0], 1)):
+        map_ = (
+            f"octomap: {{octomap: {{id: OcTree, resolution: 0.1, binary: false, data: {bytes_}}}}}"
+        )
+        content = content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
+        names = [row["name"] for row in content.scene["obstacles"]]
+        assert names.count("<octomap>") == found
+        told = any("no cell of the octomap is occupied" in note for note in content.notes)
+        assert told == (not found)
+
+
+def test_subframes_and_the_place_of_the_robot_are_said_to_be_passed_over(tmp_path):
+    document = LISTS.replace("  - id: can\n", "  - id: can\n    subframe_names: [a, b]\n") + (
+        "robot_state: {multi_dof_joint_state: {joint_names: [virtual_joint]}}\n"
+    )
+    notes = content_of(tmp_path, document).notes
+    assert (
+        "cell.yaml: 2 subframes of objects are passed over: nothing here is given in them" in notes
+    )
+    assert any("the robot's state is not taken" in note for note in notes)
+
+
+def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path):
+    robots = "".join(
+        f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
+    )
+    text = f"robots:\n{robots}scene: cell.yaml\n"
+    with pytest.raises(BadInput, match="nothing is called 'tip'; valid: left/base, left/tip"):
+        load_small(tmp_path, text, cell__yaml=MESSAGE)
+
+
+def test_the_padding_of_the_case_goes_before(tmp_path):
+    text = NAMED.replace("arm.urdf}", 'arm.urdf, padding: {"*": 0.02}}')
+    case = load_small(tmp_path, text, cell__yaml=MESSAGE)
+    assert case.robots[0].padding["upper"] == 0.02
+
+
+def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
+    document = LISTS.replace("orientation: [0, 0, 1, 0]", "orientation: [0.707, 0, 0, 0.707]")
+    turn = obstacles_of(tmp_path, document)["can/1"].world_from_body[:3, :3]
+    assert np.abs(turn - [[1, 0, 0], [0, 0, -1], [0, 1, 0]]).max() < 1e-15
+    assert content_of(tmp_path, document).notes[-1] == (
+        "cell.yaml: 1 quaternion is rounded to three digits or so and made of length 1"
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("n", "more", "told"),
+    [(200, "#" * 200_000, "or 30000 shapes"), (1000, "", "the aliases repeat too much")],
+)
+def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path, n, more, told):
+    shapes, objects = ", ".join(["*s"] * n), ", ".join(["*o"] * n)
+    document = f"""robot_model_name: &s {{type: 2, dimensions: [1]}}
+name: &o {{id: a, primitives: [{shapes}]}}
+world: {{collision_objects: [{objects}]}}
+{more}"""
+    with pytest.raises(BadInput, match=told):
+        content_of(tmp_path, document)
+
+
+def test_an_octomap_has_a_pose_for_its_origin(tmp_path):
+    map_ = "octomap: {origin: 1, octomap: {id: OcTree, resolution: 0.1, binary: false, data: [1]}}"
+    with pytest.raises(BadInput, match=r"octomap: origin: 1 is given; a mapping is needed"):
+        content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
+
+
+def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
+    matrix = """allowed_collision_matrix:
+  entry_names: [base, upper]
+  entry_values: [[true, true], [true, false]]
+  default_entry_names: [base, upper, tip]
+  default_entry_values: [true, true, false]
+"""
+    assert content_of(tmp_path, matrix + LISTS).allow == (("base", "upper"), ("base", "*"))
+
+
+def test_rows_of_an_object_of_several_shapes_are_of_them_all(tmp_path):
+    matrix = (
+        "allowed_collision_matrix: {entry_names: [can, base], entry_values: [[1, 1], [1, 1]]}\n"
+    )
+    assert content_of(tmp_path, matrix + LISTS).allow == (("can/*", "base"),)
+
+
+BALL = "{id: a, header: {frame_id: %s}, primitives: [{type: 2, dimensions: [1]}]}"
+FRAMED = f"world: {{collision_objects: [{BALL}]}}\n"
+
+
+@pytest.mark.parametrize(
+    ("frame", "base", "is_told"),
+    [
+        ("base", "{}", False),
+        ("world", "{xyz: [0, 0, 2]}", False),
+        ("base", "{xyz: [0, 0, 2]}", True),
+        ("upper", "{}", True),
+    ],
+)
+def test_a_frame_that_is_a_link_elsewhere_is_suspect(tmp_path, frame, base, is_told):
+    given = NAMED.replace("urdf: arm.urdf", f"urdf: arm.urdf, base: {base}")
+    case = load_small(tmp_path, given, cell__yaml=FRAMED % frame)
+    told = [(one.severity, one.kind) for one in case.notices if f"link {frame!r}" in one.text]
+    assert told == [(Severity.SUSPECT, "frame")] * is_told
+
+
+@pytest.mark.parametrize("frame", ["bse", "workshop"])
+def test_a_frame_that_is_nowhere_is_refused_with_the_nearest_name(tmp_path, frame):
+    nearest = {"bse": "did you mean 'base'?", "workshop": "valid: base, tip, upper, world"}[frame]
+    told = f"frame: frame '{frame}' is no link; {re.escape(nearest)}"
+    with pytest.raises(UnknownLink, match=rf"scene: cell\.yaml: {told}"):
+        load_small(tmp_path, NAMED, cell__yaml=FRAMED % frame)
+    own = f"obstacles: [{{name: post, box: {{size: [1, 1, 1]}}}}]\nframe: {frame}\n"
+    with pytest.raises(UnknownLink, match=told):
+        load_small(tmp_path, NAMED, cell__yaml=own)
+    with pytest.raises(UnknownLink, match=rf"case\.yaml: scene: {told}"):
+        load_small(tmp_path, CASE.replace("scene:\n", f"scene:\n  frame: {frame}\n"))
+
+
+def test_a_frame_is_a_link_of_any_robot_with_its_name_or_without(tmp_path):
+    frames = {"left/base": 0, "right/base": 1, "base": 1, "left/upper": 1}
+    for frame, n_elsewhere in frames.items():
+        case = load_cell(tmp_path, "scene:\n", f"scene:\n  frame: {frame}\n")
+        assert [one.kind for one in case.notices] == ["frame"] * n_elsewhere
+
+
+def objects(**n_shapes):
+    """A world of spheres on one spot, by name how many."""
+    ball = "{type: 2, dimensions: [0.05]}"
+    rows = [
+        f'  - {{id: "{name.replace("_", "/")}", primitives: [{", ".join([ball] * n)}]}}\n'
+        for name, n in n_shapes.items()
+    ]
+    return "world:\n  collision_objects:\n" + "".join(rows)
+
+
+def allowing(one, other):
+    """A matrix in which two names may touch."""
+    row = f'{{entry_names: ["{one}", "{other}"], entry_values: [[0, 1], [1, 0]]}}'
+    return f"allowed_collision_matrix: {row}\n"
+
+
+def test_an_object_named_below_another_is_no_shape_of_it(tmp_path):
+    both = allowing("can", "base") + objects(can=2, can_lid=1)
+    assert content_of(tmp_path, both).allow == (("can/0", "base"), ("can/1", "base"))
+    gone = allowing("can", "base") + objects(can_lid=1)
+    assert content_of(tmp_path, gone).allow == (("can", "base"),)
+
+
+@pytest.mark.parametrize("name", ["po*", "po[st]", "pos?"])
+def test_wildcards_in_names_of_a_matrix_or_of_touch_links_are_letters(tmp_path, name):
+    document = allowing(name, "base") + objects(post=1, own=1).replace('"own"', f'"{name}"')
+    (tmp_path / "cell.yaml").write_text(document)
+    case = load_small(tmp_path, NAMED)
+    allowed = {obstacle for link, obstacle in _left_out(case) if link == "base"}
+    assert allowed == {name}
+    held = MESSAGE.replace("touch_links: [upper]", f'touch_links: ["{name}"]')
+    assert all(
+        not matches("post", one) for part in content_of(tmp_path, held).held for one in part.touch
+    )
+
+
+def _left_out(case):
+    return {(out.link, out.obstacle) for out in measured_pairs(case)[1]}
+
+
+def test_a_name_that_has_two_rows_in_a_matrix_is_refused(tmp_path):
+    with pytest.raises(BadInput, match="two entry_names have the name 'base'"):
+        content_of(tmp_path, allowing("base", "base") + LISTS)
+
+
+def test_meshes_are_taken_from_the_message_and_from_files(tmp_path):
+    (tmp_path / "cube.stl").write_bytes(cube_stl())
+    corners = "[[0, 0, 0], {x: 1.5}, {y: 1}, {z: 1}]"
+    faces = "[[0, 2, 1], {vertex_indices: [0, 1, 3]}, [0, 3, 2], [1, 2, 3]]"
+    document = f"""world:
+  collision_objects:
+  - {{id: inline, meshes: [{{vertices: {corners}, triangles: {faces}}}]}}
+  - {{id: file, meshes: [{{resource: cube.stl, dimensions: [1, 2, 3]}}], mesh_poses: [{{position: [1, 0, 0]}}]}}
+"""
+    made = obstacles_of(tmp_path, document)
+    shape = made["inline"].body.shape
+    assert shape.closed and shape.vertices.max(axis=0).tolist() == [1.5, 1, 1]
+    assert sorted(made["file"].body.shape.vertices.tolist()) == sorted((CUBE * [1, 2, 3]).tolist())
+    case = load_small(tmp_path, NAMED, cell__yaml=document)
+    assert [one.path for one in case.sources if "mesh0" in one.path] == []
+
+
+def test_text_of_the_first_version(tmp_path):
+    made = obstacles_of(tmp_path, FIRST, "cell.scene")
+    assert {name: place(one) for name, one in made.items()} == {
+        "a post": [0, 2, 0],
+        "cube/0": [0, 2, 0],
+        "cube/1": [0, 0, 0],
+    }
+    assert sorted(made["cube/0"].body.shape.vertices.tolist()) == sorted(CUBE.tolist())
+    cylinder = cl.cylinder(radius=0.5, length=2.0)
+    assert np.array_equal(made["cube/1"].body.shape.vertices, cylinder.vertices)
+
+
+def test_text_of_the_second_version_has_poses_of_objects_and_subframes(tmp_path):
+    made = obstacles_of(tmp_path, SECOND, "cell.scene")
+    assert {name: place(one) for name, one in made.items()} == {
+        "post": [1, 2, 0],
+        "ball": [0, 2, 5],
+    }
+
+
+def test_a_case_names_it_as_its_scene(tmp_path):
+    text = NAMED.replace("cell.yaml", "cell.scene")
+    case = load_small(tmp_path, text, cell__scene=SECOND)
+    assert [one.name for one in case.obstacles] == ["post", "ball"]

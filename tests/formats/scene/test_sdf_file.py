@@ -1,0 +1,324 @@
+"""SDF worlds and models: which solids they are, where frames and includes put them, and what is told."""
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.geometry.pose import pose_from_rpy
+from clearance.world.notice import Severity
+from tests.formats.making import CASE, CUBE, cube_stl
+from tests.formats.making_case import load_small
+from tests.formats.making_sdf import (
+    BOX,
+    at,
+    collision,
+    content_of,
+    include,
+    library,
+    link,
+    model,
+    obstacles_of,
+    places_of,
+    pose,
+    sdf,
+    world,
+)
+
+SHAPES = [
+    (BOX, cl.box((0.2, 0.4, 0.6))),
+    ("<sphere><radius>0.3</radius></sphere>", cl.sphere(0.3)),
+    (
+        "<cylinder><radius>0.3</radius><length>2</length></cylinder>",
+        cl.cylinder(radius=0.3, length=2.0),
+    ),
+    (
+        "<capsule><radius>0.3</radius><length>2</length></capsule>",
+        cl.capsule(radius=0.3, length=2.0),
+    ),
+    ("<ellipsoid><radii>0.3 0.2 0.1</radii></ellipsoid>", cl.ellipsoid((0.3, 0.2, 0.1))),
+]
+
+
+@pytest.mark.parametrize(("element", "shape"), SHAPES)
+def test_a_shape_is_what_python_makes(tmp_path, element, shape):
+    (made,) = obstacles_of(tmp_path, sdf(model(link(collision(element))))).values()
+    assert made.name == "m/l/c" and np.array_equal(made.body.shape.vertices, shape.vertices)
+
+
+def test_a_mesh_is_found_beside_the_file_and_scaled(tmp_path):
+    (tmp_path / "cube.stl").write_bytes(cube_stl())
+    mesh = "<mesh><uri>cube.stl</uri><scale>1 2 -3</scale></mesh>"
+    (made,) = obstacles_of(tmp_path, sdf(model(link(collision(mesh))))).values()
+    corners = sorted(made.body.shape.vertices.tolist())
+    assert corners == sorted((CUBE * [1, 2, -3]).tolist())
+
+
+@pytest.mark.parametrize("normal", ["0 0 1", "0 0 -2", "1 0 0", "0 -1 0", "1 1 1"])
+def test_a_plane_is_a_box_below_it(tmp_path, normal):
+    plane = f"<plane><normal>{normal}</normal><size>1 1</size></plane>"
+    document = sdf(model(link(collision(plane))))
+    (made,) = obstacles_of(tmp_path, document).values()
+    turn = made.world_from_body
+    unit = np.array(normal.split(), dtype=float)
+    along = (made.body.shape.vertices @ turn[:3, :3].T + turn[:3, 3]) @ unit / np.linalg.norm(unit)
+    assert along.max() == pytest.approx(0, abs=1e-13)
+    assert along.min() == pytest.approx(-1, abs=1e-13)
+    assert any("is a box 1 m deep" in note for note in content_of(tmp_path, document).notes)
+
+
+def test_poses_are_relative_to_what_they_say(tmp_path):
+    inner = model(at(100), link(at(1000), collision()), name="in")
+    frame = f'<frame name="f" attached_to="b">{at(5)}</frame>'
+    joint = f'<joint name="j" type="fixed"><parent>a</parent><child>b</child>{at(7)}</joint>'
+    parts = [
+        link(at(1), collision(BOX, at(10)), name="a"),
+        link(at(2, "a"), collision(BOX, at(20, "__model__"), name="d"), collision(), name="b"),
+        link(at(0.5, "f"), collision(), name="c"),
+        link(at(0.25, "j"), collision(), name="e"),
+        link(at(1, "in::l"), collision(), name="g"),
+    ]
+    places = places_of(tmp_path, sdf(world(model(at(10000), *parts, inner, frame, joint))))
+    assert places == {
+        "m/a/c": 10011,
+        "m/b/d": 10020,
+        "m/b/c": 10003,
+        "m/c/c": 10008.5,
+        "m/e/c": 10010.25,
+        "m/g/c": 11101,
+        "m/in/l/c": 11100,
+    }
+
+
+def test_a_placement_frame_is_what_the_pose_is_of(tmp_path):
+    placed = model(at(10), link(at(3), collision()), name="m", attributes=' placement_frame="l"')
+    other = model(at(1, "m"), link(collision()), name="n")
+    assert places_of(tmp_path, sdf(world(placed, other))) == {"m/l/c": 10, "n/l/c": 8}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pose("1 2 3 0.1 0.2 0.3"),
+        pose(
+            "1 2 3 5.729577951308232 11.459155902616464 17.188733853924695", "", ' degrees="true"'
+        ),
+        pose(
+            "1 2 3 0.034270798 0.106020511 0.143572175 0.983347443",
+            "",
+            ' rotation_format="quat_xyzw"',
+        ),
+    ],
+)
+def test_rotations_are_read_as_they_are_written(tmp_path, text):
+    (made,) = obstacles_of(tmp_path, sdf(model(text, link(collision())))).values()
+    expected = pose_from_rpy([1, 2, 3], [0.1, 0.2, 0.3])
+    assert np.abs(made.world_from_body - expected).max() < 3e-9
+
+
+def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(tmp_path):
+    text = pose("1 2 3 0 0 0.707 0.707", "", ' rotation_format="quat_xyzw"')
+    document = sdf(model(text, link(collision())))
+    (made,) = obstacles_of(tmp_path, document).values()
+    assert np.allclose(made.world_from_body[:2, :2], [[0, -1], [1, 0]], atol=1e-15)
+    told = [note for note in content_of(tmp_path, document).notes if "rounded" in note]
+    assert len(told) == 1 and "1 quaternion is rounded to three digits" in told[0]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    ["", "<sphere><radius>0</radius></sphere>", "<box><size>0 0.0 0</size></box>"],
+)
+def test_collisions_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path, shape):
+    document = sdf(model(link(collision(), collision(shape, name="d"), "<collision name='e'/>")))
+    assert [*obstacles_of(tmp_path, document)] == ["m/l/c"]
+    (notice,) = content_of(tmp_path, document).notices
+    assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
+    assert notice.text == "collisions without a size, not measured: 'm/l/d', 'm/l/e'"
+
+
+def test_included_models_are_found_and_placed(tmp_path):
+    library(tmp_path / "models")
+    library(tmp_path / "models", "wall", config=False)
+    document = sdf(
+        world(
+            include(),
+            include("<name>two</name>", at(5)),
+            include(uri="model://wall"),
+            include(at(7), "<name>three</name>", uri="models/wall/model.sdf"),
+        )
+    )
+    places = places_of(tmp_path, document, [tmp_path / "models"])
+    assert places == {"post/l/c": 1, "two/l/c": 5, "wall/l/c": 1, "three/l/c": 7}
+    assert content_of(tmp_path, document, [tmp_path / "models"]).notes == ()
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "file://models/post",
+        "file://post",
+        "file://{}/models/post",
+        "file://localhost{}/models/post",
+    ],
+)
+def test_a_model_and_a_mesh_may_be_named_as_a_file(tmp_path, uri):
+    library(tmp_path / "models")
+    (tmp_path / "models" / "cube.stl").write_bytes(cube_stl())
+    mesh = link(
+        collision(f"<mesh><uri>{uri.format(tmp_path).replace('post', 'cube.stl')}</uri></mesh>")
+    )
+    document = sdf(world(include(uri=uri.format(tmp_path)), model(at(2), mesh)))
+    places = places_of(tmp_path, document, [tmp_path / "models"])
+    assert places == {"post/l/c": 1, "m/l/c": 2}
+
+
+def test_a_merged_model_gives_its_links_to_what_includes_it(tmp_path):
+    library(tmp_path)
+    document = sdf(
+        model(include(attributes=' merge="true"'), link(at(1, "l"), collision(), name="k"))
+    )
+    assert places_of(tmp_path, document) == {"m/l/c": 1, "m/k/c": 2}
+
+
+@pytest.mark.parametrize("variable", ["GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"])
+def test_a_variable_that_leads_to_a_model_is_named(tmp_path, monkeypatch, variable):
+    (tmp_path / "a").mkdir()
+    library(tmp_path / "b")
+    monkeypatch.setenv(variable, f"{tmp_path}/none:{tmp_path}/b")
+    content = content_of(tmp_path / "a", sdf(world(include())))
+    assert content.notes == (f"${variable} leads to model://post as ../b/post/model.sdf",)
+
+
+def test_names_are_made_unique_and_shown(tmp_path):
+    library(tmp_path)
+    content = content_of(tmp_path, sdf(world(include(), include(at(3)))))
+    names = [row["name"] for row in content.scene["obstacles"]]
+    assert names == ["post/l/c", "post/l/c_2"]
+    assert content.notes == ("cell.sdf: names that are there twice are numbered: 'post/l/c_2'",)
+    assert places_of(tmp_path, sdf(world(include(), include(at(3)))))["post/l/c_2"] == 3
+
+
+def test_what_is_left_out_is_told(tmp_path):
+    seen = f'<visual name="v"><geometry>{BOX}</geometry></visual>'
+    joint = '<joint name="j" type="revolute"><parent>a</parent><child>b</child></joint>'
+    document = sdf(
+        world(
+            '<light name="sun"/>',
+            include(uri="model://sun"),
+            model(link(seen, name="a"), link(seen, collision(), name="b"), joint, "<plugin/>"),
+        )
+    )
+    content = content_of(tmp_path, document)
+    assert content.notes == (
+        "cell.sdf: left out: 2 <visual>, 1 <light>, 1 <plugin>",
+        "cell.sdf: joints stand at zero, as the links are placed: 1 that could move",
+        "cell.sdf: model://sun is not there: taken for the usual light and left out",
+    )
+    (notice,) = content.notices
+    assert notice.severity is Severity.WARNING and "not measured: 'm/a'" in notice.text
+
+
+def test_poses_that_look_like_degrees_are_suspect_and_those_of_plugins_passed_over(tmp_path):
+    other = f'<plugin name="p">{link(pose("a b c d e f"))}</plugin>'
+    document = sdf(model(pose("0 0 0 0 0 90"), link(collision()), other))
+    (notice,) = content_of(tmp_path, document).notices
+    assert notice.severity is Severity.SUSPECT and "model 'm' has an angle of 90 rad" in notice.text
+
+
+def state(text):
+    return f'<state world_name="w"><model name="m">{text}</model></state>'
+
+
+def test_a_saved_state_must_be_as_the_world_is_placed(tmp_path):
+    placed = model(at(1), link(at(1), collision()))
+    here = state(at("1.00001") + f'<link name="l">{at(2)}</link>')
+    assert places_of(tmp_path, sdf(world(placed, here))) == {"m/l/c": 2}
+    with pytest.raises(BadInput, match="state: model 'm': link 'l': it was saved elsewhere"):
+        content_of(tmp_path, sdf(world(placed, state(f'<link name="l">{at(3)}</link>'))))
+
+
+NAMED = CASE.partition("scene:")[0] + "scene: cell.sdf\ntrajectory: path.csv\n"
+
+
+def test_a_case_names_it_as_its_scene(tmp_path):
+    post = sdf(model(at(2), link(collision("<box><size>0.1 0.1 1</size></box>")), name="post"))
+    case = load_small(tmp_path, NAMED, cell__sdf=post)
+    assert cl.check(case).worst["clearance"] == cl.check(load_small(tmp_path)).worst["clearance"]
+    assert [one.path for one in case.sources] == [
+        "arm.urdf",
+        "case.yaml",
+        "cell.sdf",
+        "path.csv",
+        "upper.stl",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("document", "says"),
+    [
+        (sdf(version="1.12"), "sdf: version 1.12 is given; 1.11 or older is read"),
+        (sdf(version="new"), "sdf: version='new'"),
+        ("<robot/>", "the root element is <robot>"),
+        ('<!DOCTYPE x [<!ENTITY a "b">]>' + "<sdf/>", "a document type or an entity"),
+        (sdf(world(), world()), "2 worlds are given"),
+        (sdf("<model/>"), "model None: <model> has no name"),
+        (sdf(model(link(collision("<box/><sphere/>")))), "geometry: <box>, <sphere> is given"),
+        (
+            sdf(model(link(collision("<heightmap/>")))),
+            "<heightmap>: it is not read: its surface is a picture",
+        ),
+        (sdf(model(link(collision("<bx/>")))), "<bx>: it is not read; did you mean 'box'"),
+        (
+            sdf(model(link(collision("<box><size>1 2</size></box>")))),
+            "model 'm': link 'l': collision 'c': <box>: <size> is '1 2'; 3 numbers are needed",
+        ),
+        (sdf(model(link(collision("<box><size>1 2 0</size></box>")))), "<size> is 1 2 0; above 0"),
+        (sdf(model(link(collision("<sphere/>")))), "<sphere> has no <radius>"),
+        (
+            sdf(model(link(collision("<sphere><radius>nan</radius></sphere>")))),
+            "finite numbers are needed",
+        ),
+        (
+            sdf(model(link(collision("<mesh><uri>a.stl</uri><submesh/></mesh>")))),
+            "a <submesh> is asked for",
+        ),
+        (sdf(model(link(pose("0 0 0"), collision()))), "<pose> is '0 0 0'"),
+        (sdf(model(link(at(1, "ll"), collision()))), "no frame 'll'; did you mean 'l'?"),
+        (
+            sdf(model(link(at(1, "k")), link(at(1, "l"), collision(), name="k"))),
+            "is relative to itself",
+        ),
+        (sdf(world("<population/>")), "<population> places models at random"),
+        (sdf(world(include(uri="https://x/y"))), "nothing is fetched"),
+        (sdf(world("<include/>")), "<include> has no <uri>"),
+        (sdf(world(include(uri="cell.sdf"))), "cell.sdf includes itself"),
+        (sdf(model(*["<model name='x'>"] * 60, *["</model>"] * 60)), "40 deep in each other"),
+    ],
+)
+def test_a_fault_is_one_line_with_its_place(tmp_path, document, says):
+    with pytest.raises(BadInput) as caught:
+        content_of(tmp_path, document)
+    told = str(caught.value)
+    assert told.startswith("cell.sdf: ") and says in told and "\n" not in told
+
+
+@pytest.mark.parametrize("uri", ["model://none", "none", "a" * 5000, "model://" + "b" * 300])
+def test_what_is_not_there_is_named(tmp_path, uri):
+    with pytest.raises(MissingFile, match="there is no model"):
+        content_of(tmp_path, sdf(world(include(uri=uri))))
+
+
+@pytest.mark.slow
+def test_files_that_include_each_other_many_times_end(tmp_path):
+    for i in range(12):
+        parts = [include(f"<name>n{j}</name>", uri=f"model://m{i + 1}") for j in range(10)]
+        library(tmp_path, f"m{i}", sdf(model(*parts)), config=False)
+    library(tmp_path, "m12", config=False)
+    with pytest.raises(BadInput, match=r"more than 20000 collisions|elements in all"):
+        content_of(tmp_path, sdf(world(include(uri="model://m0"))))
+
+
+def test_sdf_of_another_name_is_told_what_it_is(tmp_path):
+    with pytest.raises(BadSyntax, match=r"call it \.sdf and name it in a case file: scene: cell"):
+        load_small(tmp_path, NAMED.replace("cell.sdf", "cell.yaml"), cell__yaml=sdf(world()))

@@ -1,0 +1,160 @@
+"""Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
+
+The kinds are the rows of `scripts/bench/fuzz_seeds.py`; `fuzz_readers.py` tries thousands of files of each. Here
+are some that hypothesis draws and makes small again, and cuts; no suffix in a table of readers is without a row.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import sys
+import tracemalloc
+import warnings
+from pathlib import Path, PurePath
+from random import Random
+
+import mujoco  # noqa: F401 - its import starts a process, so it comes before any test
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+import clearance.formats
+from clearance.formats.motion.bag_files import SUFFIXES
+from clearance.formats.robot.robot_element import XACRO
+from scripts.bench.fuzz_outcome import not_finite, outcome
+from scripts.bench.fuzz_seeds import readers
+from scripts.bench.fuzz_trees import yaml_damaged
+from tests.examples import share_of, some_slow
+
+READERS = readers()
+SLOW = {
+    "bag bag", "bag mcap", "bag mcap states", "bag metadata", "bag rosbag2 sqlite3", "case", "controllers",
+    "joint limits", "octomap message", "PlanningScene", "SRDF",
+}  # fmt: skip
+KINDS = [
+    *some_slow([kind for kind in READERS if kind != "STEP"], SLOW),
+    pytest.param("STEP", marks=[pytest.mark.cold, pytest.mark.slow]),  # read by another process
+]
+
+MOST_MEMORY = 24_000_000
+"""[bytes] What a damaged file of some kilobytes may take while it is read, at its peak."""
+
+
+def soundly(kind: str, data: bytes, folder: Path) -> str:
+    """What comes of a file, in which a warning is a fault."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return outcome(READERS[kind], data, folder)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_of_another_structure_are_read_or_refused(kind, tmp_path, capfd):
+    reader = READERS[kind]
+    n_examples = share_of(4 if kind == "STEP" else 25)
+
+    @settings(
+        max_examples=n_examples,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(st.builds(reader.damage, st.just(reader.valid), st.randoms(use_true_random=False)))
+    def holds(data):
+        assert soundly(kind, data, tmp_path) in ("read", "refused")
+
+    holds()
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_cut_off_are_read_or_refused(kind, tmp_path, capfd):
+    valid = READERS[kind].valid
+    ends = range(0, len(valid), max(1, len(valid) // share_of(3 if kind == "STEP" else 60)))
+    said = {end: soundly(kind, valid[:end], tmp_path) for end in ends}
+    assert {end: one for end, one in said.items() if one not in ("read", "refused")} == {}
+    assert "refused" in said.values()
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("kind", KINDS[:-1])
+def test_little_memory_is_taken(kind, tmp_path):
+    reader = READERS[kind]
+    reader.read(reader.valid, tmp_path)
+    for seed in range(3):
+        data = reader.damage(reader.valid, Random(seed))
+        tracemalloc.start()
+        soundly(kind, data, tmp_path)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        assert peak < MOST_MEMORY + 1000 * len(data)
+
+
+def suffixes() -> dict[str, list[str]]:
+    """The suffixes in each table of readers, by the module that begins with it."""
+    found = {"formats.robot.robot_element": [XACRO], "formats.motion.rosbag_file": [*SUFFIXES]}
+    seen: list[object] = []
+    for module in pkgutil.walk_packages(clearance.formats.__path__, "clearance.formats."):
+        held = vars(importlib.import_module(module.name))
+        for table in (value for key, value in held.items() if key.endswith("READERS")):
+            keys = [key for key in table if isinstance(key, str) and key.startswith(".")]
+            if keys and not any(table is one for one in seen):
+                seen.append(table)
+                found[module.name.removeprefix("clearance.")] = keys
+    return found
+
+
+def test_every_suffix_in_a_table_of_readers_has_a_row():
+    rows: dict[str, set[str]] = {}
+    for reader in READERS.values():
+        rows.setdefault(reader.table, set()).update({PurePath(reader.name).suffix, *reader.also})
+    assert {
+        name: sorted(set(keys) - rows.get(name, set())) for name, keys in suffixes().items()
+    } == {name: [] for name in suffixes()}
+    assert {name for name in rows if name} <= set(suffixes())
+
+
+@pytest.mark.parametrize(
+    ("kind", "suffix"),
+    [
+        (kind, suffix)
+        for kind, reader in READERS.items()
+        for suffix in reader.also
+        if kind != "STEP"
+    ],
+)
+def test_other_suffixes_are_read_as_the_row_says(kind, suffix, tmp_path):
+    reader = READERS[kind]
+    other = reader._replace(name=str(PurePath(reader.name).with_suffix(suffix)))
+    assert outcome(other, reader.valid, tmp_path) == "read"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_damage_is_drawn_from_a_seed_and_some_of_it_is_refused(kind):
+    reader = READERS[kind]
+    made = [reader.damage(reader.valid, Random(seed)) for seed in range(12)]
+    assert made == [reader.damage(reader.valid, Random(seed)) for seed in range(12)]
+    assert len(set(made)) > 8
+
+
+@pytest.mark.slow
+def test_damaged_documents_are_still_yaml():
+    from clearance.errors import BadInput
+    from clearance.plain_yaml import plain_data
+
+    valid, n_parsed = READERS["case"].valid, 0
+    for seed in range(60):
+        try:
+            n_parsed += isinstance(plain_data(yaml_damaged(valid, Random(seed))), dict)
+        except BadInput:
+            continue
+    assert n_parsed > 40
+
+
+def test_what_is_not_finite_is_found_where_it_stands():
+    assert not_finite({"a": [1.0, (2, np.array([0.0, 1.0]))]}) == ""
+    assert not_finite({"a": [1.0, (2, np.array([0.0, np.nan]))]}) == "dict.a.."
+    assert not_finite({"a": {"b": float("inf")}}) == "dict.a.b"
