@@ -19,7 +19,7 @@ LIBRARIES = {
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
     "mujoco": ("mujoco",),
-    "report": ("plotly", "meshcat", "matplotlib", "junitparser"),
+    "report": ("meshcat", "matplotlib", "junitparser"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),

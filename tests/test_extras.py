@@ -75,7 +75,6 @@ def test_distance_and_check_need_no_optional_library():
 @pytest.mark.parametrize(
     ("options", "extra", "library", "line"),
     [
-        (["--out", "report"], "report", "plotly", "--out needs plotly"),
         (["--out", "report"], "report", "matplotlib", "--out needs matplotlib"),
         (["--cross-check"], "crosscheck", "fcl", "--cross-check needs fcl"),
         (["--motion", "simulated"], "simulate", "pybullet", "--motion simulated needs pybullet"),

@@ -16,13 +16,10 @@ from markupsafe import escape
 from clearance import __version__
 from clearance.batch.answer import BASES, BatchAnswer
 from clearance.batch.page_data import page_data
-from clearance.findings.finding import NOT_PROVEN
 from clearance.record.wording import count
 from clearance.report.head import head_of
 
 _HERE = Path(__file__).parent
-
-_NOT_PROVEN = ".tag.not { background: var(--violated); }\n"
 
 
 def page_of(answer: BatchAnswer, place: Path) -> str:
@@ -35,7 +32,7 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     return Template(_own("page.html")).substitute(
         head=head_of(
             f"{place.name}: {_counted(answer)}",
-            _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
+            _own("page.css"),
         ),
         name=escape(place.name),
         verdict=escape(_counted(answer)),

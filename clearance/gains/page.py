@@ -1,4 +1,4 @@
-"""A gain as a page: both curves, what moved by how much, both worst moments, what is proven. No script is in it.
+"""A gain as a page: both curves, what moved by how much, both worst moments, what is proven.
 
 Not for: the sentences (`sentences`), nor the replays, which are in the reports beside it.
 """
@@ -20,10 +20,9 @@ from clearance.gains.change_parts import (
 )
 from clearance.gains.sentences import is_hopeless, lines_of, signed_text, size_text
 from clearance.record.wording import limit_mm, mm, moment_text, seconds
-from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_page import curve_of
 from clearance.report.markup import element, section, table
-from clearance.report.plain_page import plain_page
+from clearance.report.plain_page import ClearanceCurve, CurvesWithLimit, plain_page
 from clearance.run import Run
 
 NAMES = ("before", "after")
@@ -42,7 +41,16 @@ def page_of(gain: Gain, notes: Sequence[str] = (), *, with_reports: bool) -> str
         _reports(gain) if with_reports else _no_reports(),
         _notes(gain, notes),
     ]
-    return plain_page(f"{gain.case.name}: {_badge(gain)}", _header(gain), Markup("").join(content))
+    title = f"{gain.case.name}: {_badge(gain)}"
+    return plain_page(title, _header(gain), Markup("").join(content), _chart(gain))
+
+
+def _chart(gain: Gain) -> CurvesWithLimit:
+    runs = (gain.before, gain.after)
+    curves = [motion_curve(name, run) for name, run in zip(NAMES, runs, strict=True)]
+    fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
+    called = "with margin" if gain.request.margin else "fail"
+    return CurvesWithLimit(curves, fail + gain.request.margin, called)
 
 
 def _header(gain: Gain) -> Markup:
@@ -64,19 +72,11 @@ def _badge(gain: Gain) -> str:
 
 
 def _curves(gain: Gain) -> Markup:
-    letters = ("a", "b")
-    runs = (gain.before, gain.after)
-    curves = [motion_curve(name, run) for name, run in zip(NAMES, runs, strict=True)]
     key = [
         element("span", element("i"), name, class_=letter)
-        for letter, name in zip(letters, NAMES, strict=True)
+        for letter, name in zip("ab", NAMES, strict=True)
     ]
-    fail = max(run.record.rule(run.record.worst.rule).limits.fail for run in runs)
-    picture = element(
-        "div",
-        chart(curves, fail + gain.request.margin, "with margin" if gain.request.margin else "fail"),
-        class_="scroll",
-    )
+    picture = element("div", id="curves", class_="plot")
     what = element(
         "p",
         "Least clearance at each step, and between steps where it is lower or steps are far apart in time"

@@ -1,6 +1,6 @@
-"""Two runs side by side as a page: both curves, and what became of each finding. No script is in it.
+"""Two runs side by side as a page: both curves, and what became of each finding.
 
-Not for: comparing (`findings.comparison`), nor drawing the curves (`comparison_chart`).
+Not for: comparing (`findings.comparison`).
 """
 
 from __future__ import annotations
@@ -13,12 +13,10 @@ from markupsafe import Markup
 
 from clearance.errors import BadInput
 from clearance.findings.comparison import ComparedFinding, Comparison, FindingChange
-from clearance.findings.finding import NOT_PROVEN
-from clearance.report.comparison_chart import ClearanceCurve, chart
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
 from clearance.report.markup import element, section, table
-from clearance.report.plain_page import plain_page
+from clearance.report.plain_page import ClearanceCurve, CurvesWithLimit, plain_page
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -48,16 +46,10 @@ def write_comparison(comparison: Comparison, before: Path, now: Path, folder: Pa
 def page_of(comparison: Comparison, curves: list[ClearanceCurve], names: tuple[str, str]) -> str:
     """The whole page."""
     text = comparison_text(comparison)
-    content = _curves(comparison, curves, names) + _findings(comparison)
-    title = f"{comparison.now}: compared"
-    return plain_page(title, _header(comparison, text), content, _not_proven(comparison))
-
-
-def _not_proven(comparison: Comparison) -> str:
-    """The colour of limits that are not proven with tolerances, where there are some."""
-    found = [one for row in comparison.rows for one in (row.before, row.now) if one is not None]
-    told = any(one.status == NOT_PROVEN for one in found)
-    return ".tag.not { background: var(--violated); }\n" if told else ""
+    content = _curves(curves, names) + _findings(comparison)
+    fail = max((row.finding.fail for row in comparison.rows), default=0.0)
+    chart = CurvesWithLimit(curves, fail) if len(curves) == 2 else None
+    return plain_page(f"{comparison.now}: compared", _header(comparison, text), content, chart)
 
 
 def _header(comparison: Comparison, text: str) -> Markup:
@@ -72,7 +64,7 @@ def _header(comparison: Comparison, text: str) -> Markup:
     return element("div", title, element("p", badge, class_=classes), class_="title") + told
 
 
-def _curves(comparison: Comparison, curves: list[ClearanceCurve], names: tuple[str, str]) -> Markup:
+def _curves(curves: list[ClearanceCurve], names: tuple[str, str]) -> Markup:
     key = [
         element("span", element("i"), f"{letter}: {name}", class_=letter.lower())
         for letter, name in zip("AB", names, strict=True)
@@ -82,9 +74,8 @@ def _curves(comparison: Comparison, curves: list[ClearanceCurve], names: tuple[s
         return section(
             "Clearance over time", element("div", *key, class_="key"), element("p", told)
         )
-    fail = max((row.finding.fail for row in comparison.rows), default=0.0)
-    picture = element("div", chart(curves, fail), class_="scroll")
-    return section("Clearance over time", picture, element("div", *key, class_="key"))
+    place = element("div", id="curves", class_="plot")
+    return section("Clearance over time", place, element("div", *key, class_="key"))
 
 
 def _findings(comparison: Comparison) -> Markup:

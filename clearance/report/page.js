@@ -29,20 +29,8 @@
   const word = (i) => wordOf(data.status[i]);
   const nameOf = (pair) => pair.bodies.map((k) => data.bodies[k].name).join(" – ");
 
-  function frameOfStep(step) {
-    let low = 0, high = n - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (data.steps[middle] < step) low = middle + 1; else high = middle;
-    }
-    return low > 0 && step - data.steps[low - 1] < data.steps[low] - step ? low - 1 : low;
-  }
-
-  function frameOfTime(time) {
-    let best = 0;
-    for (let i = 1; i < n; i++) if (Math.abs(times[i] - time) < Math.abs(times[best] - time)) best = i;
-    return best;
-  }
+  const frameOfStep = (step) => nearest(data.steps, step);
+  const frameOfTime = (time) => nearest(times, time);
 
   const shown = (k) => k.toLocaleString("en");
   const betweenSteps = (step) => `between the steps ${shown(step)} and ${shown(step + 1)}`;
@@ -81,61 +69,46 @@
       byId("readout").append(document.createElement("br"), contact.text);
     }
     if (replay) replay.show(frame, pair);
-    moveCursor();
+    chart.at(times[frame]);
   }
 
   // ---- the curve
   const toPlot = (metres) => metres * 1000;
-  const curve = byId("curve");
+  const clearancesShown = Array.from(clearances, toPlot), timesShown = Array.from(times);
 
-  // One trace a status; each stretch reaches to the next step so that the curve has no gaps.
-  function statusTrace(code) {
+  // One curve a status; each stretch reaches to the next step so that the curve has no gaps.
+  function statusCurve(code) {
     const y = Array(n).fill(null);
     for (let i = 0; i < n; i++) if (data.status[i] === code) {
-      y[i] = toPlot(clearances[i]);
-      if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = toPlot(clearances[i + 1]);
-      if (i > 0 && data.status[i - 1] < code) y[i - 1] = toPlot(clearances[i - 1]);
+      y[i] = clearancesShown[i];
+      if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = clearancesShown[i + 1];
+      if (i > 0 && data.status[i - 1] < code) y[i - 1] = clearancesShown[i - 1];
     }
-    return {x: Array.from(times), y, mode: "lines", line: {color: colours[code], width: 2.2}, hoverinfo: "skip", cliponaxis: false};
+    return {x: timesShown, y, kind: `status ${data.statuses[code]}`};
   }
 
-  const escaped = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+  const statusCurves = data.statuses.map((_, code) => statusCurve(code));
 
-  function ruleHover(i) {
-    if (!several) return "";
-    const {name, fail, warn} = ruleOf(i);
-    return `<br>${escaped(ruleText(name))}: ${limitText("fail", fail)}, ${limitText("warn", warn)}`;
-  }
+  // Beside the curve: what errors leave of it, what was asked of a recorded run.
+  const moreCurves = (data.more || []).map(({name, times: x, values, kind, filled}) => (
+    {name, x: Array.from(decode(x, Float64Array)), y: Array.from(decode(values, Float64Array), toPlot), kind: `more ${kind}`, filled}));
 
-  function hoverTrace() {
-    return {
-      x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
-      text: Array.from(times, (t, i) =>
-        `<b>${measured(i)}</b> ${word(i)}<br>${escaped(between(i))}<br>${t.toFixed(3)} s, ${stepText(i)}${escaped(otherTime(i))}${ruleHover(i)}`),
-      hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: css("--card"), bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
-    };
-  }
-
-  function worstTrace() {
-    const i = data.worst;
-    return {
-      x: [times[i]], y: [toPlot(clearances[i])], mode: "markers", hoverinfo: "skip", cliponaxis: false,
-      marker: {size: 9, color: colours[data.status[i]], line: {color: css("--card"), width: 1}},
-    };
-  }
-
-  // The chosen pair's own curve, where every pair was measured at every step, and its least clearance.
-  function pairTraces() {
-    if (chosen === null) return [];
-    const pair = data.pairs[chosen], colour = css("--accent");
-    const traces = [{
-      x: [pair.time], y: [toPlot(pair.clearance)], mode: "markers", hoverinfo: "skip", cliponaxis: false,
-      marker: {size: 9, symbol: "diamond", color: colour, line: {color: css("--card"), width: 1}},
-    }];
-    if (!data.curves) return traces;
+  // The chosen pair's own curve, where every pair was measured at every step.
+  function pairCurves() {
+    if (chosen === null || !data.curves) return [];
     const x = decode(data.curves.times, Float64Array), y = decode(data.curves.clearances[chosen], Float32Array);
-    const line = {x: Array.from(x), y: Array.from(y, toPlot), mode: "lines", line: {color: colour, width: 1.4}, hoverinfo: "skip"};
-    return [line, ...traces];
+    return [{x: Array.from(x), y: Array.from(y, toPlot), kind: "pair"}];
+  }
+
+  function marks() {
+    const i = data.worst, found = [{x: times[i], y: clearancesShown[i], kind: data.statuses[data.status[i]]}];
+    if (chosen === null) return found;
+    return [...found, {x: data.pairs[chosen].time, y: toPlot(data.pairs[chosen].clearance), kind: "pair"}];
+  }
+
+  function tip(i) {
+    const {name, fail, warn} = ruleOf(i), rule = several ? [`${ruleText(name)}: ${limitText("fail", fail)}, ${limitText("warn", warn)}`] : [];
+    return [`${measured(i)} ${word(i)}`, between(i), `${times[i].toFixed(3)} s, ${stepText(i)}${otherTime(i)}`, ...rule];
   }
 
   function choose(place) {
@@ -146,118 +119,43 @@
     chosen = place;
     byId("pair-name").textContent = place === null ? "" : nameOf(data.pairs[place]);
     byId("pair-clear").hidden = place === null;
-    redraw();
-  }
-
-  function band([start, end], colour) {
-    const half = n > 1 ? 0.5 * (times[n - 1] - times[0]) / (n - 1) : 0.5;
-    return {type: "rect", xref: "x", yref: "paper", x0: start - half, x1: end + half, y0: 0, y1: 1, fillcolor: colour, opacity: 0.11, line: {width: 0}, layer: "below"};
+    chart.draw();
   }
 
   // The limit that holds at each frame: one straight line, or steps where rules differ from frame to frame.
-  function limitTrace([, of, colour]) {
+  function limitLine([name, of, kind]) {
     const level = (i) => toPlot(of(ruleOf(i))), x = [times[0]], y = [level(0)];
     for (let i = 1; i < n; i++) if (level(i) !== y[y.length - 1]) { x.push(times[i]); y.push(level(i)); }
     x.push(n > 1 ? times[n - 1] : times[0] + 1);
     y.push(y[y.length - 1]);
-    return {x, y, mode: "lines", line: {color: colour, width: 1.2, dash: "4px,3px", shape: "hv"}, hoverinfo: "skip", cliponaxis: false};
-  }
-
-  // Labels stand beside their lines, at the last frame, or above and below where the lines are too near for both.
-  function limitLabel([name, of, colour]) {
-    const {fail, warn} = ruleOf(n - 1), metres = of(ruleOf(n - 1)), pixels = Math.max(100, curve.clientHeight - 54) / (zoomed() ? near : greatest);
-    const close = fail > 0 && toPlot(warn - fail) * pixels < 14, up = name === "warn";
-    const beside = {xanchor: "left", xshift: 4, yanchor: close ? (up ? "bottom" : "top") : "middle"};
-    const within = {xanchor: "right", xshift: -4, yanchor: close && !up ? "top" : "bottom"};
-    return {xref: "paper", x: 1, y: toPlot(metres), yshift: 0, showarrow: false, ...(isNarrow() ? within : beside),
-      text: limitText(name, metres), font: {color: colour, size: 11}};
+    return {x, y, kind, text: limitText(name, of(ruleOf(n - 1)))};
   }
 
   function limitText(name, metres) {
     return `${name} ${Number((metres * 1000).toPrecision(6))} mm`;
   }
 
-  function isNarrow() { // no room for labels beside the plot
-    return curve.clientWidth < 560;
-  }
-
-  function roomForLimits() { // px, right of the plot
-    if (isNarrow()) return 12;
-    const ruler = document.createElement("span");
-    ruler.style.cssText = "position: absolute; visibility: hidden; white-space: nowrap; font-size: 11px";
-    document.body.append(ruler);
-    const widths = shownLimits().map(([name, of]) => {
-      ruler.textContent = limitText(name, of(ruleOf(n - 1)));
-      return ruler.offsetWidth;
-    });
-    ruler.remove();
-    return 20 + Math.max(0, ...widths);
-  }
-
   // Levels that are above 0 at some frame; warn only where it is not everywhere the same as fail.
-  function shownLimits() {
-    const used = [...new Set(data.rule)].map((k) => data.rules[k]);
-    const levels = [["fail", (rule) => rule.fail, css("--violated")], ["warn", (rule) => rule.warn, css("--near")]];
-    return levels.filter(([name, of]) => used.some((rule) => of(rule) > 0 && (name === "fail" || rule.warn > rule.fail)));
-  }
-
   const used = [...new Set(data.rule)].map((k) => data.rules[k]);
-  const lowest = Math.min(0, 1.06 * toPlot(Math.min(...finite)));
+  const limits = [["fail", (rule) => rule.fail, "violated"], ["warn", (rule) => rule.warn, "near"]]
+    .filter(([name, of]) => used.some((rule) => of(rule) > 0 && (name === "fail" || rule.warn > rule.fail))).map(limitLine);
+
+  const half = n > 1 ? 0.5 * (times[n - 1] - times[0]) / (n - 1) : 0.5;
+  const bands = [["below_warn", "near"], ["below_fail", "violated"]].flatMap(([level, kind]) =>
+    data.intervals[level].map(([start, end]) => ({start: start - half, end: end + half, kind})));
+
+  const extreme = (curves, of) => curves.reduce((found, {y}) => y.reduce((best, value) => (Number.isFinite(value) ? of(best, value) : best), found), 0);
+  const lowest = 1.06 * Math.min(0, toPlot(Math.min(...finite)), extreme(moreCurves, Math.min));
   const greatest = toPlot(Math.max(...finite, ...used.map((rule) => rule.warn))) * 1.06 || 1;
   const near = Math.min(greatest, 2.5 * toPlot(Math.max(...used.map((rule) => rule.warn), Math.min(...finite))) || greatest);
-
-  function plotted() {
-    const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
-    const highest = Math.max(greatest, ...pairTraces().flatMap((trace) => trace.y.filter((y) => y === y).map((y) => 1.06 * y)));
-    return {
-      margin: {l: 58, r: roomForLimits(), t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
-      font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      xaxis: {...axis, title: {text: "time, s", standoff: 6}, range: [times[0], n > 1 ? times[n - 1] : times[0] + 1]},
-      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [lowest, zoomed() ? near : highest]},
-      shapes: [...data.intervals.below_warn.map((range) => band(range, css("--near"))),
-        ...data.intervals.below_fail.map((range) => band(range, css("--violated")))],
-      annotations: shownLimits().map(limitLabel),
-    };
-  }
-
   const zoomed = () => byId("zoom-limits").getAttribute("aria-pressed") === "true";
-  const allTraces = () => [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), ...shownLimits().map(limitTrace), worstTrace(), ...pairTraces()];
-  const redraw = () => Plotly.react(curve, allTraces(), plotted());
 
-  function drawCurve() {
-    const traces = allTraces(), layout = plotted();
-    Plotly.newPlot(curve, traces, layout, {responsive: true, displaylogo: false, displayModeBar: false, doubleClick: "reset"});
-    let wasNarrow = isNarrow();
-    new ResizeObserver(() => {
-      if (curve.clientHeight === 0) return; // hidden in print
-      if (isNarrow() !== wasNarrow) redraw();
-      wasNarrow = isNarrow();
-      Plotly.Plots.resize(curve);
-    }).observe(curve);
-    const cursor = document.createElement("div");
-    cursor.id = "cursor";
-    curve.append(cursor);
-    curve.on("plotly_click", (event) => { pause(); showFrame(event.points[0].pointIndex); });
-    curve.on("plotly_afterplot", moveCursor);
-    Plotly.toImage({data: traces, layout: onPaper(layout)}, {format: "svg", width: 860, height: 330})
-      .then((image) => { byId("curve-still").src = image; });
-  }
-
-  // As it prints: dark lines on white, whatever the screen's theme.
-  function onPaper(layout) {
-    const axis = {gridcolor: "#eceeec", zerolinecolor: "#d9dcd8", linecolor: "#d9dcd8", tickcolor: "#d9dcd8"};
-    return {...layout, paper_bgcolor: "#ffffff", font: {...layout.font, color: "#4a5664"},
-      xaxis: {...layout.xaxis, ...axis}, yaxis: {...layout.yaxis, ...axis}};
-  }
-
-  function moveCursor() {
-    const cursor = byId("cursor"), layout = curve._fullLayout;
-    if (!cursor || !layout) return;
-    const {xaxis, _size} = layout, x = xaxis.d2p(times[frame]);
-    cursor.hidden = x < 0 || x > _size.w;
-    cursor.style.cssText = `left:${_size.l + x}px;top:${_size.t}px;height:${_size.h}px`;
-  }
+  const chart = new Chart(byId("curve"), () => ({
+    span: [times[0], n > 1 ? times[n - 1] : times[0] + 1],
+    range: [lowest, zoomed() ? near : Math.max(greatest, 1.06 * extreme(pairCurves(), Math.max))],
+    main: {x: timesShown, y: clearancesShown}, tip, bands, limits, marks: marks(),
+    curves: [...statusCurves, ...moreCurves, ...pairCurves()],
+  }), (i) => { pause(); showFrame(i); });
 
   // ---- playing: frames follow the trajectory's own time
   function pause() {
@@ -305,10 +203,21 @@
     byId("zoom-limits").addEventListener("click", (event) => {
       const on = event.target.getAttribute("aria-pressed") !== "true";
       event.target.setAttribute("aria-pressed", on);
-      redraw();
+      chart.zoom = null;
+      chart.draw();
+    });
+    byId("earlier-motion").hidden = !(replay && data.earlier);
+    byId("earlier-motion").addEventListener("click", (event) => {
+      replay.showsEarlier = !replay.showsEarlier;
+      event.target.setAttribute("aria-pressed", replay.showsEarlier);
+      showFrame(frame);
     });
     byId("pair-clear").addEventListener("click", () => { choose(null); showFrame(frame); });
-    dark.addEventListener("change", () => { colours = palette(); redraw(); showFrame(frame); });
+    dark.addEventListener("change", () => {
+      colours = palette();
+      if (replay) replay.colours = colours;
+      showFrame(frame);
+    });
     document.addEventListener("click", follow);
     document.addEventListener("keydown", follow);
   }
@@ -323,7 +232,6 @@
   }
 
   startReplay();
-  drawCurve();
   connect();
   showFrame(data.worst);
   if (replay) {
@@ -331,5 +239,5 @@
     requestAnimationFrame(() => { byId("replay-still").src = replay.image(); });
     window.addEventListener("beforeprint", () => { pause(); showFrame(data.worst); });
   }
-  window.clearance = {showFrame, frameOfStep, pause, state: () => ({frame, step: data.steps[frame], ...(replay ? replay.state() : {})})};
+  window.clearance = {chart, showFrame, frameOfStep, pause, state: () => ({frame, step: data.steps[frame], ...(replay ? replay.state() : {})})};
 })();

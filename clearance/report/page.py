@@ -1,6 +1,6 @@
-"""The page: one HTML file that needs no network, with meshcat's viewer and plotly's chart inside.
+"""The page: one HTML file that needs no network, with meshcat's viewer inside.
 
-This file only puts the parts together; the words are in `sections`, the behaviour in `page.js` and
+This file only puts the parts together; the words are in `sections`, the behaviour in `page.js`, `chart.js` and
 `replay.js`, the look in `page.css`. Geometry and poses go as base64 of float32, what is shown as a
 figure as float64.
 """
@@ -8,8 +8,6 @@ figure as float64.
 from __future__ import annotations
 
 import base64
-import json
-import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
@@ -21,10 +19,11 @@ import numpy as np
 from markupsafe import Markup
 
 from clearance.errors import Unavailable
-from clearance.extras import importing, install
+from clearance.extras import install
 from clearance.record.replay import LINK, EarlierBody, Replay
 from clearance.record.status import STATUSES, Status
 from clearance.record.wording import contact_text, count
+from clearance.report.embedded import inside_script, json_inside_script, script
 from clearance.report.head import head_of
 from clearance.report.markup import element
 from clearance.report.more_curves import PageCurve
@@ -60,21 +59,21 @@ def page_of(
     """
     template = Template(_own("page.html"))
     return template.substitute(
-        head=head_of(f"{summary['name']}: {badge_text(summary)}", _style(summary)),
+        head=head_of(f"{summary['name']}: {badge_text(summary)}"),
         header=header(summary),
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}, findings),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
-        data=_json_inside_script(
+        data=json_inside_script(
             _data(summary, replay)
             | _pairs(summary, replay, curves)
             | _more(more)
             | _earlier(earlier)
         ),
-        plotly=_inside_script(_plotly()),
-        meshcat=_inside_script(_meshcat()),
-        replay_script=_inside_script(_own("replay.js")),
-        page_script=_inside_script(_page_script(more, earlier)),
+        meshcat=inside_script(_meshcat()),
+        chart_script=script("chart.js"),
+        replay_script=script("replay.js"),
+        page_script=script("page.js"),
     )
 
 
@@ -162,7 +161,7 @@ def _more(curves: Sequence[PageCurve]) -> dict[str, Any]:
             "name": one.name,
             "times": _floats(one.times, "<f8"),
             "values": _floats(one.values, "<f8"),
-            "dash": one.dash,
+            "kind": one.dash,
             "filled": one.filled,
         }
         for one in curves
@@ -177,19 +176,6 @@ def _earlier(bodies: Sequence[EarlierBody]) -> dict[str, Any]:
         for one in bodies
     ]
     return {"earlier": told} if told else {}
-
-
-def _page_script(curves: Sequence[PageCurve], earlier: Sequence[EarlierBody]) -> str:
-    """The page's own script; after those that draw further curves, and a motion before, where there are some."""
-    first = (_own("more_curves.js") if curves else "") + (
-        _own("earlier_motion.js") if earlier else ""
-    )
-    return first + _own("page.js")
-
-
-def _style(summary: dict[str, Any]) -> str:
-    """What tolerances look like, where there are some."""
-    return _own("tolerances.css") if "tolerances" in summary else ""
 
 
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
@@ -224,25 +210,8 @@ def _floats(array: np.ndarray, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
 
-def _inside_script(text: str) -> str:
-    """A script so that no string in it can end the script element that it stands in."""
-    return re.sub(r"</(?=script)", r"<\\/", text, flags=re.IGNORECASE)
-
-
-def _json_inside_script(value: Any) -> str:
-    """JSON that holds no `<`, so that nothing in it can be taken for markup."""
-    return json.dumps(value, sort_keys=True, allow_nan=False).replace("<", "\\u003c")
-
-
 def _own(name: str) -> str:
     return (_HERE / name).read_text(encoding="utf-8")
-
-
-def _plotly() -> str:
-    with importing("report", "the report's page"):
-        from plotly.offline import get_plotlyjs
-
-    return get_plotlyjs()
 
 
 def _meshcat() -> str:

@@ -23,7 +23,6 @@ LIBRARIES = (
     "python-fcl",
     "pyarrow",
     "meshcat",
-    "plotly",
 )
 
 

@@ -7,6 +7,7 @@ const LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8, MOVING = 0x9c9480, PART = 0xb38
 const SOLID = {link: 1, part: 1, moving: 0.72, obstacle: 0.5};
 const LINE_PIXELS = 2.4, DOT_PIXELS = 4;
 const EDGE = {light: 0x1c2530, dark: 0xd8e0e8}, GRID = {light: [0xd3d8dc, 0xe3e7ea], dark: [0x3a444f, 0x2b333c]};
+const EARLIER = 0xc0702a; // the motion before a change, seen through the one after it
 const REGION = 0xe01010, WAY_OUT = 0x4a0008, ARROW_PIXELS = 78;
 
 function decode(text, Kind) {
@@ -31,6 +32,8 @@ class Replay {
     this.bodies = data.bodies.map((body, i) => this.body(body, i));
     this.marks();
     this.contacts = data.contacts.map((contact, i) => this.contact(contact, i));
+    this.earlier = (data.earlier || []).map((one) => this.ghost(one));
+    this.showsEarlier = true;
     this.fit();
     // meshcat sizes its canvas by the window; ours stands in a figure
     this.viewer.set_3d_pane_size = () => Object.getPrototypeOf(this.viewer).set_3d_pane_size.call(
@@ -51,26 +54,33 @@ class Replay {
   }
 
   body(body, i) {
-    const opacity = SOLID[body.kind], solid = opacity === 1;
-    const path = [body.kind + "s", `${i} ${body.name}`];
-    const colour = this.colourOf(body);
-    let surface = new this.three.MeshLambertMaterial({
-      color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-    });
-    const edges = new this.three.LineBasicMaterial({color: EDGE[this.theme], transparent: true, opacity: solid ? 0.35 : 0.28});
-    const shape = this.geometries[body.shape];
-    if (shape.edges) {
-      this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
-      this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
-    } else {
-      surface = new this.three.PointsMaterial({color: colour, size: 2, sizeAttenuation: false});
-      this.viewer.set_object(path.concat("surface"), new this.three.Points(shape.surface, surface));
-    }
-    const node = this.viewer.scene_tree.find(path).object;
-    const made = {node, surface, colour, poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind, shown: body.shown};
+    const opacity = SOLID[body.kind], solid = opacity === 1, colour = this.colourOf(body), shape = this.geometries[body.shape];
+    const look = {color: colour, transparent: !solid, opacity, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};
+    const edges = {color: EDGE[this.theme], transparent: true, opacity: solid ? 0.35 : 0.28};
+    const made = {...this.solid([body.kind + "s", `${i} ${body.name}`], shape, look, edges), colour,
+      poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind, shown: body.shown};
     this.place(made, 0);
     return made;
+  }
+
+  // A shape at a place of the scene: its surface and edges, or its points.
+  solid(path, shape, look, edges) {
+    let surface = new this.three.MeshLambertMaterial({flatShading: true, side: this.three.DoubleSide, ...look});
+    if (shape.edges) {
+      this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
+      this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, new this.three.LineBasicMaterial(edges)));
+    } else {
+      surface = new this.three.PointsMaterial({color: look.color, size: 2, sizeAttenuation: false});
+      this.viewer.set_object(path.concat("surface"), new this.three.Points(shape.surface, surface));
+    }
+    return {node: this.viewer.scene_tree.find(path).object, surface};
+  }
+
+  // Where a body was before a change.
+  ghost(one) {
+    const {name, shape} = this.data.bodies[one.body], seen = {color: EARLIER, transparent: true, depthWrite: false};
+    const made = this.solid(["earlier", `${one.body} ${name}`], this.geometries[shape], {...seen, opacity: 0.2}, {...seen, opacity: 0.55});
+    return {...made, name, poses: decode(one.poses, Float32Array), shown: one.shown};
   }
 
   colourOf(body) {
@@ -173,6 +183,10 @@ class Replay {
       this.tint(body, i, frame);
       if (this.nearest.includes(i)) body.surface.color.lerp(colour, 0.55);
     });
+    for (const one of this.earlier) {
+      this.place(one, frame);
+      one.node.visible = this.showsEarlier && (!one.shown || one.shown[frame] === 1);
+    }
     this.material.color.copy(colour);
     for (const contact of this.contacts) for (const part of contact.parts) part.visible = contact.frame === frame;
     const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.ends, at));
@@ -210,6 +224,7 @@ class Replay {
       camera: this.looks(),
       colour: "#" + this.material.color.getHexString(),
       bodies,
+      earlier: Object.fromEntries(this.earlier.filter((one) => one.node.visible).map((one) => [one.name, one.node.position.toArray()])),
       hidden: this.data.bodies.filter((body, i) => !this.bodies[i].node.visible).map((body) => body.name),
     };
   }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -119,7 +120,10 @@ def test_two_runs_side_by_side(place, capsys):
     assert run(["compare", "of_broken", "of_worse", "--out", "page"]) == 1
     assert "1 worse" in capsys.readouterr().out
     page = (place / "page" / "comparison.html").read_text()
-    assert page.count("<polyline") == 2 and "new or worse" in page and "<script" not in page
+    (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', page)
+    curves = json.loads(data)["curves"]
+    assert [one["name"] for one in curves] == ["A", "B"] and "new or worse" in page
+    assert min(curves[1]["clearances"]) < min(curves[0]["clearances"])
     assert run(["compare", "of_worse", "of_clear/findings.json", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
     assert run(["compare", "of_worse", "of_clear/findings.json", "--out", "page"]) == 0

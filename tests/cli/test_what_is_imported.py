@@ -23,7 +23,7 @@ import json, sys
 print("\\n" + json.dumps(sorted(sys.modules)))
 """
 
-OPTIONAL = {"fcl", "manifold3d", "matplotlib", "meshcat", "plotly", "pybullet", "rosbags", "shapely", "trimesh",
+OPTIONAL = {"fcl", "manifold3d", "matplotlib", "meshcat", "pybullet", "rosbags", "shapely", "trimesh",
             "ezdxf", "coacd", "dask"}  # fmt: skip
 
 

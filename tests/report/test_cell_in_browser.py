@@ -61,15 +61,12 @@ def test_what_is_not_in_the_cell_is_not_drawn(page):
 def test_the_readout_and_the_hover_name_the_rule(page):
     show(page, 0)
     assert "by rule fence" in readout(page)
-    texts = page.run("document.getElementById('curve').data[0].text")
-    assert "by rule fence: fail 5 mm, warn 500 mm" in texts[0]
+    texts = page.run("window.clearance.chart.told.tip(0)")
+    assert "by rule fence: fail 5 mm, warn 500 mm" in texts
 
 
 def test_the_limit_lines_go_in_steps_with_the_rule_that_judges(page):
-    lines = page.run(
-        "document.getElementById('curve').data.filter((t) => t.line && t.line.shape === 'hv')"
-        ".map((t) => [t.x, t.y])"
-    )
+    lines = page.run("window.clearance.chart.told.limits.map((one) => [one.x, one.y])")
     assert len(lines) == 2
     for (x, y), fence in zip(lines, (5.0, 500.0), strict=True):
         assert x == sorted(x) and y[0] == y[-1] == fence
@@ -92,7 +89,7 @@ def test_a_click_on_a_cell_shows_the_pair_with_its_rule(page):
     page.settle()
     text = readout(page)
     assert "0.500 mm clear" in text and "by rule handover" in text
-    curve = page.run("document.getElementById('curve').data.at(-2).y")
+    curve = page.run("window.clearance.chart.told.curves.at(-1).y")
     assert len(curve) == 7
 
 
@@ -124,6 +121,6 @@ def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path
         page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
         show(page, 2)
         assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
-        low, high = page.run("document.getElementById('curve')._fullLayout.yaxis.range")
+        low, high = page.run("window.clearance.chart.range")
         assert low == 0.0 and 500.0 < high < 550.0
         assert page.errors == []

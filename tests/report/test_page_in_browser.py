@@ -103,8 +103,8 @@ def curve_point(page: Page, step: int) -> tuple[float, float]:
     """Where on the window the curve stands at a step."""
     page.run("window.scrollTo(0, 0)")
     axis = page.run(
-        "(() => { const {xaxis, _size} = document.getElementById('curve')._fullLayout;"
-        f"return {{x: _size.l + xaxis.d2p({row(step)['time']}), y: _size.t + 60}}; }})()"
+        "(() => { const {chart} = window.clearance;"
+        f"return {{x: chart.x({row(step)['time']}), y: chart.room.top + 60}}; }})()"
     )
     box = page.box("#curve")
     return box["x"] + axis["x"], box["y"] + axis["y"]
@@ -124,10 +124,28 @@ def test_a_click_on_the_curve_moves_the_robot_to_that_step(page, step):
 def test_hovering_over_the_curve_names_step_clearance_link_and_obstacle(page):
     x, y = curve_point(page, 120)
     page.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
-    page.wait("document.querySelector('#curve .hoverlayer').textContent.includes('step 120')")
-    text = page.run("document.querySelector('#curve .hoverlayer').textContent")
+    page.wait("document.querySelector('#curve .tip').textContent.includes('step 120')")
+    text = page.run("document.querySelector('#curve .tip').textContent")
     for part in (mm(row(120)["clearance"]) + " mm", row(120)["link"], row(120)["obstacle"]):
         assert part in text
+
+
+def drag(page: Page, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """Moves the mouse over the window with its button down."""
+    for kind, (x, y) in (("mousePressed", start), ("mouseMoved", end), ("mouseReleased", end)):
+        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+    page.settle()
+
+
+def test_dragging_over_the_curve_zooms_and_a_double_click_shows_all_again(page):
+    whole = page.run("window.clearance.chart.span")
+    before = show(page, 5)["step"]
+    drag(page, curve_point(page, 60), curve_point(page, 180))
+    span = page.run("window.clearance.chart.span")
+    assert np.abs(np.subtract(span, [row(60)["time"], row(180)["time"]])).max() < 0.02
+    assert page.run("window.clearance.state().step") == before, "a drag picks no step"
+    page.run("document.querySelector('#curve svg').dispatchEvent(new MouseEvent('dblclick'))")
+    assert page.run("window.clearance.chart.span") == whole
 
 
 @pytest.mark.parametrize("selector", [".cell", "tr[data-step]", "a[data-step]"])
@@ -160,13 +178,12 @@ def test_the_slider_scrubs_and_the_button_jumps_to_the_worst_step(page):
 
 def test_it_prints_with_a_still_of_the_worst_moment(page):
     page.wait("document.getElementById('replay-still').src.startsWith('data:image/png')")
-    page.wait("document.getElementById('curve-still').src.startsWith('data:image/svg')")
     assert page.pdf().startswith(b"%PDF")
     page.call("Emulation.setEmulatedMedia", media="print")
     try:
         assert page.run("getComputedStyle(document.getElementById('transport')).display") == "none"
         assert page.box("#replay-still")["height"] > 150
-        assert page.box("#curve-still")["height"] > 150
+        assert page.box("#curve svg")["height"] > 150
     finally:
         page.call("Emulation.setEmulatedMedia", media="")
 
@@ -185,8 +202,9 @@ def test_a_clicked_pair_has_its_own_line_and_its_place_on_the_curve(page):
     assert (state["step"], state["nearest"]) == (pair.step, [pair.link, pair.obstacle])
     assert np.abs(np.subtract(state["dots"], [pair.point_link, pair.point_obstacle])).max() < 1e-9
     assert mm(pair.clearance) in page.run("document.getElementById('readout').textContent")
-    mark = page.run("document.getElementById('curve').data.at(-1)")
-    assert (mark["x"], mark["y"]) == ([pair.time], [pytest.approx(pair.clearance * 1000.0)])
+    mark = page.run("window.clearance.chart.told.marks.at(-1)")
+    assert (mark["x"], mark["y"]) == (pair.time, pytest.approx(pair.clearance * 1000.0))
+    assert page.run("document.querySelectorAll('.mark.pair').length") == 1
     page.run("document.getElementById('pair-clear').click()")
     page.settle()
     assert page.run("window.clearance.state().nearest")[0] == row(pair.step)["link"]
@@ -257,7 +275,7 @@ def test_the_replay_opens_at_the_moment_between_two_steps_with_its_bodies_marked
     assert (
         "contact" in text and f"between the steps {worst['step']} and {worst['step'] + 1}" in text
     )
-    dip = page.run("Math.min(...document.getElementById('curve').data[0].y)")
+    dip = page.run("Math.min(...window.clearance.chart.told.main.y)")
     assert dip == 0.0
     page.run("window.clearance.showFrame(0)")
     page.run("Array.from(document.querySelectorAll('tr[data-time]')).at(-1).click()")
@@ -269,7 +287,7 @@ def test_a_clicked_pair_shows_its_own_curve_where_every_pair_was_measured(crowde
     page.open(page.report, "window.clearance", width=1400, height=900)
     place = 1000
     click_pair(page, place)
-    drawn = np.array(page.run("document.getElementById('curve').data.at(-2).y")) / 1000.0
+    drawn = np.array(page.run("window.clearance.chart.told.curves.at(-1).y")) / 1000.0
     pair = crowded.run_of.session.motion_minima()[place]
     named = list(zip(record.every_pair.links, record.every_pair.obstacles, strict=True))
     truth = record.every_pair.clearance[:, named.index((pair.link, pair.obstacle))]
