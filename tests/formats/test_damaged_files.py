@@ -1,14 +1,13 @@
 """Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
 
-The kinds are the rows of `scripts/bench/fuzz_seeds.py`; `fuzz_readers.py` tries thousands of files of each. Here
-are some that hypothesis draws and makes small again, and cuts; no suffix in a table of readers is without a row.
+The kinds are `damaged.rows`; `damaged.campaign` tries thousands of files of each. Here are some that hypothesis
+draws and makes small again, cuts, and bytes that are others; no suffix in a table of readers is without a row.
 """
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
-import sys
 import tracemalloc
 import warnings
 from pathlib import Path, PurePath
@@ -20,15 +19,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
 import clearance.formats
+from clearance.errors import BadInput
 from clearance.formats.motion.bag_files import SUFFIXES
 from clearance.formats.robot.robot_element import XACRO
-from scripts.bench.fuzz_outcome import not_finite, outcome
-from scripts.bench.fuzz_seeds import readers
-from scripts.bench.fuzz_trees import yaml_damaged
 from tests.examples import share_of, some_slow
+from tests.formats.damaged.anywhere import damaged
+from tests.formats.damaged.outcome import not_finite, outcome
+from tests.formats.damaged.rows import readers
+from tests.formats.damaged.trees import yaml_damaged
 
 READERS = readers()
 SLOW = {
@@ -39,6 +38,9 @@ KINDS = [
     *some_slow([kind for kind in READERS if kind != "STEP"], SLOW),
     pytest.param("STEP", marks=[pytest.mark.cold, pytest.mark.slow]),  # read by another process
 ]
+
+N_FILES = max(9, share_of(36))
+"""Files of a kind whose bytes are damaged: of fewer than nine all may still be readable."""
 
 MOST_MEMORY = 24_000_000
 """[bytes] What a damaged file of some kilobytes may take while it is read, at its peak."""
@@ -78,6 +80,15 @@ def test_files_cut_off_are_read_or_refused(kind, tmp_path, capfd):
     assert {end: one for end, one in said.items() if one not in ("read", "refused")} == {}
     assert "refused" in said.values()
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_with_other_bytes_are_read_or_refused(kind, tmp_path):
+    reader = READERS[kind]
+    assert outcome(reader, reader.valid, tmp_path) == "read"
+    said = {i: outcome(reader, damaged(reader.valid, 77_000 + i), tmp_path) for i in range(N_FILES)}
+    assert {i: found for i, found in said.items() if found not in ("read", "refused")} == {}
+    assert "refused" in said.values()
 
 
 @pytest.mark.parametrize("kind", KINDS[:-1])
@@ -140,9 +151,31 @@ def test_damage_is_drawn_from_a_seed_and_some_of_it_is_refused(kind):
     assert len(set(made)) > 8
 
 
+def test_the_same_seed_does_the_same_damage_to_bytes():
+    valid = READERS["OBJ"].valid
+    assert [damaged(valid, i) for i in range(9)] == [damaged(valid, i) for i in range(9)]
+    assert len({damaged(valid, i) for i in range(9)}) > 5
+
+
+def test_a_foreign_error_and_a_message_of_several_lines_are_faults(tmp_path):
+    def fails(data, folder, name):
+        raise KeyError("x")
+
+    class Rambling(BadInput):
+        def __str__(self):
+            return "one line\nand another"
+
+    def rambles(data, folder, name):
+        raise Rambling("x")
+
+    reader = READERS["OBJ"]
+    assert outcome(reader._replace(reads=fails), reader.valid, tmp_path).startswith("KeyError at")
+    said = outcome(reader._replace(reads=rambles), reader.valid, tmp_path)
+    assert said == "message of several lines"
+
+
 @pytest.mark.slow
 def test_damaged_documents_are_still_yaml():
-    from clearance.errors import BadInput
     from clearance.plain_yaml import plain_data
 
     valid, n_parsed = READERS["case"].valid, 0

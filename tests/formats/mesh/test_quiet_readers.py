@@ -11,7 +11,7 @@ from clearance.errors import BadDimension, BadInput, BadPose
 from clearance.formats.cloud.formats import cloud_from_bytes
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.geometry.pose import pose_from_quaternion
-from scripts.bench.fuzz_meshes import collada
+from tests.formats.damaged.meshes import collada
 from tests.formats.making_clouds import pcd
 from tests.formats.making_mjcf import load_mjcf, mjcf
 

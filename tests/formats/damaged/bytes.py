@@ -1,6 +1,6 @@
 """Damage to binary files where it counts: numbers that look like counts, lengths and offsets, and headers of text.
 
-Not for: bytes anywhere (`fuzz_readers.damaged`), nor text (`fuzz_lines`).
+Not for: bytes anywhere (`anywhere.damaged`), nor text (`lines`).
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import struct
 from collections.abc import Callable
 from random import Random
 
-from scripts.bench.fuzz_lines import lines_damaged
-from scripts.bench.fuzz_trees import json_damaged
+from tests.formats.damaged.lines import lines_damaged
+from tests.formats.damaged.trees import json_damaged
 
 Damage = Callable[[bytes, Random], bytes]
 

@@ -1,18 +1,18 @@
 """Every reader on thousands of damaged files: each is read or refused by an error of ours, soon, in little memory.
 
 A valid small file of each kind is damaged in ways that a fixed seed draws: bytes flipped, cut off, doubled, moved,
-numbers replaced; or, with `--how structure`, its elements, keys, rows or counts are others (as `fuzz_seeds` says);
+numbers replaced; or, with `--how structure`, its elements, keys, rows or counts are others (as `rows` says);
 or, with `--how cuts`, it is cut off at each byte. Each kind is read in a process of its own with 1 GB of memory,
 and 5 s of processor time a file. A warning, and a word on stderr, are faults too.
 
-    python scripts/bench/fuzz_readers.py [--how bytes] [--files 5000] [--kinds OBJ,GLB] [--seed 1] [--keep FOLDER]
+    python -m tests.formats.damaged.campaign [--how bytes] [--files 5000] [--kinds OBJ,GLB] [--seed 1]
+                                             [--keep FOLDER]
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-import re
 import resource
 import signal
 import subprocess
@@ -24,36 +24,17 @@ from collections import Counter
 from pathlib import Path
 from random import Random
 
-import numpy as np
+from tests.formats.damaged.anywhere import damaged
+from tests.formats.damaged.outcome import outcome
+from tests.formats.damaged.rows import Reader, readers
 
-sys.path.insert(0, str(Path(__file__).parents[2]))
-
-from scripts.bench.fuzz_outcome import outcome
-from scripts.bench.fuzz_seeds import Reader, readers
+ROOT = Path(__file__).parents[3]
 
 MOST_MEMORY = 1 << 30
 """[bytes] of data that a reading process may have."""
 
 MOST_TIME = 5.0
 """[s] of processor time for a file."""
-
-_NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:e-?\d+)?")
-
-_VALUES = (
-    b"0", b"-0", b"1", b"-1", b"2", b"255", b"65536", b"4294967295", b"-4294967298", b"99999999999999999999",
-    b"1e18", b"1e308", b"1e400", b"1e-320", b"nan", b"inf", b"-inf", b"1_0", b"0x10", b"0,01", b"", b"\xd9\xa1",
-    b"1" * 5000, b"true", b"[]", b"x", b"\x00", b"1e160", b"-1e18", b"0.1",
-)  # fmt: skip
-
-
-def damaged(valid: bytes, seed: int) -> bytes:
-    """The file with one to three kinds of damage that the seed draws."""
-    rng = np.random.default_rng(seed)
-    data = bytearray(valid)
-    for _ in range(rng.integers(1, 4)):
-        if data:
-            data = bytearray(_DAMAGES[rng.integers(len(_DAMAGES))](data, rng))
-    return bytes(data)
 
 
 def content(reader: Reader, how: str, seed: int, i: int) -> bytes:
@@ -64,71 +45,6 @@ def content(reader: Reader, how: str, seed: int, i: int) -> bytes:
     if how == "structure":
         return reader.damage(reader.valid, Random(number))
     return damaged(reader.valid, number)
-
-
-def _span(data: bytearray, rng: np.random.Generator) -> tuple[int, int]:
-    begin = int(rng.integers(len(data)))
-    return begin, begin + int(rng.integers(1, max(2, min(200, len(data) - begin) + 1)))
-
-
-def _flipped(data: bytearray, rng: np.random.Generator) -> bytes:
-    for _ in range(rng.integers(1, 9)):
-        data[rng.integers(len(data))] ^= 1 << int(rng.integers(8))
-    return bytes(data)
-
-
-def _overwritten(data: bytearray, rng: np.random.Generator) -> bytes:
-    begin = int(rng.integers(len(data)))
-    word = (
-        b"\xff" * 4,
-        b"\0" * 4,
-        b"\xff\xff\xff\x7f",
-        b"\0\0\0\x80",
-        b"\0\0\xc0\x7f",
-        b"\1\0\0\0",
-    )
-    data[begin : begin + 4] = word[rng.integers(len(word))]
-    return bytes(data)
-
-
-def _cut_off(data: bytearray, rng: np.random.Generator) -> bytes:
-    return bytes(data[: rng.integers(len(data))])
-
-
-def _without(data: bytearray, rng: np.random.Generator) -> bytes:
-    begin, end = _span(data, rng)
-    return bytes(data[:begin] + data[end:])
-
-
-def _doubled(data: bytearray, rng: np.random.Generator) -> bytes:
-    begin, end = _span(data, rng)
-    return bytes(data[:end] + data[begin:end] * int(rng.integers(1, 20)) + data[end:])
-
-
-def _moved(data: bytearray, rng: np.random.Generator) -> bytes:
-    begin, end = _span(data, rng)
-    to = int(rng.integers(len(data)))
-    return bytes(data[:to] + data[begin:end] + data[to:])
-
-
-def _renumbered(data: bytearray, rng: np.random.Generator) -> bytes:
-    found = list(_NUMBER.finditer(bytes(data)))
-    if not found:
-        return bytes(data)
-    at = found[rng.integers(len(found))]
-    return bytes(data[: at.start()] + _VALUES[rng.integers(len(_VALUES))] + data[at.end() :])
-
-
-def _swapped(data: bytearray, rng: np.random.Generator) -> bytes:
-    lines = bytes(data).split(b"\n")
-    i, j = rng.integers(len(lines), size=2)
-    lines[i], lines[j] = lines[j], lines[i]
-    return b"\n".join(lines)
-
-
-_DAMAGES = (
-    _flipped, _overwritten, _cut_off, _without, _doubled, _moved, _renumbered, _renumbered, _renumbered, _swapped,
-)  # fmt: skip
 
 
 def _work(kind: str, how: str, first: int, last: int, seed: int) -> None:
@@ -158,9 +74,10 @@ def fuzz(
     firsts: dict[str, int] = {}
     began, first = time.perf_counter(), 0
     while first < n_files:
-        command = [sys.executable, __file__, "--work", kind, how, *map(str, (first, n_files, seed))]
+        work = "--work", kind, how, *map(str, (first, n_files, seed))
+        command = [sys.executable, "-m", "tests.formats.damaged.campaign", *work]
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONWARNINGS": "ignore"}
-        done = subprocess.run(command, capture_output=True, text=True, env=environment)
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=ROOT)
         lines = [line.partition(" ") for line in done.stdout.splitlines()]
         for number, _, said in lines:
             said = said.strip() or f"ended by signal {-done.returncode}"

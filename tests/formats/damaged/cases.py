@@ -1,4 +1,4 @@
-"""Small valid files of scenes, batches, waivers and findings. Not for: damaging them (`fuzz_readers`)."""
+"""Small valid files of scenes, batches, waivers and findings. Not for: damaging them (`campaign`)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small valid files of robots, cases, scenes and motions. Not for: damaging them (`fuzz_readers`)."""
+"""Small valid files of robots, cases, scenes and motions. Not for: damaging them (`campaign`)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """One row for each kind of file that is read: a small valid file, what reads it, and how its structure is damaged.
 
 A new format is a row here; `tests/formats/test_damaged_files.py` holds the suffixes in the tables of readers
-against these rows. Not for: damaging (`fuzz_readers`, `fuzz_trees`, `fuzz_markup`, `fuzz_lines`, `fuzz_bytes`).
+against these rows. Not for: damaging (`campaign`, `trees`, `markup`, `lines`, `bytes`).
 """
 
 from __future__ import annotations
@@ -11,21 +11,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scripts.bench import fuzz_cases as cases
-from scripts.bench import fuzz_meshes as shapes
-from scripts.bench import fuzz_reading as reading
-from scripts.bench import fuzz_texts as texts
-from scripts.bench.fuzz_bags import bag, bag_metadata, states
-from scripts.bench.fuzz_bytes import Damage, after_header, glb_damaged, parts_damaged
-from scripts.bench.fuzz_lines import lines_damaged, table_damaged
-from scripts.bench.fuzz_markup import xml_damaged
-from scripts.bench.fuzz_trees import json_damaged, yaml_damaged
+from tests.formats.damaged import cases, reading, texts
+from tests.formats.damaged import meshes as shapes
+from tests.formats.damaged.bags import bag, bag_metadata, states
+from tests.formats.damaged.bytes import Damage, after_header, glb_damaged, parts_damaged
+from tests.formats.damaged.lines import lines_damaged, table_damaged
+from tests.formats.damaged.markup import xml_damaged
+from tests.formats.damaged.trees import json_damaged, yaml_damaged
 from tests.formats.making_clouds import pcd, ply, table
 from tests.formats.making_moveit import FIRST
 from tests.formats.making_octree import octree
 
 CELLS = {(0, 0, 0): True, (1, 0, 0): True, (0, -1, 2): False, (-9, 4, 4): True}
-SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
+SKETCH = Path(__file__).parents[3] / "scenes" / "sketches" / "d_cell.yaml"
 POINTS = np.concatenate([shapes.CUBE, [[np.nan] * 3]])
 
 

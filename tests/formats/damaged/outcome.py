@@ -1,6 +1,6 @@
 """What comes of a damaged file: it is read, refused by an error of ours, or shows a fault of its reader.
 
-Not for: the files (`fuzz_readers`).
+Not for: the files (`campaign`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import ClearanceError
-from scripts.bench.fuzz_seeds import Reader
+from tests.formats.damaged.rows import Reader
 
 MAY_BE_INFINITE = frozenset(
     {"lower", "upper", "velocity", "acceleration", "limits", "trajectory", "goal", "start", "end"}

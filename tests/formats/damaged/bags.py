@@ -1,6 +1,6 @@
 """Small bags in each container that rosbags writes; of a folder its one file with the messages.
 
-Not for: damaging them (`fuzz_readers`).
+Not for: damaging them (`campaign`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What reads each kind of file: functions of its content, a folder that they may write into, and its name.
 
-Not for: the files (`fuzz_seeds`), nor damaging them (`fuzz_readers`).
+Not for: the files (`rows`), nor damaging them (`campaign`).
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ import io
 from collections.abc import Callable
 from pathlib import Path
 
-from scripts.bench.fuzz_meshes import binary_stl
-from scripts.bench.fuzz_texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
+from tests.formats.damaged.meshes import binary_stl
+from tests.formats.damaged.texts import BOXES, CASE, CONTROL, LIMITS, PATH, ROBOT, SRDF, URDF
 
 Read = Callable[[bytes, Path, str], object]
 
@@ -107,9 +107,9 @@ def bag(path: Path) -> object:
 
 def bag_folder(path: Path) -> object:
     """A bag that is a folder, of which the file beside the messages is damaged."""
-    from scripts.bench import fuzz_bags
+    from tests.formats.damaged import bags
 
-    (path.parent / "run.db3").write_bytes(fuzz_bags.bag("rosbag2 sqlite3"))
+    (path.parent / "run.db3").write_bytes(bags.bag("rosbag2 sqlite3"))
     return bag(path.parent)
 
 

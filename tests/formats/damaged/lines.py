@@ -1,6 +1,6 @@
 """Damage to text of lines and words: headers, units, separators, numbers and rows exchanged, and still such text.
 
-Not for: bytes (`fuzz_bytes`), nor documents (`fuzz_trees`).
+Not for: bytes (`bytes`), nor documents (`trees`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Damage to the structure of documents of YAML and JSON: values, keys and parts exchanged, and still a document.
 
 Bytes that are damaged anywhere end in the parser for the most part; what comes through here is asked of the
-reader itself. Not for: elements of XML (`fuzz_markup`), nor bytes (`fuzz_bytes`).
+reader itself. Not for: elements of XML (`markup`), nor bytes (`bytes`).
 """
 
 from __future__ import annotations

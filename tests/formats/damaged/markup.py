@@ -1,6 +1,6 @@
 """Damage to the structure of XML: elements, attributes and words exchanged, and still XML.
 
-Not for: documents of YAML and JSON (`fuzz_trees`), nor bytes (`fuzz_bytes`).
+Not for: documents of YAML and JSON (`trees`), nor bytes (`bytes`).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from random import Random
 
 from lxml import etree
 
-from scripts.bench.fuzz_lines import odd_word
+from tests.formats.damaged.lines import odd_word
 
 MOST_ELEMENTS = 3000
 """Of a damaged document, so that what is asked of a reader stays small."""
