@@ -1,7 +1,11 @@
 """The work of warm questions, counted: calls of Python, and what kernels count themselves.
 
-A clock says something else on each machine; these numbers are the same on all. Calls are those of functions of the
-package, and those that it makes of numpy. Comprehensions are left out, which Python calls up to 3.11 only.
+    python -m tests.simulate.counted_work
+
+writes the table anew, and says what has changed in it; rows of the shared cases stay as they are where these are
+not there. A clock says something else on each machine; these numbers are the same on all. Calls are those of
+functions of the package, and those that it makes of numpy. Comprehensions are left out, which Python calls up to
+3.11 only.
 """
 
 from __future__ import annotations
@@ -9,7 +13,7 @@ from __future__ import annotations
 import gc
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import FrameType
@@ -20,6 +24,7 @@ import clearance as cl
 from clearance.simulate.measure.resources import Resources
 from clearance.world.case import Case
 from tests.made_cases import at, ball, faces_of, torus
+from tests.shared_cases import SHARED_CASES, SHARED_NAMES
 
 ROOT = Path(__file__).parents[2]
 SCENES = tuple(path.parent.name for path in sorted((ROOT / "scenes").glob("*/case.yaml")))
@@ -163,3 +168,39 @@ def counters_of_pair(name: str) -> dict[str, dict[str, int]]:
         near = query.distance(world_from_b=at(*(share * end[:3, 3])))
         total = {counter: n + near.tally[counter] for counter, n in total.items()}
     return {"once": cl.distance(a, b, pose_b=end).tally, "50 poses": total}
+
+
+def counted_anew(before: dict) -> dict:
+    """The table as the tree has it; shared cases that are not there as they were `before`."""
+    calls = {name: calls_of(make()) for name, make in QUESTIONS.items()}
+    calls["further steps"] = calls_of_further_steps(certify=False)
+    calls["further steps, certified"] = calls_of_further_steps(certify=True)
+    runs = {name: counters_of_run(scene(name)) for name in SCENES}
+    for name in SHARED_NAMES:
+        path = SHARED_CASES / name / "case.yaml"
+        known = before.get("runs", {}).get(name)
+        runs[name] = counters_of_run(cl.load_case(path)) if path.is_file() else known
+    return {"calls": calls, "runs": runs, "pairs": {name: counters_of_pair(name) for name in PAIRS}}
+
+
+def changes(where: str, before: object, now: object) -> Iterator[str]:
+    """A line for each number that has changed."""
+    if isinstance(now, dict):
+        known = before if isinstance(before, dict) else {}
+        for key in {**known, **now}:
+            yield from changes(f"{where}{key}: ", known.get(key), now.get(key))
+    elif before != now:
+        yield f"{where}{before} -> {now}"
+
+
+def main() -> None:
+    """Writes the table."""
+    before = table() if TABLE.exists() else {}
+    now = counted_anew(before)
+    for change in changes("", before, now):
+        print(change)
+    TABLE.write_text(json.dumps(now, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,6 +1,6 @@
 """What is hot stays hot: the work of a question is what the table beside this file says, neither more nor less.
 
-A commit that changes the work on purpose writes the table anew: `python scripts/bench/work_per_question.py`.
+A commit that changes the work on purpose writes the table anew: `python -m tests.simulate.counted_work`.
 """
 
 from __future__ import annotations

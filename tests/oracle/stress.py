@@ -1,31 +1,34 @@
 """Polygon and body pairs of every hostile family against exact arithmetic, a million: what is ever wrong.
 
-    PYTHONPATH=. python scripts/bench/stress.py --rounds 100 --out stress.csv [FAMILY ... | polygons | bodies]
+    python -m tests.oracle.stress --rounds 100 --out stress.csv [FAMILY ... | polygons | bodies]
 
 Counts false and missed contacts and violated error bounds, the worst relative error, the median of bound over
 error, and the share of pairs whose contact took exact arithmetic. A round is 1000 to 1200 pairs of each family
 that is quick to prove, 220 of the others, 100 of polygons with 8 to 64 corners and 100 pairs of bodies; 100
-rounds are 1,004,000 polygon pairs and 10,000 body pairs. The truth is `tests/oracle`: a guess proven on the
+rounds are 1,004,000 polygon pairs and 10,000 body pairs. The truth is the oracle: a guess proven on the
 integer grid (certificates), else brute force in rationals. Seeds are fixed by family and round; the csv is
 written after every round, with what was done until then. Exits with 1 if anything is wrong.
 """
+
+from __future__ import annotations
 
 import argparse
 import csv
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-from stress_bodies import body_pairs
 
-from clearance import distance
+from clearance import Polyhedron, distance
 from clearance.query.distance import _measured
 from tests import oracle
 from tests.oracle.certificates import polygon_distances_sq
-from tests.strategies import FAMILIES
+from tests.strategies import BOX_FACES, FAMILIES, QUARTER_TURNS, rotations
 
 SLOW = ("unequal", "parallel_faces", "shared_vertex", "shared_edge", "vertex_on_face", "crossing_plates",
         "nearly_touching")  # fmt: skip
@@ -87,6 +90,76 @@ class Tally:
             "truth_by_certificate_percent": f"{100 * self.by_certificate / max(1, self.pairs):.1f}",
             "seconds": f"{self.seconds:.0f}",
         }
+
+
+WEDGE_FACES = [(0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)]
+PYRAMID_FACES = [(0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+
+
+class Part(NamedTuple):
+    """A body, and its corners and faces as the oracle takes them."""
+
+    shape: Polyhedron
+    vertices: np.ndarray
+    faces: list
+
+
+def part(random: np.random.Generator) -> Part:
+    """A box, a wedge or a pyramid, 1e-3 to 2 wide, about the origin."""
+    size = (
+        10.0 ** random.uniform(-3.0, 0.3, 3)
+        if random.random() < 0.5
+        else random.choice([0.25, 0.5, 1.0], 3)
+    )
+    kind = random.integers(3)
+    if kind == 0:
+        corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        faces = BOX_FACES
+    elif kind == 1:
+        corners = [[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (0, 1))]
+        faces = WEDGE_FACES
+    else:
+        corners = [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [0, 0, 1]]
+        faces = PYRAMID_FACES
+    vertices = 0.5 * np.array(corners, dtype=float) * size
+    return Part(Polyhedron(vertices, faces), vertices, faces)
+
+
+def pose(random: np.random.Generator, spread: float, square: bool) -> np.ndarray:
+    """Any pose, or a quarter turn at a quarter of a metre."""
+    matrix = np.eye(4)
+    if square:
+        matrix[:3, :3] = QUARTER_TURNS[random.integers(24)]
+        matrix[:3, 3] = random.integers(-4, 5, 3) / 4.0
+    else:
+        matrix[:3, :3] = rotations(random, 1)[0]
+        matrix[:3, 3] = random.normal(size=3) * spread
+    return matrix
+
+
+def body_pairs(random: np.random.Generator, n: int) -> Iterator[tuple]:
+    """`n` tuples (family, a, b, pose_a, pose_b), families in turn."""
+    for i in range(n):
+        a, b = part(random), part(random)
+        name = (
+            "bodies_apart",
+            "bodies_square",
+            "bodies_close",
+            "bodies_far_away",
+            "bodies_nested",
+        )[i % 5]
+        square = name == "bodies_square"
+        spread = {"bodies_close": 0.3, "bodies_nested": 0.02}.get(name, 1.5)
+        pose_a, pose_b = pose(random, 0.3, square), pose(random, spread, square)
+        if name == "bodies_far_away":
+            offset = random.normal(size=3) * 10.0 ** random.uniform(0.0, 6.0)
+            pose_a[:3, 3] += offset
+            pose_b[:3, 3] += offset
+        if name == "bodies_nested":
+            pose_b[:3, 3] += pose_a[:3, 3]
+            vertices = 0.1 * b.vertices
+            b = Part(Polyhedron(vertices, b.faces), vertices, b.faces)
+        yield name, a, b, pose_a, pose_b
 
 
 def from_least_corner(polygon: np.ndarray) -> np.ndarray:
