@@ -1,4 +1,4 @@
-"""The marks that follow from the names that a test, its fixtures and their callees in `tests` use.
+"""The marks that follow from the names that a test, its fixtures and their callees in `tests` and `makers` use.
 
 `cold`: starts a process, or begins with empty caches. `browser`: drives Chromium. `peer`: asks another
 library the same question. `shared`: reads the cases beside the repository. What no name gives away carries
@@ -15,6 +15,7 @@ from types import CodeType, FunctionType, ModuleType
 from tests.shared_cases import SHARED_CASES
 
 TESTS = Path(__file__).parent
+MAKERS = TESTS.parent / "scripts" / "makers"
 PEERS = {
     "coal",
     "fcl",
@@ -45,19 +46,23 @@ def marks_of(functions: Iterable[Callable]) -> set[str]:
 
 @functools.cache
 def _looked_at(function: FunctionType) -> tuple[frozenset[str], tuple[FunctionType, ...]]:
-    """The marks of what a function itself uses, and what it may call in `tests`."""
+    """The marks of what a function itself uses, and what it may call in `tests` and `makers`."""
     used = list(_used(function))
     marks = frozenset(mark for value in used for mark in _marks_of_value(value))
     return marks, tuple(callee for value in used for callee in _functions_of(value))
 
 
 def _functions_of(value: object) -> list[FunctionType]:
-    """The functions of `tests` that come with a value: itself, or a class's methods."""
+    """The functions of `tests` and `makers` that come with a value: itself, or a class's methods."""
     if isinstance(value, str | tuple | int | float | None):
         return []
     values = vars(value).values() if isinstance(value, type) else [value]
     functions = map(_unwrapped, values)
-    return [f for f in functions if f is not None and f.__code__.co_filename.startswith(str(TESTS))]
+    return [
+        f
+        for f in functions
+        if f is not None and f.__code__.co_filename.startswith((str(TESTS), str(MAKERS)))
+    ]
 
 
 def _unwrapped(value: object) -> FunctionType | None:

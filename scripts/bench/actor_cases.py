@@ -27,8 +27,8 @@ from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.rules import Allowance
 from clearance.world.trajectory import Trajectory
-from tests.made_cases import at, spindle, torus
-from tests.strategies import rotations
+from scripts.makers.hostile_cases import at, spindle, torus
+from scripts.makers.polygon_pairs import rotations
 
 ROBOTS = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
 """Where `pip install example-robot-data` puts them."""

@@ -31,7 +31,7 @@ from clearance.kernels.mesh.surface import Surface
 from clearance.simulate.measure.layout import PairsInMotion, lay_out
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
-from tests.made_cases import arm_among_obstacles
+from scripts.makers.hostile_cases import arm_among_obstacles
 
 COLUMNS = ("what", "triangles", "steps", "threads", "ms_per_step", "ratio", "counters")
 

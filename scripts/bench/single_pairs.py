@@ -27,8 +27,8 @@ from rows import write_csv
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
-from tests.made_cases import at, ball, torus
-from tests.strategies import rotations
+from scripts.makers.hostile_cases import at, ball, torus
+from scripts.makers.polygon_pairs import rotations
 
 COLUMNS = (
     "pair",

@@ -19,7 +19,7 @@ from rich.console import Console
 from rows import write_csv
 from trajectory import COLUMNS, LIBRARIES, fastest_ratios, measured, table_of
 
-from tests.made_cases import (
+from scripts.makers.hostile_cases import (
     arm_among_obstacles,
     everything_equidistant,
     facing_plates,

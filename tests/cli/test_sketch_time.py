@@ -6,7 +6,7 @@ import pytest
 
 from clearance.cli import run
 from clearance.sketch import Sketch
-from scripts.bench.sketches.lattices import irreducible, shaken, sketched
+from scripts.makers.point_sketches import irreducible, shaken, sketched
 
 
 @pytest.fixture

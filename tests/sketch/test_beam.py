@@ -7,7 +7,7 @@ import pytest
 
 from clearance.sketch import Sketch
 from clearance.sketch.beam import nearest_branch
-from scripts.bench.sketches.lattices import constructed, sketched
+from scripts.makers.point_sketches import constructed, sketched
 
 
 def placed(s: Sketch) -> np.ndarray:

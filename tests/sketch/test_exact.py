@@ -8,7 +8,7 @@ import pytest
 from clearance.sketch import Sketch
 from clearance.sketch.equations import Lengths, Linear
 from clearance.sketch.graph.graph import DIRECTION
-from scripts.bench.sketches.lattices import flipped, patch
+from scripts.makers.point_sketches import flipped, patch
 from tests.examples import some_slow
 from tests.sketch.patterns import distances, irreducible, prism, shaken, truth
 

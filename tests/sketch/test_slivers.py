@@ -7,7 +7,7 @@ import pytest
 from clearance.sketch.descent import ProblemPart, descend
 from clearance.sketch.execution import at_unit
 from clearance.sketch.folds import folds
-from scripts.bench.sketches.lattices import slivered
+from scripts.makers.point_sketches import slivered
 
 
 def checked(seed, n):

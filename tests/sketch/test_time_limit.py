@@ -12,7 +12,7 @@ import pytest
 from clearance.errors import BadDimension
 from clearance.sketch import Sketch
 from clearance.sketch.effort import OutOfTime, TimeLimit
-from scripts.bench.sketches.lattices import irreducible, shaken, sketched, slivered
+from scripts.makers.point_sketches import irreducible, shaken, sketched, slivered
 
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 

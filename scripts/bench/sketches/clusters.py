@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from scripts.bench.sketches.lattices import irreducible, shaken, sketched
 from scripts.bench.sketches.slvs import slvs_solve
 from scripts.bench.sketches.table import Table, clocked, relative, spread
+from scripts.makers.point_sketches import irreducible, shaken, sketched
 
 
 def irreducible_clusters(table: Table, seeds: int, peers: bool) -> None:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from clearance.sketch import Sketch
-from scripts.bench.sketches.lattices import patch
 from scripts.bench.sketches.table import Table, clocked, relative, spread, timed
+from scripts.makers.point_sketches import patch
 
 SKETCHES = Path(__file__).parents[3] / "scenes" / "sketches"
 

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from scripts.bench.sketches.lattices import (
+from scripts.bench.sketches.slvs import slvs_solve
+from scripts.bench.sketches.table import Table, clocked, relative, spread, timed
+from scripts.makers.point_sketches import (
     constructed,
     flipped,
     patch,
@@ -14,8 +16,6 @@ from scripts.bench.sketches.lattices import (
     sketched,
     slivered,
 )
-from scripts.bench.sketches.slvs import slvs_solve
-from scripts.bench.sketches.table import Table, clocked, relative, spread, timed
 
 
 def patches(table: Table, peers: bool) -> None:
