@@ -1,12 +1,11 @@
 """Prints what it costs where everything may move: links of one robot, two robots, certificates, excused pairs.
 
-    python scripts/bench/actors.py [--rows NAME ...] [--against FOLDER] [--seconds S] [--passes N] [--csv FILE]
+    python scripts/bench/actors.py [--rows NAME ...] [--seconds S] [--passes N] [--csv FILE]
 
 One process, one thread, compiled code warm, bodies and trees made outside the clock; milliseconds of CPU, the
 median of interleaved passes. The peers get our pairs and our triangles, and are asked for some evenly spread steps
 where all would exceed their share of `--seconds`. "off by" is the greatest |ours - theirs| at these steps; with
-their own cylinders and boxes the peers would iterate, and be off by up to 2e-6 m. `--against` another checkout
-holds `steps` of today's scenes against that (`against`).
+their own cylinders and boxes the peers would iterate, and be off by up to 2e-6 m.
 
 A row is a function in `ROWS` that answers dictionaries with some of `COLUMNS`.
 """
@@ -25,7 +24,6 @@ import inputs  # first: it sets the number of threads before numpy is loaded
 import numpy as np
 from actor_cases import CASES, PANDA, absent_robots, read, two_arms
 from actor_loops import Actors, certified_sections, loops_of, measured_sections, sections_of
-from against import rows_against
 from clock import interleaved
 from peers import absent_peers, versions
 from rich.console import Console
@@ -49,7 +47,6 @@ TARGETS = {
     "pinocchio": (">=", 50.0),
     "FCL": (">=", 100.0),
     "certificate": ("<=", 10.0),
-    "against": ("<=", 1.05),
     "audit": ("<=", 60.0),
     "unsynchronised": ("<=", 5.0),
 }
@@ -64,8 +61,6 @@ class Arguments(argparse.Namespace):
     rows: list[str]
     seconds: float
     passes: int
-    against: Path | None
-    cases: list[Path]
     csv: Path | None
 
 
@@ -94,10 +89,6 @@ def arguments() -> Arguments:
     parser.add_argument("--rows", nargs="*", choices=ROWS, default=list(ROWS), metavar="NAME")
     parser.add_argument("--seconds", type=float, default=3.0, help="CPU a loop and case")
     parser.add_argument("--passes", type=int, default=7)
-    parser.add_argument("--against", type=Path, help="another checkout", metavar="FOLDER")
-    parser.add_argument(
-        "--cases", nargs="*", type=Path, default=inputs.case_files(), help="of `standing scenes`"
-    )
     parser.add_argument("--csv", type=Path, help="write the rows here")
     return parser.parse_args(namespace=Arguments())
 
@@ -178,27 +169,6 @@ def handover() -> Case:
     return cl.load_case(inputs.SCENES / "dual_arm_handover" / "case.yaml")
 
 
-def standing(asked: Arguments) -> list[dict]:
-    """`steps` of today's scenes in this checkout and another."""
-    if asked.against is None:
-        return []
-    return [
-        {
-            "what": "against another checkout",
-            "case": row["scene"],
-            "method": "steps",
-            "pairs": row["pairs"],
-            "steps": row["steps"],
-            "ms": row["ms_per_step"],
-            "ratio": row["ratio_to_other"],
-            "ratio_of": "the other's time",
-            "target": target_of("against"),
-            "detail": f"least={row['least']:.3g} greatest={row['greatest']:.3g} same_bits={row['same_bits']}",
-        }
-        for row in rows_against(asked.against, asked.cases, 3 * asked.passes)
-    ]
-
-
 def audited(asked: Arguments) -> list[dict]:
     """All excused pairs of a 7-axis arm, once; seconds on one thread."""
     robot, matrix = read(*PANDA)
@@ -248,7 +218,7 @@ def unsynchronised(asked: Arguments) -> list[dict]:
     ]
 
 
-OF_A_CLONE = ("standing scenes", "certificate of a handed part")
+OF_A_CLONE = ("certificate of a handed part",)
 """Rows whose robots come with what the tests need."""
 
 ROWS: dict[str, Callable[[Arguments], list[dict]]] = {
@@ -258,7 +228,6 @@ ROWS: dict[str, Callable[[Arguments], list[dict]]] = {
     "certificate of two arms": partial(certificates, "two_arms", two_arms),
     "certificate of a handed part": partial(certificates, "dual_arm_handover", handover),
     "unsynchronised": unsynchronised,
-    "standing scenes": standing,
     "audit": audited,
 }
 

@@ -2,22 +2,20 @@
 
 Bent, pushed: a case that keeps its limits, its path bent by smooth offsets, or a base or an obstacle pushed 1 to
 50 mm too far towards what is near; the change that takes it back is known. Raised: the fail limit of a case is set
-between its least clearance and that of a change of it. Not for: files (`gain_files`), solving them (`gain`).
+between its least clearance and that of a change of it. Not for: solving them (`gain`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
-from inputs import SCENES, SHARED
+from harness import SCENES, SHARED
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.gains.answer import INTERVALS, Gain
-from clearance.gains.joint_ranges import joint_ranges, require_within_limits
+from clearance.gains.joint_ranges import require_within_limits
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.shift import Shift, base_shift, obstacle_shift
 from clearance.record.record import PairMinimum
@@ -56,9 +54,6 @@ BENDS = 8
 MOST_BEND, ARM = 0.5, 0.5
 """[rad] how far a path is bent at most; [m] about what a radian of it moves."""
 
-ROOM = 0.1
-"""[rad] How far a joint that has room may be off its path."""
-
 TRIED = 6
 """Changes of which the one that clears most is taken, where a limit is raised."""
 
@@ -71,10 +66,9 @@ Perturbation = JointOffsets | Shift
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A case that keeps its fail limit, with the file that it is from."""
+    """A case that keeps its fail limit."""
 
     name: str
-    file: Path
     case: Case
 
 
@@ -86,7 +80,7 @@ class ViolatedCase:
         how: one of `HOW`. kind, who: what may be changed to mend it. known: the size of a change that does.
     """
 
-    source: Source
+    source: str
     how: str
     case: Case
     kind: str
@@ -104,7 +98,7 @@ def sources(names: Sequence[str] = ()) -> Iterator[Source]:
         least = _proven(case)
         if least > LEAST:
             limited = replace(case, limits=Limits(fail=LEFT * least))
-            yield Source(folder.name, folder / "case.yaml", limited)
+            yield Source(folder.name, limited)
 
 
 def violated_cases(
@@ -122,45 +116,6 @@ def violated_cases(
             n_made += 1
         if n_made == n_cases:
             return
-
-
-def bent_paths(n_cases: int, seed: int = 0, names: Sequence[str] = ()) -> Iterator[ViolatedCase]:
-    """So many paths, in turn of each source of some names, bent at the joints that have room alone.
-
-    A hand that is closed has none: where its fingers are bent too, hardly a path is within the limits of joints.
-    """
-    rng, kept = np.random.default_rng(seed), [*sources(names)]
-    n_made = 0
-    for i in range(20 * n_cases):
-        offsets = _offsets(kept[i % len(kept)].case, rng)
-        if offsets is not None:
-            one = _bent(kept[i % len(kept)], offsets, _bend_with_room(offsets, rng), rng)
-            if one is not None:
-                yield one
-                n_made += 1
-        if n_made == n_cases:
-            return
-
-
-def change_of(case: Case, kind: str, who: str, n_intervals: int) -> Perturbation:
-    """What may be changed of a case; of a path with splines on so many intervals, its ends as they are."""
-    if kind != "waypoints":
-        return (obstacle_shift if kind == "obstacle" else base_shift)(case, who)
-    i_robot = index_of_robot(case.robots, who)
-    times = case.robots[i_robot].given_trajectory.times
-    return joint_offsets(case, i_robot, n_intervals, ((times[0], times[0]), (times[-1], times[-1])))
-
-
-def intervals_of(case: Case, found: Gain) -> int:
-    """On how many intervals the splines are that a path was mended with; else the fewest."""
-    for n_intervals in INTERVALS if found.kept and found.request.kind == "waypoints" else ():
-        change = change_of(case, "waypoints", found.who, n_intervals)
-        assert isinstance(change, JointOffsets)
-        splines = change.basis.at(change.placed.given_trajectory.times)
-        x = np.linalg.lstsq(splines, found.change, rcond=None)[0]
-        if np.abs(splines @ x - found.change).max() < 1e-9:
-            return n_intervals
-    return INTERVALS[0]
 
 
 def _proven(case: Case) -> float:
@@ -189,7 +144,7 @@ def _taken_back(source: Source, kind: str, rng: np.random.Generator) -> Violated
     for sign in (1.0, -1.0):
         x = _until_short(shift, sign * way / np.linalg.norm(way), NEAR, 1.0, rng)
         if x is not None:
-            return ViolatedCase(source, HOW[0], shift.case_of(x), kind, who, shift.size(x))
+            return ViolatedCase(source.name, HOW[0], shift.case_of(x), kind, who, shift.size(x))
     return None
 
 
@@ -201,7 +156,7 @@ def _bent(
     if x is None or not _within_limits(offsets, x):
         return None
     who = offsets.placed.robot.name
-    return ViolatedCase(source, HOW[0], offsets.case_of(x), "waypoints", who, offsets.size(x))
+    return ViolatedCase(source.name, HOW[0], offsets.case_of(x), "waypoints", who, offsets.size(x))
 
 
 def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase | None:
@@ -226,7 +181,7 @@ def _raised(source: Source, kind: str, rng: np.random.Generator) -> ViolatedCase
         return None
     fail = low + float(rng.uniform(*OPENED)) * (high - low)
     violated = replace(case, limits=Limits(fail=fail))
-    return ViolatedCase(source, HOW[-1], violated, kind, who, change.size(best))
+    return ViolatedCase(source.name, HOW[-1], violated, kind, who, change.size(best))
 
 
 def _near_pair(
@@ -254,9 +209,10 @@ def _offsets(case: Case, rng: np.random.Generator) -> JointOffsets | None:
     ]
     if not moving:
         return None
-    found = change_of(case, "waypoints", str(rng.choice(moving)), BENDS)
-    assert isinstance(found, JointOffsets)
-    return found
+    i_robot = index_of_robot(case.robots, str(rng.choice(moving)))
+    times = case.robots[i_robot].given_trajectory.times
+    ends = (times[0], times[0]), (times[-1], times[-1])
+    return joint_offsets(case, i_robot, BENDS, ends)
 
 
 def _random_shift(rng: np.random.Generator) -> np.ndarray:
@@ -274,16 +230,6 @@ def _bend_of_one(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
     weights = np.repeat(offsets.weights, offsets.n_splines)
     way = rng.normal(size=len(weights)) / weights
     return np.asarray(way / offsets.size(way))
-
-
-def _bend_with_room(offsets: JointOffsets, rng: np.random.Generator) -> np.ndarray:
-    """The same of the joints that may be off by `ROOM`."""
-    way = _bend_of_one(offsets, rng)
-    bent = offsets.case_of(ROOM * way).robots[offsets.i_robot]
-    beyond = {one.joint for one in joint_ranges(bent) if one.room.min() < 0.0}
-    free = [name not in beyond for name in offsets.placed.given_trajectory.joint_names]
-    way = way * np.repeat(free, offsets.n_splines)
-    return np.asarray(way / max(offsets.size(way), 1e-9))
 
 
 def _until_short(

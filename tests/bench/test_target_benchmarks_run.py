@@ -53,21 +53,6 @@ def test_needs_are_held_against_steps(tmp_path):
     assert {"pairs", "limit", "minimum", "certificate to 0.1 mm", "steps, 2 threads"} <= set(ratios)
 
 
-@pytest.mark.slow  # three cases are made, mended and checked, one in a process of its own
-def test_gains_are_kept_when_they_are_checked_anew_and_not_mended_twice(tmp_path):
-    made = ("--sources", "box_box", "--cases", 3, "--made", tmp_path / "made", "--commands", 1)
-    rows = rows_of("gain.py", tmp_path / "rows.csv", *made)
-    assert [row["kind"] for row in rows] == ["waypoints", "obstacle", "base"]
-    assert all(row["kept"] == row["checked"] == "True" for row in rows)
-    assert [row["by"] for row in rows] == ["command", "reading", "reading"]
-    assert rows_of("gain.py", tmp_path / "rows.csv", *made) == rows
-    general = ("--part", "general", "--n", 1, "--seconds", 1)
-    assert rows_of("gain.py", tmp_path / "rows.csv", *made, *general) == rows
-    with (tmp_path / "rows_general.csv").open(encoding="utf-8") as lines:
-        sizes = [row["size"] for row in csv.DictReader(lines)]
-    assert len(sizes) == 3 and all(float(size) > 0.0 for size in sizes if size)
-
-
 def test_growth_counts_more_work_for_more_triangles(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "growth.svg"
