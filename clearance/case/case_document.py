@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from clearance.errors import BadInput, at
-from clearance.formats.files.foreign_files import refuse_foreign
 from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.formats import read_scene, with_own_words
 from clearance.formats.scene.request import SceneContent, SceneRequest, includes_of
 from clearance.formats.schema import case as schema
@@ -43,7 +43,7 @@ def read_schema(
         BadInput: with the file and the field.
     """
     data = files.read(path)
-    refuse_foreign(data, path.name, "a case file")
+    refuse_foreign(data, path.name, Kind.CASE)
     raw = parse_yaml(data, path.name)
     scene_at = ScenePlace(f"{path.name}: scene", path.parent)
     if isinstance(raw, dict) and isinstance(raw.get("scene"), str):

@@ -56,9 +56,10 @@ def convert(
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.written_files import refuse_there, write_files
-    from clearance.formats.conversion.file_kind import FileKind, kind_of
+    from clearance.formats.conversion.file_kind import kind_of
     from clearance.formats.conversion.files import Conversion, converted
     from clearance.formats.files.input_files import InputFiles
+    from clearance.formats.known_formats import Kind
     from clearance.formats.motion.trajectory_request import Choice
     from clearance.formats.scene.request import includes_of
 
@@ -67,7 +68,7 @@ def convert(
     files, choice = InputFiles(in_file.parent), Choice(which, topic=topic)
     said = includes_of(dict(includes), Path())
     asked = Conversion(in_file, out_file, files, choice, package_dirs, said)
-    found = kind_of(in_file, asked.files) if kind is None else FileKind(kind)
+    found = kind_of(in_file, asked.files) if kind is None else Kind(kind)
     made = converted(asked, found)
     read: list[str | Path] = [in_file, *(one.read_from for one in asked.files.sources)]
     write_files(out_file.parent, made.files, read, force=force)

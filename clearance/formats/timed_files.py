@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from clearance.errors import BadInput, at
-from clearance.formats.files.foreign_files import refuse_foreign
 from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.motion.bag_files import files_of, is_bag
 from clearance.formats.motion.joint_columns import without_followers
 from clearance.formats.motion.pose_formats import read_poses, read_samples
@@ -69,7 +69,7 @@ def trajectory_of(
         found = (
             _of_bag(path, files, given.choice, kinds, wrapping)
             if is_bag(path)
-            else _read(path, files, read, "a trajectory")
+            else _read(path, files, read, Kind.TRAJECTORY)
         )
         with at(files.shown(path)):
             trajectory, notes = without_followers(robot, found.trajectory)
@@ -110,7 +110,7 @@ def load_trajectory(path: Path, choice: Choice, files: InputFiles | None = None)
     files = files or InputFiles(path.parent)
     if is_bag(path):
         return _of_bag(path, files, choice, {})
-    return _read(path, files, read, "a trajectory")
+    return _read(path, files, read, Kind.TRAJECTORY)
 
 
 def load_samples(path: Path, files: InputFiles) -> ReadSamples:
@@ -126,7 +126,7 @@ def load_samples(path: Path, files: InputFiles) -> ReadSamples:
             found.samples.table()
         return found
 
-    return _read(path, files, read, "a table of poses")
+    return _read(path, files, read, Kind.POSES)
 
 
 def _of_bag(
@@ -162,14 +162,14 @@ def pose_table_of(given: PoseFile, field: str, folder: Path, files: InputFiles) 
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
-        table, notes = _read(path, files, read, "a table of poses")
+        table, notes = _read(path, files, read, Kind.POSES)
     with at(field), at(files.shown(path)):
         given.timing.run_times(table.times)
         return ReadPoses(replace(table, timing=given.timing), notes)
 
 
 def _read(
-    path: Path, files: InputFiles, read: Callable[[Opener, int, str], Table], wanted: str
+    path: Path, files: InputFiles, read: Callable[[Opener, int, str], Table], kind: Kind
 ) -> Table:
     """What is in a file, which is not kept; where it cannot be read, its content may say why."""
     shown = files.shown(path)
@@ -178,5 +178,5 @@ def _read(
         return read(opened, n_bytes, shown)
     except BadInput:
         with opened() as file:
-            refuse_foreign(file.read(65536), shown, wanted)
+            refuse_foreign(file.read(65536), shown, kind)
         raise

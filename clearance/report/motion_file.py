@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import PurePath
 
 from clearance.errors import BadInput, at
-from clearance.formats.motion.trajectory_writer import WRITERS, WrittenTrajectory, written
+from clearance.formats.known_formats import Kind, written_as
+from clearance.formats.motion.trajectory_writer import WrittenTrajectory, written
 from clearance.world.case import PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.notice import NOT_MEASURED
@@ -21,13 +22,11 @@ def require_motion_file(robots: Sequence[PlacedRobot], shown: str) -> None:
     Raises:
         BadInput: no such format, no robot that moves, or several in a table.
     """
-    suffix = PurePath(shown).suffix.lower()
+    known = written_as(Kind.TRAJECTORY, shown)
     moving = [placed for placed in robots if placed.robot.moving_joints]
-    if suffix not in WRITERS:
-        raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
     if not moving:
         raise BadInput("no robot has a joint that moves", where=shown, valid="a robot with joints")
-    if len(moving) > 1 and suffix == ".csv":
+    if len(moving) > 1 and not known.is_message:
         raise BadInput(
             f"a table holds one robot, the case has {len(moving)}",
             where=shown,

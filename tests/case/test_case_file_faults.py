@@ -160,7 +160,11 @@ FAULTS = [
         "case.yaml: robot.urdf: there is no file 'no.urdf'",
     ),
     (changed("arm.urdf", "."), MissingFile, "is a folder"),
-    (changed("arm.urdf", "path.csv"), BadSyntax, "case.yaml: robot.urdf: path.csv: not XML"),
+    (
+        changed("arm.urdf", "path.csv"),
+        BadSyntax,
+        "robot.urdf: path.csv: this is a table, not a URDF file",
+    ),
     (
         changed("arm.urdf", "arm.urdf, package_dirs: [nowhere]"),
         MissingFile,

@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadTime
+from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.motion.trajectory_file import parse_trajectory
-from clearance.formats.motion.trajectory_writer import WRITERS, written
+from clearance.formats.motion.trajectory_writer import written
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
@@ -49,7 +50,7 @@ TIMES = st.lists(st.integers(-(10**12), 10**13), min_size=1, max_size=5, unique=
 
 
 @examples(200)
-@given(st.data(), TIMES, st.sampled_from(sorted(WRITERS)), st.booleans())
+@given(st.data(), TIMES, st.sampled_from(suffixes_written(Kind.TRAJECTORY)), st.booleans())
 def test_any_trajectory_comes_back_bit_for_bit(data, nanoseconds, suffix, moving):
     times = np.array([whole / 10**9 for whole in sorted(nanoseconds)])
     names = data.draw(

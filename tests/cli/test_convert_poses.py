@@ -13,13 +13,15 @@ from hypothesis import strategies as st
 
 from clearance import check
 from clearance.cli import run
+from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.motion.pose_formats import read_samples
 from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
-from clearance.formats.motion.pose_writer import SUFFIXES, written_poses
+from clearance.formats.motion.pose_writer import written_poses
 from tests.examples import examples
 from tests.formats.making_cell import load_cell
 from tests.formats.motion.test_pose_formats import STAMPED, pose
 
+SUFFIXES = suffixes_written(Kind.POSES)
 TABLE = (
     "time,x,y,z,qx,qy,qz,qw\n"
     "0.0,4.0,0.1,0.30000000000000004,0.0,0.0,0.0,1.0\n"
@@ -137,8 +139,14 @@ def test_any_poses_come_back_bit_for_bit(data, nanoseconds, suffix, child):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["a.yaml", "b.txt"], "has no suffix to write for poses; one of .csv, .json, .yaml, .yml"),
-        (["a.yaml", "b.csv", "--topic", "/a"], "a.yaml: --topic says nothing about poses"),
+        (
+            ["a.yaml", "b.txt"],
+            "has no suffix to write for a table of poses; one of .csv, .json, .yaml, .yml",
+        ),
+        (
+            ["a.yaml", "b.csv", "--topic", "/a"],
+            "a.yaml: --topic says nothing about a table of poses",
+        ),
         (["a.yaml", "a.yaml", "--force"], "would overwrite"),
         (["a.yaml", "there.csv"], "there.csv: is there already"),
         (["far.csv", "b.yaml"], "far.csv: line 4: a position is 1e+160 m away"),

@@ -81,7 +81,10 @@ def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
     [
         (["--png", "cart.urdf"], "is no .png file; --png needs one"),
         (["--glb", "worst.png"], "is no .glb file; --glb needs one"),
-        (["--trajectory", "worst.txt"], "'worst.txt' has no suffix to write; one of .csv"),
+        (
+            ["--trajectory", "worst.txt"],
+            "'worst.txt' has no suffix to write for a trajectory; one of .csv",
+        ),
         (["--trajectory", "path.csv"], "would overwrite"),
         (["--png", ""], "an empty path"),
         (["--glb", "cart.urdf/worst.glb"], "cannot be written"),

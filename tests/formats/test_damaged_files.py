@@ -1,13 +1,11 @@
 """Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
 
 The kinds are `damaged.rows`; `damaged.campaign` tries thousands of files of each. Here are some that hypothesis
-draws and makes small again, cuts, and bytes that are others; no suffix in a table of readers is without a row.
+draws and makes small again, cuts, and bytes that are others; no suffix of a format is without a row.
 """
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import tracemalloc
 import warnings
 from pathlib import Path, PurePath
@@ -19,10 +17,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-import clearance.formats
 from clearance.errors import BadInput
-from clearance.formats.motion.bag_files import SUFFIXES
-from clearance.formats.robot.robot_element import XACRO
+from clearance.formats.known_formats import ANY, FORMATS, Kind
 from tests.examples import share_of, some_slow
 from tests.formats.damaged.anywhere import damaged
 from tests.formats.damaged.outcome import not_finite, outcome
@@ -104,28 +100,16 @@ def test_little_memory_is_taken(kind, tmp_path):
         assert peak < MOST_MEMORY + 1000 * len(data)
 
 
-def suffixes() -> dict[str, list[str]]:
-    """The suffixes in each table of readers, by the module that begins with it."""
-    found = {"formats.robot.robot_element": [XACRO], "formats.motion.rosbag_file": [*SUFFIXES]}
-    seen: list[object] = []
-    for module in pkgutil.walk_packages(clearance.formats.__path__, "clearance.formats."):
-        held = vars(importlib.import_module(module.name))
-        for table in (value for key, value in held.items() if key.endswith("READERS")):
-            keys = [key for key in table if isinstance(key, str) and key.startswith(".")]
-            if keys and not any(table is one for one in seen):
-                seen.append(table)
-                found[module.name.removeprefix("clearance.")] = keys
-    return found
-
-
-def test_every_suffix_in_a_table_of_readers_has_a_row():
-    rows: dict[str, set[str]] = {}
-    for reader in READERS.values():
-        rows.setdefault(reader.table, set()).update({PurePath(reader.name).suffix, *reader.also})
-    assert {
-        name: sorted(set(keys) - rows.get(name, set())) for name, keys in suffixes().items()
-    } == {name: [] for name in suffixes()}
-    assert {name for name in rows if name} <= set(suffixes())
+def test_every_format_that_is_read_has_a_row():
+    given = {
+        (reader.kind, suffix)
+        for reader in READERS.values()
+        for suffix in (PurePath(reader.name).suffix, *reader.also)
+    }
+    read = {(one.kind, suffix) for one in FORMATS if one.read for suffix in one.suffixes}
+    assert read - given == {
+        (kind, ANY) for kind in (Kind.ROBOT, Kind.SCENE, Kind.POSES, Kind.TRAJECTORY)
+    }
 
 
 @pytest.mark.parametrize(

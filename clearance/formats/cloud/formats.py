@@ -1,8 +1,8 @@
-"""Files of scans to clouds of points: one table of suffixes. Not for: surfaces (`mesh.mesh_file`)."""
+"""Files of scans to clouds of points. Not for: surfaces (`mesh.mesh_file`)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -10,24 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, at
-from clearance.formats.cloud.pcd_file import read_pcd
-from clearance.formats.cloud.ply_points import read_ply_points
 from clearance.formats.cloud.points import Points
-from clearance.formats.cloud.points_text import read_points_text
 from clearance.formats.files.input_files import read_bytes
+from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.geometry.point_cloud import MOST_POINTS, PointCloud
 
 SAMPLED = 200
 """Points that are asked whether their ball touches another."""
-
-_READERS: dict[str, Callable[[bytes], Points]] = {
-    ".pcd": read_pcd,
-    ".ply": read_ply_points,
-    ".csv": read_points_text,
-    ".xyz": read_points_text,
-    ".txt": read_points_text,
-    ".asc": read_points_text,
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,10 +62,11 @@ def cloud_from_bytes(
         in_millimetres: True if coordinates are that name no unit themselves.
     """
     with at(name):
-        suffix = Path(name).suffix.lower()
-        if suffix not in _READERS:
-            raise BadSyntax(f"unknown format of points {suffix!r}", valid=", ".join(_READERS))
-        found = _READERS[suffix](data)
+        known = format_of(Kind.CLOUD, name)
+        if known is None:
+            suffix, valid = Path(name).suffix.lower(), ", ".join(suffixes_read(Kind.CLOUD))
+            raise BadSyntax(f"unknown format of points {suffix!r}", valid=valid)
+        found: Points = function_at(known.read)(data)
         kept, notes = _returned(found.places)
         if len(kept) > MOST_POINTS:
             raise BadShape(f"the file has {len(kept):,} points", valid=f"{MOST_POINTS:,} at most")

@@ -6,44 +6,16 @@ Not for: reading it, which may find otherwise (`files`).
 from __future__ import annotations
 
 import re
-from enum import StrEnum
 from pathlib import Path
 
 from clearance.errors import BadInput, BadShape
-from clearance.formats.files.foreign_files import known_kind, refuse_foreign
 from clearance.formats.files.input_files import InputFiles
+from clearance.formats.known_formats import FORMATS, Kind, foreign, formats_in
 from clearance.formats.motion.bag_files import is_bag
-from clearance.formats.motion.pose_table_file import COLUMNS
+from clearance.formats.text.file_start import LONGEST
 
-HEAD = 65536
-"""[bytes] Looked at."""
-
-
-class FileKind(StrEnum):
-    """What can be converted."""
-
-    TRAJECTORY = "trajectory"
-    SCENE = "scene"
-    POSES = "poses"
-
-
-_SCENES = {"sdf", "mjcf", "scene", "planning scene"}
-"""Kinds of `foreign_files` that are scenes."""
-
-_SAYS = {
-    **dict.fromkeys(
-        ("obstacles", "world", "robot_state", "allowed_collision_matrix", "collision_objects"),
-        FileKind.SCENE,
-    ),
-    **dict.fromkeys(("fixed_frame_transforms", "robot_model_name"), FileKind.SCENE),
-    **dict.fromkeys(
-        ("joint_names", "points", "joint_trajectory", "model_id", "trajectory_start"),
-        FileKind.TRAJECTORY,
-    ),
-    **dict.fromkeys(("multi_dof_joint_trajectory", "planned_trajectory"), FileKind.TRAJECTORY),
-    **dict.fromkeys(("pose", "poses", "transform", "transforms", "child_frame_id"), FileKind.POSES),
-}
-"""Keys of messages and of our scenes; the first of them in a file says what it is."""
+CONVERTED = (Kind.TRAJECTORY, Kind.SCENE, Kind.POSES)
+"""What can be converted."""
 
 _DOCUMENTS = {".yaml", ".yml", ".json"}
 
@@ -55,7 +27,7 @@ _QUOTED = re.compile(rb"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*')([ \t]*:)?""")
 _WANTED = "a trajectory, a scene or poses"
 
 
-def kind_of(path: Path, files: InputFiles) -> FileKind:
+def kind_of(path: Path, files: InputFiles) -> Kind:
     """What a file holds.
 
     Raises:
@@ -63,24 +35,24 @@ def kind_of(path: Path, files: InputFiles) -> FileKind:
         empty. BadInput: nothing says what it is.
     """
     if is_bag(path):
-        return FileKind.TRAJECTORY
-    shown = files.shown(path)
-    head = _head(path, files)
+        return Kind.TRAJECTORY
+    shown, head = files.shown(path), _head(path, files)
     if not head.removeprefix(b"\xef\xbb\xbf").strip():
         raise BadShape("the file is empty", where=shown, valid=_WANTED)
-    known = known_kind(head, shown)
-    if known in _SCENES:
-        return FileKind.SCENE
-    if known == "joint trajectory":
-        return FileKind.TRAJECTORY
-    if known is not None and known != "csv":
-        refuse_foreign(head, shown, _WANTED)
-    found = _of_keys(head) if path.suffix.lower() in _DOCUMENTS else _of_header(head)
+    known = formats_in(head, shown)
+    kinds = [one.kind for one in known if one.kind in CONVERTED]
+    if known and not kinds:
+        raise foreign(known[0], shown, _WANTED)
+    if kinds:
+        return kinds[0]
+    if path.suffix.lower() not in _DOCUMENTS:
+        return Kind.TRAJECTORY
+    found = _of_keys(head)
     if found is None:
         raise BadInput(
             "it cannot be told what this file holds",
             where=shown,
-            valid=f"--kind says it: {', '.join(FileKind)}",
+            valid=f"--kind says it: {', '.join(CONVERTED)}",
         )
     return found
 
@@ -88,21 +60,12 @@ def kind_of(path: Path, files: InputFiles) -> FileKind:
 def _head(path: Path, files: InputFiles) -> bytes:
     opened, _ = files.unread(path)
     with opened() as file:
-        return file.read(HEAD)
+        return file.read(LONGEST)
 
 
-def _of_keys(head: bytes) -> FileKind | None:
+def _of_keys(head: bytes) -> Kind | None:
     """By the first key that only one of them has; nested ones count, since messages hold messages."""
+    says = {key: one.kind for one in FORMATS for key in one.keys}
     keys = _QUOTED.sub(lambda text: text[0] if text[2] else b"", _COMMENT.sub(b"", head))
-    for found in _KEY.finditer(keys):
-        kind = _SAYS.get(found[2].decode())
-        if kind is not None:
-            return kind
-    return None
-
-
-def _of_header(head: bytes) -> FileKind:
-    """Poses for a table whose header has all columns of such a table, in whatever units and order."""
-    words = set(re.split(rb"[^a-z]+", head.split(b"\n", 1)[0].lower()))
-    is_poses = {name.encode() for name in COLUMNS} <= words
-    return FileKind.POSES if is_poses else FileKind.TRAJECTORY
+    found = (says.get(key[2].decode()) for key in _KEY.finditer(keys))
+    return next((kind for kind in found if kind is not None), None)

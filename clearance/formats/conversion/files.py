@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import NamedTuple
 
 from clearance.errors import BadInput, at
-from clearance.formats.conversion.file_kind import FileKind
-from clearance.formats.conversion.scene import SCENE_SUFFIXES, converted_scene
+from clearance.formats.conversion.scene import converted_scene
 from clearance.formats.files.input_files import InputFiles
+from clearance.formats.known_formats import WANTED, Kind, written_as
 from clearance.formats.motion import pose_writer, trajectory_writer
 from clearance.formats.motion.trajectory_request import Choice
 from clearance.formats.scene.request import SceneRequest
@@ -53,30 +53,24 @@ class ConvertedFiles(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-def converted(asked: Conversion, kind: FileKind) -> ConvertedFiles:
+def converted(asked: Conversion, kind: Kind) -> ConvertedFiles:
     """The files of a conversion.
 
     Raises:
         BadInput: what cannot be read, or cannot be written so.
     """
-    suffixes, convert = _KINDS[kind]
-    name = asked.target.name
-    if PurePath(name).suffix.lower() not in suffixes:
-        raise BadInput(
-            f"{name!r} has no suffix to write for {_WHAT[kind]}",
-            valid=f"one of {', '.join(suffixes)}",
-        )
+    written_as(kind, asked.target.name)
     _refuse_idle(asked, kind)
-    return convert(asked)
+    return _CONVERTERS[kind](asked)
 
 
-def _refuse_idle(asked: Conversion, kind: FileKind) -> None:
+def _refuse_idle(asked: Conversion, kind: Kind) -> None:
     """Nothing, if all that is said is of use.
 
     Raises:
         BadInput: the first option that says nothing about a file of this kind.
     """
-    is_motion, is_scene = kind is FileKind.TRAJECTORY, kind is FileKind.SCENE
+    is_motion, is_scene = kind is Kind.TRAJECTORY, kind is Kind.SCENE
     for option, is_given, is_used in (
         ("--which", asked.choice.which is not None, is_motion),
         ("--topic", asked.choice.topic is not None, is_motion),
@@ -85,7 +79,7 @@ def _refuse_idle(asked: Conversion, kind: FileKind) -> None:
     ):
         if is_given and not is_used:
             raise BadInput(
-                f"{option} says nothing about {_WHAT[kind]}",
+                f"{option} says nothing about {WANTED[kind]}",
                 where=asked.source.name,
                 valid=f"leave {option} out",
             )
@@ -140,15 +134,8 @@ def _of_target(asked: Conversion, changes: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{asked.target.name}: {change}" for change in changes)
 
 
-_KINDS: dict[FileKind, tuple[tuple[str, ...], Callable[[Conversion], ConvertedFiles]]] = {
-    FileKind.TRAJECTORY: (tuple(trajectory_writer.WRITERS), _trajectory),
-    FileKind.SCENE: (SCENE_SUFFIXES, _scene),
-    FileKind.POSES: (pose_writer.SUFFIXES, _poses),
-}
-"""What each kind can be written as, and what does it."""
-
-_WHAT = {
-    FileKind.TRAJECTORY: "a trajectory",
-    FileKind.SCENE: "a scene",
-    FileKind.POSES: "poses",
+_CONVERTERS: dict[Kind, Callable[[Conversion], ConvertedFiles]] = {
+    Kind.TRAJECTORY: _trajectory,
+    Kind.SCENE: _scene,
+    Kind.POSES: _poses,
 }

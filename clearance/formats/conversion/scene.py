@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from clearance.errors import BadInput, BadShape, at
 from clearance.formats.files.input_files import InputFiles
+from clearance.formats.known_formats import Kind, suffixes_written
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
@@ -25,9 +26,6 @@ from clearance.formats.schema.obstacle import Scene
 from clearance.formats.text.yaml_text import flow
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.rules import matches
-
-SCENE_SUFFIXES = (".yaml", ".yml")
-"""What can be written."""
 
 _SHOWN = 6
 """Rows that a line shows; the file has all."""
@@ -76,7 +74,7 @@ class _Loss(NamedTuple):
 
 
 def _on_comments(asked: SceneRequest) -> Iterator[_Loss]:
-    is_yaml = asked.path.suffix.lower() in SCENE_SUFFIXES
+    is_yaml = asked.path.suffix.lower() in suffixes_written(Kind.SCENE)
     if is_yaml and re.search(rb"^[ \t]*#", asked.files.read(asked.path), re.MULTILINE):
         yield _Loss("left out: its comments")
 

@@ -16,7 +16,8 @@ import numpy as np
 from clearance.errors import BadDimension, BadSyntax
 from clearance.formats.mesh.collada_geometry import local_name, words_of
 from clearance.formats.mesh.collada_scene import placed_pieces
-from clearance.formats.mesh.placing import Z_FROM_Y_UP, UpAxis, joined
+from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined
+from clearance.formats.mesh.request import MeshRequest, UpAxis
 from clearance.formats.mesh.triangles import Triangles
 from clearance.formats.text.numbers import floats
 
@@ -37,20 +38,17 @@ _Z_FROM = {
 }
 
 
-def read_collada(data: bytes, up_axis: UpAxis = "file") -> Triangles:
+def read_collada(asked: MeshRequest) -> Triangles:
     """All geometry that the document's scene places, in metres, z up.
-
-    Args:
-        up_axis: "file" turns what `<up_axis>` calls up into z up; "ros" leaves the axes as they are.
 
     Raises:
         BadSyntax: not COLLADA, or something in it that is not supported. MissingKey: what an element must
         have. BadDimension: the unit. EmptyMesh, BadPolygon, NotFinite.
     """
-    root = _geometry_only(data)
+    root = _geometry_only(asked.data)
     metres, up = _unit(root), _up(root)
     _refuse_other_units(root, metres, up)
-    return _in_metres_z_up(joined(placed_pieces(root)), metres, up, up_axis)
+    return _in_metres_z_up(joined(placed_pieces(root)), metres, up, asked.up_axis)
 
 
 def _geometry_only(data: bytes) -> Element:

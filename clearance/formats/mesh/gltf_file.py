@@ -19,6 +19,7 @@ from clearance.formats.mesh.gltf_buffers import Buffers
 from clearance.formats.mesh.gltf_mesh import mesh_pieces
 from clearance.formats.mesh.gltf_object import GltfObject
 from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles
 
 _HARMLESS = (
@@ -36,13 +37,13 @@ _READ = ("KHR_mesh_quantization",)
 _DEEPEST = 100
 
 
-def read_glb(data: bytes) -> Triangles:
+def read_glb(asked: MeshRequest) -> Triangles:
     """All triangles that the file's scene places, in metres, turned from y up to z up.
 
     Raises:
         BadSyntax: not GLB, cut off, or something in it that is not read. EmptyMesh, BadPolygon, NotFinite.
     """
-    document, binary = chunks(data)
+    document, binary = chunks(asked.data)
     _refuse_extensions(document)
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         surface = joined(_Scene(document, binary).pieces())

@@ -15,8 +15,9 @@ import numpy as np
 
 from clearance.errors import BadSyntax, at
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.mesh.formats import READERS
-from clearance.formats.mesh.placing import Z_FROM_Y_UP, UpAxis
+from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
+from clearance.formats.mesh.placing import Z_FROM_Y_UP
+from clearance.formats.mesh.request import MeshRequest, UpAxis
 from clearance.formats.mesh.triangles import (
     Triangles,
     checked,
@@ -26,9 +27,6 @@ from clearance.formats.mesh.triangles import (
 )
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.tolerance import TESSELLATION
-
-_SCANS = (".pcd", ".xyz", ".asc", ".csv", ".txt")
-"""Suffixes of files that are scans, if anything (`cloud.formats`)."""
 
 OPEN = "the surface is open: it has no inside"
 """The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
@@ -89,11 +87,13 @@ def triangles_from_bytes(
     data: bytes, name: str, up_axis: UpAxis = "file", tolerance: float = TESSELLATION
 ) -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
-    suffix = Path(name).suffix.lower()
-    if suffix not in READERS:
-        hint = "; a scan is read as points: {file: …, radius: …}" if suffix in _SCANS else ""
-        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(READERS) + hint)
-    return checked(READERS[suffix](data, up_axis, tolerance))
+    known = format_of(Kind.MESH, name)
+    if known is None:
+        suffix, valid = Path(name).suffix.lower(), ", ".join(suffixes_read(Kind.MESH))
+        if suffix in suffixes_read(Kind.CLOUD):
+            valid += "; a scan is read as points: {file: …, radius: …}"
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=valid)
+    return checked(function_at(known.read)(MeshRequest(data, up_axis, tolerance)))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:

@@ -14,6 +14,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh
 from clearance.formats.mesh.polygon_cut import cut_rings
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles, checked
 
 _FREE_FORM = frozenset({b"curv", b"curv2", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"res"})
@@ -28,7 +29,7 @@ _NO_SURFACE = frozenset(
 )
 
 
-def read_obj(data: bytes) -> Triangles:
+def read_obj(asked: MeshRequest) -> Triangles:
     """The faces of an OBJ file, polygons cut into triangles, in file order.
 
     Raises:
@@ -36,7 +37,7 @@ def read_obj(data: bytes) -> Triangles:
     """
     positions: list[list[float]] = []
     faces: list[list[int]] = []
-    lines = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
+    lines = asked.data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ").splitlines()
     for number, line in enumerate(lines, 1):  # of bytes: text would also be split at U+2028
         words = line.partition(b"#")[0].split()
         if not words:

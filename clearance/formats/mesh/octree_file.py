@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, BadSyntax, EmptyMesh, MissingKey
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles
 from clearance.formats.text.numbers import floats, integers
 
@@ -56,14 +57,14 @@ def file_of_message(data: bytes, kind: str, resolution: float, *, is_binary: boo
     return f"{first}\nid {kind}\nres {resolution!r}\ndata\n".encode() + data
 
 
-def read_octree(data: bytes) -> Triangles:
+def read_octree(asked: MeshRequest) -> Triangles:
     """The outside of the occupied cells.
 
     Raises:
         BadSyntax, MissingKey, BadShape: no octomap, another kind, cut off, or longer than its tree. EmptyMesh: no
         cell is occupied. BadDimension: a resolution that is not above 0.
     """
-    tree = octree_of(data)
+    tree = octree_of(asked.data)
     if not len(tree.sizes):
         raise EmptyMesh("no cell of the octomap is occupied", valid="at least one")
     note = (

@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, at
 from clearance.formats.mesh.polygon_cut import cut_rings
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles, checked
 from clearance.formats.text.numbers import floats, integers
 
@@ -21,13 +22,13 @@ _MOST_COLOUR = 4
 """Numbers that may follow a face's corners."""
 
 
-def read_off(data: bytes) -> Triangles:
+def read_off(asked: MeshRequest) -> Triangles:
     """The faces of an OFF file, polygons cut into triangles, in file order.
 
     Raises:
         BadSyntax: not OFF, cut off, or longer than its header says. BadPolygon, EmptyMesh, NotFinite.
     """
-    rows = [line.partition(b"#")[0].split() for line in data.splitlines()]
+    rows = [line.partition(b"#")[0].split() for line in asked.data.splitlines()]
     rows = [row for row in rows if row]
     if not rows or rows[0][0] not in _KINDS:
         raise BadSyntax(

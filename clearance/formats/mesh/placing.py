@@ -7,7 +7,6 @@ level: copies are counted. Not for: what a piece is (`collada_geometry`, `gltf_m
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
-from typing import Literal
 
 import numpy as np
 
@@ -16,9 +15,6 @@ from clearance.formats.mesh.triangles import Triangles
 
 Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 """(3, 3) turns y up, z towards the viewer into z up, -y towards the viewer; x stays."""
-
-UpAxis = Literal["file", "ros"]
-"""What becomes of COLLADA's `<up_axis>`: "file" turns as it says, "ros" ignores it as RViz and MoveIt do."""
 
 MOST_COPIED_TRIANGLES = 1_000_000
 """Triangles that instances may add to those that the file holds: 0.2 GB, and about as many as a whole cell has."""

@@ -14,19 +14,20 @@ from clearance.errors import BadSyntax, EmptyMesh, MissingKey, at
 from clearance.formats.mesh.ply_elements import elements_of
 from clearance.formats.mesh.ply_rows import PlyRows
 from clearance.formats.mesh.polygon_cut import cut_rings
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.strips import strip
 from clearance.formats.mesh.triangles import Triangles, checked, refuse_missing_corners
 
 _CORNERS = ("vertex_indices", "vertex_index")
 
 
-def read_ply(data: bytes) -> Triangles:
+def read_ply(asked: MeshRequest) -> Triangles:
     """The faces and strips of a PLY file, polygons cut into triangles, in file order.
 
     Raises:
         BadSyntax, MissingKey: not PLY, cut off, or longer than its header says. BadPolygon, EmptyMesh, NotFinite.
     """
-    elements = elements_of(data)
+    elements = elements_of(asked.data)
     points = vertices(elements)
     corners = [cut_rings(points, *rings) for rings in _rings(elements, "face", points)]
     for flat, counts in _rings(elements, "tristrips", points, ends=True):

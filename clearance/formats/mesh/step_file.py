@@ -18,10 +18,11 @@ from clearance.extras import require
 from clearance.formats.mesh.gltf_buffers import Buffers
 from clearance.formats.mesh.gltf_file import chunks, read_glb
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.step_facets import Facets, facets_of
 from clearance.formats.mesh.step_text import step_facts
 from clearance.formats.mesh.triangles import Triangles
-from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION, TESSELLATION
+from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION
 
 _PROCESS = Path(__file__).with_name("step_process.py")
 
@@ -35,11 +36,8 @@ _SINGLE = 2.0**-24 * 3.0**0.5
 """[-] How far rounding to single precision moves a point, relative to its largest coordinate."""
 
 
-def read_step(data: bytes, tolerance: float = TESSELLATION) -> Triangles:
+def read_step(asked: MeshRequest) -> Triangles:
     """All faces of a STEP file as facets, in metres, in the file's own axes.
-
-    Args:
-        tolerance: [m] how far facets may be off the surface.
 
     Raises:
         Unavailable: cascadio is missing. BadDimension: a tolerance that cannot be asked for. BadSyntax: not STEP,
@@ -49,6 +47,7 @@ def read_step(data: bytes, tolerance: float = TESSELLATION) -> Triangles:
         is asked for half the tolerance; planes, cylinders, cones, spheres and tori are held against it in 15
         points of each facet. Of free-form faces, and of the edges of all, it is the tessellator's word.
     """
+    data, tolerance = asked.data, asked.tolerance
     if not FINEST_TESSELLATION <= tolerance <= COARSEST_TESSELLATION:
         valid = f"{FINEST_TESSELLATION:g} to {COARSEST_TESSELLATION:g} m"
         raise BadDimension(f"tolerance {tolerance:g} m is given", valid=valid)
@@ -68,7 +67,7 @@ def read_step(data: bytes, tolerance: float = TESSELLATION) -> Triangles:
             f"facets are {facets.off * 1e3:.3g} mm off their face, where {off * 1e3:.3g} mm is asked for",
             valid="a larger tolerance, or a file whose edges lie on its faces",
         )
-    surface = read_glb(glb)
+    surface = read_glb(MeshRequest(glb))
     return Triangles(surface.vertices @ Z_FROM_Y_UP, surface.corners, _notes(facets), off)
 
 

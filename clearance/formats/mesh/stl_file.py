@@ -12,6 +12,7 @@ import re
 import numpy as np
 
 from clearance.errors import BadSyntax
+from clearance.formats.mesh.request import MeshRequest
 from clearance.formats.mesh.triangles import Triangles
 from clearance.formats.text.numbers import floats
 
@@ -25,12 +26,13 @@ _KEYWORDS = [i for i, word in enumerate(_FACET_WORDS) if word != b"0"]
 _COORDINATES = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 
 
-def read_stl(data: bytes) -> Triangles:
+def read_stl(asked: MeshRequest) -> Triangles:
     """The triangles of an STL file, values as stored (single precision in binary files).
 
     Raises:
         BadSyntax: cut off, or not STL.
     """
+    data = asked.data
     if len(data) >= _HEADER_BYTES:
         n_facets = int(np.frombuffer(data, "<u4", count=1, offset=_HEADER_BYTES - 4)[0])
         if len(data) == _HEADER_BYTES + n_facets * _FACET.itemsize:

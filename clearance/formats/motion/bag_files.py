@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-SUFFIXES = (".bag", ".mcap", ".db3")
+from clearance.formats.known_formats import BAGS
 
 
 def is_bag(path: Path) -> bool:
     """Whether a path is that of a bag: a folder, or a file by its suffix."""
-    return path.suffix.lower() in SUFFIXES or path.is_dir()
+    return path.suffix.lower() in BAGS or path.is_dir()
 
 
 def files_of(path: Path) -> list[Path]:

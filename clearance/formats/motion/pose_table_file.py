@@ -36,14 +36,13 @@ from clearance.formats.table.csv_table import (
     require_time,
 )
 from clearance.formats.table.table_names import notes_on_names
+from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.tolerance import LARGEST, ROUNDED_ROTATION
 from clearance.world.pose_table import PoseTable
 
-_POSITION, _QUATERNION = ("x", "y", "z"), ("qx", "qy", "qz", "qw")
+_POSITION, _QUATERNION = POSE_COLUMNS[1:4], POSE_COLUMNS[4:]
 _SLIDES = dict.fromkeys(_POSITION, False)
 """Which columns are lengths, as `column_units` asks of joints: none turns."""
-
-COLUMNS = (TIME, *_POSITION, *_QUATERNION)
 
 
 def read_csv_poses(request: PoseRequest) -> ReadSamples:
@@ -54,10 +53,10 @@ def read_csv_poses(request: PoseRequest) -> ReadSamples:
         BadInput: a unit that a column cannot have.
     """
     table = as_written(request.opened)
-    header = header_of(table, ", ".join(COLUMNS[1:]))
+    header = header_of(table, ", ".join(POSE_COLUMNS[1:]))
     columns = with_time(columns_in(header, _SLIDES, ("rad", request.length or "m")), _SLIDES)
     names = [column.name for column in columns]
-    require_time(names, ", ".join(COLUMNS[1:]))
+    require_time(names, ", ".join(POSE_COLUMNS[1:]))
     _require_columns(names)
     by_name = {column.name: column for column in columns}
     _refuse_units(by_name)
@@ -88,16 +87,17 @@ def _refuse_units(by_name: dict[str, Column]) -> None:
 
 
 def _require_columns(names: list[str]) -> None:
-    for name in COLUMNS:
+    for name in POSE_COLUMNS:
         if name not in names:
             raise MissingKey(
                 f"there is no column {name!r} in the header {','.join(names)!r:.80}",
-                valid=f"a table of poses has the columns {','.join(COLUMNS)}",
+                valid=f"a table of poses has the columns {','.join(POSE_COLUMNS)}",
             )
     for name in names:
-        if name not in COLUMNS:
+        if name not in POSE_COLUMNS:
             raise UnknownKey(
-                f"column {name!r} is not of a table of poses", valid=nearest_name(name, COLUMNS)
+                f"column {name!r} is not of a table of poses",
+                valid=nearest_name(name, POSE_COLUMNS),
             )
 
 

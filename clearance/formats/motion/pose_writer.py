@@ -9,17 +9,16 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable
-from pathlib import PurePath
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
+from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import NANO, whole_times
 from clearance.formats.motion.pose_formats import read_samples
-from clearance.formats.motion.pose_table_file import COLUMNS
 from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.formats.text.yaml_text import flow
 
 Message = dict[str, Any]
@@ -38,36 +37,54 @@ def written_poses(samples: PoseSamples, shown: str) -> WrittenPoses:
     Messages are a Path, or transforms where the samples are of a frame of their own.
 
     Args:
-        shown: with one of `SUFFIXES`.
+        shown: with one of the suffixes that are written.
 
     Raises:
         BadInput: too much for the format. BadTime: samples less than a nanosecond apart.
     """
-    suffix = PurePath(shown).suffix.lower()
-    if suffix == ".csv":
-        content, notes = _csv(samples), _lost_in_tables(samples)
-    else:
+    known = written_as(Kind.POSES, shown)
+    content = function_at(known.write)(samples).encode()
+    if known.is_message:
         stamps = whole_times(samples.times.tolist())
-        content = WRITERS[suffix](_messages(samples, stamps.nanoseconds))
         notes = [*_lost_in_messages(samples), *([stamps.note()] if stamps.n_rounded else [])]
-    _refuse_other(samples, content.encode(), shown)
-    return WrittenPoses(content.encode(), tuple(notes))
+    else:
+        notes = _lost_in_tables(samples)
+    _refuse_other(samples, content, shown)
+    return WrittenPoses(content, tuple(notes))
 
 
-def _csv(samples: PoseSamples) -> str:
+def csv_text(samples: PoseSamples) -> str:
+    """A table: times, positions, quaternions."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    writer.writerow(POSE_COLUMNS)
     columns = (samples.times[:, None], samples.positions, samples.quaternions)
     writer.writerows(np.hstack(columns).tolist())
     return text.getvalue()
 
 
-def _messages(samples: PoseSamples, nanoseconds: list[int]) -> Message:
+def yaml_text(samples: PoseSamples) -> str:
+    """A line for each key of the message, and one for each pose."""
+    lines = []
+    for key, value in _message(samples).items():
+        if isinstance(value, list):
+            lines += [f"{key}:", *(f"- {flow(one)}" for one in value)]
+        else:
+            lines.append(f"{key}: {flow(value)}")
+    return "\n".join([*lines, ""])
+
+
+def json_text(samples: PoseSamples) -> str:
+    """The same message in JSON."""
+    return json.dumps(_message(samples), ensure_ascii=False) + "\n"
+
+
+def _message(samples: PoseSamples) -> Message:
     """A Path; a TFMessage where the samples say of which frame they are."""
     key, place, turn = ("pose", "position", "orientation")
     if samples.child:
         key, place, turn = ("transform", "translation", "rotation")
+    nanoseconds = whole_times(samples.times.tolist()).nanoseconds
     rows = zip(nanoseconds, samples.positions.tolist(), samples.quaternions.tolist(), strict=True)
     messages = [
         {
@@ -88,28 +105,6 @@ def _messages(samples: PoseSamples, nanoseconds: list[int]) -> Message:
 def _header(nanoseconds: int, frame: str) -> Message:
     seconds, rest = divmod(nanoseconds, NANO)
     return {"stamp": {"sec": seconds, "nanosec": rest}, "frame_id": frame}
-
-
-def _yaml(message: Message) -> str:
-    """A line for each key, and one for each pose."""
-    lines = []
-    for key, value in message.items():
-        if isinstance(value, list):
-            lines += [f"{key}:", *(f"- {flow(one)}" for one in value)]
-        else:
-            lines.append(f"{key}: {flow(value)}")
-    return "\n".join([*lines, ""])
-
-
-def _json(message: Message) -> str:
-    return json.dumps(message, ensure_ascii=False) + "\n"
-
-
-WRITERS: dict[str, Callable[[Message], str]] = {".json": _json, ".yaml": _yaml, ".yml": _yaml}
-"""By suffix: what writes a message."""
-
-SUFFIXES = (".csv", *WRITERS)
-"""What can be written."""
 
 
 def _lost_in_tables(samples: PoseSamples) -> list[str]:

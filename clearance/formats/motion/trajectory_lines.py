@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.formats.motion.trajectory_csv import read_csv
-from clearance.formats.motion.trajectory_file import READERS
+from clearance.formats.known_formats import Kind, format_of
 from clearance.formats.table.csv_table import as_written, first_row, line_of_row
 
 
 def line_of_sample(path: str, sample: int) -> int | None:
     """The line, from 1, of a sample, from 0; None in a file that is no table, or has no such row any more."""
-    if READERS.get(Path(path).suffix.lower(), read_csv) is not read_csv or not Path(path).is_file():
+    known = format_of(Kind.TRAJECTORY, path)
+    if known is None or known.name != "CSV" or not Path(path).is_file():
         return None
     table = as_written(lambda: open(path, "rb"))
     try:

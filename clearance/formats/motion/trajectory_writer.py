@@ -9,13 +9,13 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Callable, Iterator
-from pathlib import PurePath
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
+from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import split_time, whole_times
 from clearance.formats.motion.trajectory_file import parse_trajectory
 from clearance.formats.table.column_units import VELOCITY
@@ -37,12 +37,9 @@ def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
     Raises:
         BadInput: no such format, or names that it cannot hold. BadTime: samples less than a nanosecond apart.
     """
-    suffix = PurePath(shown).suffix.lower()
-    if suffix not in WRITERS:
-        raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
-    to_text, in_nanoseconds = WRITERS[suffix]
-    content = to_text(trajectory).encode()
-    whole = whole_times(trajectory.written.times.tolist()) if in_nanoseconds else None
+    known = written_as(Kind.TRAJECTORY, shown)
+    content = function_at(known.write)(trajectory).encode()
+    whole = whole_times(trajectory.written.times.tolist()) if known.is_message else None
     is_rounded = whole is not None and whole.n_rounded > 0
     _refuse_other(trajectory, content, shown, is_rounded)
     return WrittenTrajectory(content, (whole.note(),) if whole and is_rounded else ())
@@ -50,10 +47,11 @@ def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
 
 def samples_in(trajectory: Trajectory, shown: str) -> Points | Trajectory:
     """The samples that a file of this name holds: a message has accelerations, a table the samples between."""
-    return trajectory.written if WRITERS[PurePath(shown).suffix.lower()][1] else trajectory
+    return trajectory.written if written_as(Kind.TRAJECTORY, shown).is_message else trajectory
 
 
-def _csv(trajectory: Trajectory) -> str:
+def csv_text(trajectory: Trajectory) -> str:
+    """A table: times, positions, velocities where they are known."""
     header, columns = (
         [TIME, *trajectory.joint_names],
         [trajectory.times[:, None], trajectory.positions],
@@ -68,7 +66,8 @@ def _csv(trajectory: Trajectory) -> str:
     return text.getvalue()
 
 
-def _yaml(trajectory: Trajectory) -> str:
+def yaml_text(trajectory: Trajectory) -> str:
+    """A message: a line for each list of numbers."""
     names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
     lines = [f"joint_names: [{names}]", "points:"]
     for point, (seconds, nanoseconds) in _points(trajectory):
@@ -78,7 +77,8 @@ def _yaml(trajectory: Trajectory) -> str:
     return "\n".join([*lines, ""])
 
 
-def _json(trajectory: Trajectory) -> str:
+def json_text(trajectory: Trajectory) -> str:
+    """The same message in JSON."""
     points = [
         {**point, "time_from_start": {"sec": seconds, "nanosec": nanoseconds}}
         for point, (seconds, nanoseconds) in _points(trajectory)
@@ -101,15 +101,6 @@ def _columns(samples: Points | Trajectory) -> dict[str, np.ndarray | None]:
         "velocities": samples.velocities,
         "accelerations": accelerations,
     }
-
-
-WRITERS: dict[str, tuple[Callable[[Trajectory], str], bool]] = {
-    ".csv": (_csv, False),
-    ".json": (_json, True),
-    ".yaml": (_yaml, True),
-    ".yml": (_yaml, True),
-}
-"""By suffix: what writes it, and whether it keeps times in whole nanoseconds."""
 
 
 def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded: bool) -> None:

@@ -9,7 +9,7 @@ from typing import Literal
 
 from clearance.errors import BadInput
 from clearance.formats.files.input_files import resolved
-from clearance.formats.mesh.placing import UpAxis
+from clearance.formats.mesh.request import UpAxis
 
 Geometry = Literal["collision", "visual", "collision_or_visual"]
 

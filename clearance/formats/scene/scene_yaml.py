@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from clearance.formats.files.foreign_files import refuse_foreign
+from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.moveit.planning_scene import is_planning_scene, planning_scene
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.text.yaml_file import parse_yaml
@@ -15,7 +15,7 @@ def read_scene_yaml(asked: SceneRequest) -> SceneContent:
         BadSyntax: another kind of file, or not YAML, with the place in the file.
     """
     data = asked.files.read(asked.path)
-    refuse_foreign(data, asked.shown, "a scene")
+    refuse_foreign(data, asked.shown, Kind.SCENE)
     raw = parse_yaml(data, asked.shown)
     if isinstance(raw, dict) and is_planning_scene(raw):
         return planning_scene(raw, asked)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from clearance.formats.known_formats import Kind, names_of
 from clearance.formats.preset_files import preset_names
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import STATE
@@ -33,7 +34,7 @@ def case_schema() -> dict[str, Any]:
     made = schema.Case.model_json_schema()
     parts, keys = made["$defs"], made["properties"]
     _without_nothing(made, parts)
-    keys["scene"] = _or_path(keys["scene"], "a YAML, SDF, MJCF or MoveIt file with the scene")
+    keys["scene"] = _or_path(keys["scene"], f"a file with the scene ({names_of(Kind.SCENE)})")
     keys["accept"]["items"]["enum"] = list(KINDS)
     made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
     made["anyOf"] = list(_what_moves())
@@ -44,12 +45,12 @@ def case_schema() -> dict[str, Any]:
     parts["Rule"]["anyOf"] = [{"required": ["fail"]}, {"required": ["warn"]}]
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
-    parts["PoseFile"] = _or_path(parts["PoseFile"], "a CSV file, or stamped poses in YAML or JSON")
+    parts["PoseFile"] = _or_path(parts["PoseFile"], f"a file with poses ({names_of(Kind.POSES)})")
     names = {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1}
     motion = parts["TrajectoryFile"]["properties"]
     motion["columns"] = {"anyOf": [motion["columns"], names]}
     parts["TrajectoryFile"] = _or_path(
-        parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
+        parts["TrajectoryFile"], f"a file with the motion ({names_of(Kind.TRAJECTORY)})"
     )
     parts["Tracking"] = {"anyOf": [{"const": CONTROLLERS}, parts["Tracking"]]}
     parts["AllowedPair"] = {

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
-from clearance.formats.mesh.formats import CAD
+from clearance.formats.known_formats import CAD
 from clearance.formats.schema.pose import Pose, PoseFile
 from clearance.formats.schema.shape import Triple, with_shapes
 from clearance.formats.schema.strict_model import Level, Name, StrictModel

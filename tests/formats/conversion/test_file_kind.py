@@ -5,8 +5,10 @@ import json
 import pytest
 
 from clearance.errors import BadInput, BadShape
-from clearance.formats.conversion.file_kind import HEAD, FileKind, kind_of
+from clearance.formats.conversion.file_kind import kind_of
 from clearance.formats.files.input_files import InputFiles
+from clearance.formats.known_formats import Kind
+from clearance.formats.text.file_start import LONGEST
 from tests.formats import making_messages, making_moveit
 from tests.formats.making import CASE, PATH
 from tests.formats.making_cell import DOOR
@@ -21,7 +23,7 @@ DISPLAY = {"model_id": "a", "trajectory": [robot_trajectory()], "trajectory_star
 MOVED = {"header": {}, "child_frame_id": "door", "transform": {}}
 
 
-def told(folder, name: str, text: str) -> FileKind:
+def told(folder, name: str, text: str) -> Kind:
     (folder / name).write_text(text)
     return kind_of(folder / name, InputFiles(folder))
 
@@ -86,4 +88,4 @@ def test_what_does_not_is_asked_for_or_refused(tmp_path, name, text, fault, says
 )
 def test_what_does_not_end_is_not_looked_at_again_and_again(tmp_path, part):
     with pytest.raises(BadInput, match="it cannot be told"):
-        told(tmp_path, "a.yaml", "x" + part * HEAD)
+        told(tmp_path, "a.yaml", "x" + part * LONGEST)

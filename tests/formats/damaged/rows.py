@@ -1,6 +1,6 @@
 """One row for each kind of file that is read: a small valid file, what reads it, and how its structure is damaged.
 
-A new format is a row here; `tests/formats/test_damaged_files.py` holds the suffixes in the tables of readers
+A new format is a row here; `tests/formats/test_damaged_files.py` holds the table of formats
 against these rows. Not for: damaging (`campaign`, `trees`, `markup`, `lines`, `bytes`).
 """
 
@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.formats.known_formats import Kind
 from tests.formats.damaged import cases, reading, texts
 from tests.formats.damaged import meshes as shapes
 from tests.formats.damaged.bags import bag, bag_metadata, states
@@ -34,7 +35,7 @@ class Reader(NamedTuple):
         name: of the file. valid: its content.
         reads: reads a content, in a folder that it may write into, under a name.
         damage: another content, of which the structure is damaged in ways that a `Random` draws.
-        table: the module with the table of suffixes that its reader is in, if it is in one.
+        kind: of the rows in `known_formats` that it is for; None where its format is in no row.
         also: other suffixes that are read as this one is.
     """
 
@@ -42,7 +43,7 @@ class Reader(NamedTuple):
     valid: bytes
     reads: reading.Read
     damage: Damage
-    table: str = ""
+    kind: Kind | None = None
     also: tuple[str, ...] = ()
 
     def read(self, data: bytes, folder: Path) -> object:
@@ -66,7 +67,7 @@ def readers() -> dict[str, Reader]:
 
 def _meshes() -> dict[str, Reader]:
     pieces, words, text = parts_damaged, lines_damaged, after_header(b"end_header")
-    read, where = reading.mesh, "formats.mesh.formats"
+    read, where = reading.mesh, Kind.MESH
     return {
         "STL binary": Reader("m.stl", shapes.binary_stl(), read, pieces, where),
         "STL text": Reader("m.stl", shapes.text_stl(), read, words, where),
@@ -85,7 +86,7 @@ def _meshes() -> dict[str, Reader]:
 
 
 def _scans() -> dict[str, Reader]:
-    read, where, body = reading.points, "formats.cloud.formats", after_header(b"DATA")
+    read, where, body = reading.points, Kind.CLOUD, after_header(b"DATA")
     in_mm, plain = table(POINTS, ",", "x [mm],y [mm],z [mm]"), table(POINTS, " ", "")
     return {
         "PCD ascii": Reader("s.pcd", pcd(POINTS, "ascii"), read, lines_damaged, where),
@@ -109,14 +110,12 @@ def _drawings() -> dict[str, Reader]:
 
 
 def _robots() -> dict[str, Reader]:
-    where, beside = "formats.robot.formats", reading.robot_beside
+    where, beside = Kind.ROBOT, reading.robot_beside
     evaluated = reading.by_path(reading.xacro)
     return {
         "URDF": Reader("arm.urdf", texts.URDF, reading.robot, xml_damaged, where, (".xml",)),
         "MJCF": Reader("arm.xml", texts.MJCF, reading.robot, xml_damaged, where, (".mjcf",)),
-        "xacro": Reader(
-            "arm.xacro", texts.XACRO, evaluated, xml_damaged, "formats.robot.robot_element"
-        ),
+        "xacro": Reader("arm.xacro", texts.XACRO, evaluated, xml_damaged, where),
         "SRDF": Reader("arm.srdf", texts.SRDF, beside, xml_damaged),
         "joint limits": Reader("limits.yaml", texts.LIMITS, beside, yaml_damaged),
         "controllers": Reader("control.yaml", texts.CONTROL, beside, yaml_damaged),
@@ -124,9 +123,9 @@ def _robots() -> dict[str, Reader]:
 
 
 def _scenes() -> dict[str, Reader]:
-    read, where = reading.scene, "formats.scene.formats"
+    read, where = reading.scene, Kind.SCENE
     return {
-        "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where),
+        "scene": Reader("cell.yaml", cases.SCENE, read, yaml_damaged, where, (".yml",)),
         "PlanningScene": Reader("cell.yaml", texts.PLANNING_SCENE, read, yaml_damaged, where),
         "octomap message": Reader(
             "cell.yaml", cases.octomap_scene(octree(CELLS)), read, yaml_damaged, where
@@ -139,8 +138,8 @@ def _scenes() -> dict[str, Reader]:
 
 
 def _motions() -> dict[str, Reader]:
-    read, where = reading.trajectory, "formats.motion.trajectory_file"
-    poses, tables = reading.poses, "formats.motion.pose_formats"
+    read, where = reading.trajectory, Kind.TRAJECTORY
+    poses, tables = reading.poses, Kind.POSES
     yml = (".yml",)
     return {
         "trajectory": Reader("path.csv", texts.PATH, read, table_damaged, where),
@@ -154,7 +153,7 @@ def _motions() -> dict[str, Reader]:
 
 
 def _bags() -> dict[str, Reader]:
-    read, where = reading.by_path(reading.bag), "formats.motion.rosbag_file"
+    read, where = reading.by_path(reading.bag), Kind.TRAJECTORY
     folder = reading.by_path(reading.bag_folder)
     return {
         "bag bag": Reader("run.bag", bag("bag"), read, parts_damaged, where),

@@ -5,50 +5,10 @@ import pytest
 from clearance import check
 from clearance.case.case_file import load_case
 from clearance.errors import BadInput, BadShape, BadSyntax
-from tests.formats.making import ARM, CASE, cube_stl
+from tests.formats.making import CASE
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_urdf import BOX, link, robot
-
-SRDF = """<?xml version="1.0"?><!-- made by an assistant -->
-<robot name="arm"><group name="g"><link name="base"/><joint name="shoulder"/></group>
-<disable_collisions link1="base" link2="upper" reason="Adjacent"/></robot>"""
-SDF = '<?xml version="1.0" ?>\n<sdf version="1.7"><world name="w"><model name="m"/></world></sdf>'
-MJCF = '<mujoco model="arm"><worldbody/></mujoco>'
-SCENE = "(noname)+\n* box\n0.4 0 0.5\n0 0 0 1\n1\nbox\n0.1 0.1 0.1\n.\n"
-JOINT_TRAJECTORY = """header: {frame_id: base}
-joint_names: [shoulder]
-points:
-- positions: [0.0]
-  time_from_start: {secs: 0, nsecs: 0}
-"""
-PLANNING_SCENE = "name: x\nworld:\n  collision_objects:\n  - id: box\n"
-
-GIVEN = [
-    (
-        "arm.urdf",
-        ARM,
-        "this is a URDF robot, not a case file; name it in a case file: robot: {urdf: arm.urdf}",
-    ),
-    ("arm.xacro", ARM.replace("<link", "<xacro:arm/><link", 1), "xacro: true"),
-    ("arm.srdf", SRDF, "this is a MoveIt SRDF, not a case file; .*srdf: arm.srdf"),
-    ("world.sdf", SDF, "this is an SDF world or model"),
-    ("arm.xml", MJCF, "this is a MuJoCo model"),
-    ("table.scene", SCENE, "this is a MoveIt scene"),
-    ("scene.txt", SCENE, "this is a MoveIt scene"),
-    ("path.yaml", JOINT_TRAJECTORY, "this is a ROS JointTrajectory, .*trajectory: path.yaml"),
-    ("scene.yaml", PLANNING_SCENE, "this is a MoveIt planning scene"),
-    ("post.stl", cube_stl(), "this is a mesh.*mesh: {file: post.stl"),
-    ("path.csv", "time,shoulder\n0,0\n", "this is a table.*trajectory: path.csv"),
-]
-
-
-@pytest.mark.parametrize(("name", "content", "says"), GIVEN, ids=[name for name, *_ in GIVEN])
-def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
-    (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
-    with pytest.raises(BadSyntax, match=says) as caught:
-        load_case(tmp_path / name)
-    told = str(caught.value)
-    assert told.startswith(f"{name}: ") and "\n" not in told
+from tests.formats.test_known_formats import JOINT_TRAJECTORY, SCENE, SDF
 
 
 @pytest.mark.parametrize(
@@ -56,13 +16,8 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
     [
         (
             changed("urdf: arm.urdf", "urdf: w.sdf"),
-            "robot.urdf: w.sdf: this is an SDF",
+            "robot.urdf: w.sdf: this is an SDF world or model",
             {"w__sdf": SDF},
-        ),
-        (
-            changed("urdf: arm.urdf", "urdf: a.srdf"),
-            "a.srdf: this is a MoveIt SRDF",
-            {"a__srdf": SRDF},
         ),
         (
             changed("file: path.csv", "file: p.txt"),
@@ -70,35 +25,17 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
             {"p__txt": JOINT_TRAJECTORY},
         ),
         (
-            changed("file: path.csv", "file: p.yaml"),
-            "p.yaml: this is a MoveIt planning scene",
-            {"p__yaml": PLANNING_SCENE},
-        ),
-        (
             CASE.partition("scene:")[0] + "scene: t.yaml\ntrajectory: path.csv\n",
-            "t.yaml: this is a MoveIt scene, not a scene; call it .scene",
+            "scene: t.yaml: this is a MoveIt scene, not a scene; call it .scene",
             {"t__yaml": SCENE},
         ),
-        (
-            changed("urdf: arm.urdf", "urdf: other.yaml"),
-            "robot.urdf: other.yaml: this is a case file, not a URDF file; `clearance check other.yaml`",
-            {"other__yaml": CASE},
-        ),
-        (
-            CASE.partition("scene:")[0] + "scene: other.yaml\ntrajectory: path.csv\n",
-            "other.yaml: this is a case file, not a scene; `clearance check other.yaml` checks it",
-            {"other__yaml": CASE},
-        ),
+        (SDF, "case.yaml: this is an SDF", {}),
     ],
 )
-def test_so_is_what_a_case_names(tmp_path, case, says, files):
+def test_what_a_case_names_is_told_what_it_is(tmp_path, case, says, files):
     with pytest.raises(BadSyntax) as caught:
         load_small(tmp_path, case, **files)
     assert says in str(caught.value)
-
-
-def test_case_files_of_all_kinds_are_case_files(tmp_path):
-    assert load_small(tmp_path, "\ufeff# a comment\n---\n" + CASE).name == "small"
 
 
 def test_a_trajectory_is_named_by_its_path_alone(tmp_path):

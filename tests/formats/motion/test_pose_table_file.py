@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from clearance.errors import BadInput
 from clearance.formats.motion.pose_formats import read_poses
-from clearance.formats.motion.pose_table_file import COLUMNS, parse_pose_table
+from clearance.formats.motion.pose_table_file import parse_pose_table
 from clearance.formats.motion.pose_table_request import PoseRequest
+from clearance.formats.text.file_start import POSE_COLUMNS
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 
@@ -31,10 +32,12 @@ def test_each_cut_is_refused_or_reads_whole_rows_or_shorter_numbers():
         assert np.abs(cut.quaternions - whole.quaternions[:rows]).max() < 1e-6
 
 
-@given(st.permutations(COLUMNS), st.data())
+@given(st.permutations(POSE_COLUMNS), st.data())
 def test_columns_may_be_in_any_order(order, data):
     number = st.floats(-1e3, 1e3, allow_subnormal=False)
-    values = dict.fromkeys(COLUMNS, 0.0) | {name: data.draw(number) for name in "xyz"} | {"qw": 1.0}
+    values = (
+        dict.fromkeys(POSE_COLUMNS, 0.0) | {name: data.draw(number) for name in "xyz"} | {"qw": 1.0}
+    )
     line = ",".join(repr(values[name]) for name in order)
     table = parse_pose_table(f"{','.join(order)}\n{line}\n".encode(), "door.csv")
     assert table.positions.tolist() == [[values[name] for name in "xyz"]]

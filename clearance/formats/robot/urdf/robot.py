@@ -12,9 +12,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadSyntax, at
-from clearance.formats.files.foreign_files import refuse_foreign
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.mesh.placing import UpAxis
+from clearance.formats.known_formats import Kind, refuse_foreign
+from clearance.formats.mesh.request import UpAxis
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import angle_notices
 from clearance.formats.robot.compound_joints import frames_between
@@ -118,7 +118,7 @@ def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[st
 
         return expanded(request, files)
     data, shown = files.read(request.path), files.shown(request.path)
-    refuse_foreign(data, shown, "a URDF file")
+    refuse_foreign(data, shown, Kind.ROBOT)
     if request.path.suffix.lower() == XACRO:
         raise BadSyntax("this is a xacro file, not a URDF file", where=shown, valid=ALLOW_XACRO)
     return data, ()

@@ -1,0 +1,189 @@
+"""The table of formats: what follows from a row, and what the guide and the schema say of all."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from clearance.errors import BadInput, BadSyntax
+from clearance.extras import LIBRARIES
+from clearance.formats import known_formats
+from clearance.formats.known_formats import (
+    ANY,
+    FORMATS,
+    Format,
+    Kind,
+    format_of,
+    function_at,
+    names_of,
+    refuse_foreign,
+    suffixes_read,
+    written_as,
+)
+from clearance.formats.scene import formats as scene_formats
+from clearance.formats.scene.request import SceneContent
+from clearance.formats.schema.json_schema import case_schema
+from clearance.world.notice import Notice, Severity
+from tests.formats.making import ARM, CASE, cube_stl
+from tests.formats.making_case import load_small
+
+GUIDE = Path(__file__).resolve().parents[2] / "scripts" / "docs" / "case_file.md"
+
+SRDF = """<?xml version="1.0"?><!-- made by an assistant -->
+<robot name="arm"><group name="g"><link name="base"/><joint name="shoulder"/></group>
+<disable_collisions link1="base" link2="upper" reason="Adjacent"/></robot>"""
+XACRO = ARM.replace("<link", "<xacro:arm/><link", 1)
+SDF = '<?xml version="1.0" ?>\n<sdf version="1.7"><world name="w"><model name="m"/></world></sdf>'
+MJCF = '<mujoco model="arm"><worldbody/></mujoco>'
+SCENE = "(noname)+\n* box\n0.4 0 0.5\n0 0 0 1\n1\nbox\n0.1 0.1 0.1\n.\n"
+JOINT_TRAJECTORY = """header: {frame_id: base}
+joint_names: [shoulder]
+points:
+- positions: [0.0]
+  time_from_start: {secs: 0, nsecs: 0}
+"""
+PLANNING_SCENE = "name: x\nworld:\n  collision_objects:\n  - id: box\n"
+POSES = "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n"
+
+FOREIGN = [
+    (Kind.CASE, "arm.urdf", ARM, "a URDF robot, not a case file; .*robot: {urdf: arm.urdf}"),
+    (Kind.CASE, "arm.xacro", XACRO, "a xacro robot, .*xacro: true"),
+    (Kind.CASE, "arm.srdf", SRDF, "a MoveIt SRDF, not a case file; .*srdf: arm.srdf"),
+    (Kind.CASE, "world.sdf", SDF, "an SDF world or model"),
+    (Kind.CASE, "arm.xml", MJCF, "a MuJoCo model"),
+    (Kind.CASE, "table.scene", SCENE, "a MoveIt scene"),
+    (Kind.CASE, "scene.txt", SCENE, "a MoveIt scene"),
+    (Kind.CASE, "path.yaml", JOINT_TRAJECTORY, "a ROS JointTrajectory, .*trajectory: path.yaml"),
+    (Kind.CASE, "scene.yaml", PLANNING_SCENE, "a MoveIt planning scene"),
+    (Kind.CASE, "post.stl", cube_stl(), "a mesh, .*mesh: {file: post.stl"),
+    (Kind.CASE, "a.gltf", "{}", "a mesh, not a case file; export it as .glb"),
+    (Kind.CASE, "run.mcap", "", "a ROS bag, not a case file; .*trajectory: run.mcap"),
+    (Kind.CASE, "scan.pcd", "", "a scan, not a case file; .*points: {file: scan.pcd"),
+    (Kind.CASE, "path.csv", "time,shoulder\n0,0\n", "a table, .*trajectory: path.csv"),
+    (Kind.CASE, "door.csv", POSES, "a table of poses, not a case file; .*moves: door.csv"),
+    (Kind.ROBOT, "w.sdf", SDF, "an SDF world or model, not a URDF file"),
+    (Kind.ROBOT, "a.srdf", SRDF, "a MoveIt SRDF, not a URDF file"),
+    (Kind.ROBOT, "a.urdf", MJCF, "a MuJoCo model, not a URDF file; call it .xml"),
+    (Kind.ROBOT, "other.yaml", CASE, "a case file, not a URDF file; `clearance check other.yaml`"),
+    (Kind.SCENE, "other.yaml", CASE, "a case file, not a scene; `clearance check other.yaml`"),
+    (Kind.SCENE, "t.yaml", SCENE, "a MoveIt scene, not a scene; call it .scene"),
+    (Kind.TRAJECTORY, "p.txt", JOINT_TRAJECTORY, "a ROS JointTrajectory, not a trajectory"),
+    (Kind.TRAJECTORY, "p.yaml", PLANNING_SCENE, "a MoveIt planning scene, not a trajectory"),
+]
+
+
+@pytest.mark.parametrize(("kind", "name", "content", "says"), FOREIGN)
+def test_a_file_of_another_format_is_told_what_it_is(kind, name, content, says):
+    data = content if isinstance(content, bytes) else content.encode()
+    with pytest.raises(BadSyntax, match=f"this is {says}") as caught:
+        refuse_foreign(data, f"folder/{name}", kind)
+    told = str(caught.value)
+    assert told.startswith(f"folder/{name}: ") and "\n" not in told
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "content"),
+    [
+        (Kind.CASE, "case.yaml", "\ufeff# a comment\n---\n" + CASE),
+        (Kind.CASE, "anything", "a: 1\n"),
+        (Kind.ROBOT, "arm.txt", ARM),
+        (Kind.ROBOT, "arm.urdf", XACRO),
+        (Kind.SCENE, "cell.txt", PLANNING_SCENE),
+        (Kind.TRAJECTORY, "path.json", JOINT_TRAJECTORY),
+        (Kind.TRAJECTORY, "door.csv", POSES),
+        (Kind.POSES, "door.csv", POSES),
+    ],
+)
+def test_what_its_own_reader_takes_is_left_to_it(kind, name, content):
+    refuse_foreign(content.encode(), name, kind)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "content", "format_name"),
+    [
+        (Kind.MESH, "A.STP", "", "STEP"),
+        (Kind.ROBOT, "arm.xml", ARM, "URDF"),
+        (Kind.ROBOT, "arm.xml", MJCF, "MJCF robot"),
+        (Kind.ROBOT, "arm.urdf", MJCF, "URDF"),
+        (Kind.ROBOT, "arm", "", "URDF"),
+        (Kind.SCENE, "cell.WORLD", "", "SDF"),
+        (Kind.SCENE, "cell", POSES, "MoveIt PlanningScene"),
+        (Kind.TRAJECTORY, "path.txt", POSES, "CSV"),
+        (Kind.TRAJECTORY, "path.json", "", "JointTrajectory in JSON"),
+        (Kind.POSES, "path.yml", JOINT_TRAJECTORY, "stamped poses in YAML"),
+        (Kind.CLOUD, "a.ply", "", "points of a PLY"),
+    ],
+)
+def test_a_file_is_read_as_its_suffix_says_and_then_its_content(kind, name, content, format_name):
+    known = format_of(kind, name, content.encode())
+    assert known is not None and known.name == format_name
+
+
+def test_nothing_reads_a_mesh_of_no_known_suffix():
+    assert format_of(Kind.MESH, "a.gltf") is None and ".gltf" not in suffixes_read(Kind.MESH)
+
+
+def test_what_cannot_be_written_is_refused():
+    assert written_as(Kind.SCENE, "a.YML").name == "YAML"
+    with pytest.raises(BadInput, match=r"'a.sdf' has no suffix to write for a scene; one of .yaml"):
+        written_as(Kind.SCENE, "a.sdf")
+
+
+def test_every_reader_and_writer_is_there():
+    for one in FORMATS:
+        for place in filter(None, (one.read, one.write)):
+            assert callable(function_at(place)), place
+        assert not one.extra or one.extra in LIBRARIES
+        assert one.kind in known_formats.WANTED or not one.write
+
+
+def test_names_are_of_one_format_of_a_kind():
+    assert len({(one.kind, one.name) for one in FORMATS}) == len(FORMATS)
+
+
+def test_the_guide_has_a_row_of_each_format():
+    rows = [
+        f"| {one.kind} | {one.name} | {' '.join(f'`{s}`' for s in one.suffixes if s != ANY)} | "
+        f"{f'`{one.extra}`' if one.extra else ''} | {'yes' if one.write else ''} |"
+        for one in FORMATS
+        if one.read
+    ]
+    assert "\n".join(rows) + "\n\n" in GUIDE.read_text()
+
+
+def test_the_schema_names_every_format():
+    told = json.dumps(case_schema())
+    for kind in (Kind.SCENE, Kind.POSES, Kind.TRAJECTORY):
+        assert names_of(kind) in told
+
+
+def named(suffix: str) -> str:
+    return CASE.partition("scene:")[0] + f"scene: cell.{suffix}\ntrajectory: path.csv\n"
+
+
+def test_a_row_is_a_format(tmp_path, monkeypatch):
+    notice = Notice(Severity.WARNING, "geometry", "half of it is missing")
+    asked = []
+
+    def read(request):
+        asked.append(request)
+        row = {"name": request.files.read(request.path).decode(), "sphere": {"radius": 1.0}}
+        return SceneContent({"obstacles": [row]}, ("three trees left out",), (notice,))
+
+    row = Format("balls", Kind.SCENE, (".balls",), "scene.balls:read")
+    monkeypatch.setattr(known_formats, "FORMATS", (*FORMATS, row))
+    monkeypatch.setattr(scene_formats, "function_at", {"scene.balls:read": read}.get)
+    (tmp_path / "models").mkdir()
+    text = named("BALLS").replace("arm.urdf}", "arm.urdf, package_dirs: [models]}")
+    case = load_small(tmp_path, text, cell__BALLS="a ball")
+    assert [one.name for one in case.obstacles] == ["a ball"]
+    assert case.notes[-1] == "three trees left out" and case.notices == (notice,)
+    assert asked[0].path == tmp_path / "cell.BALLS"
+    assert asked[0].package_dirs == (tmp_path / "models",)
+
+
+def test_a_scene_of_another_suffix_is_yaml(tmp_path):
+    post = "obstacles: [{name: post, box: {size: [1, 1, 1]}, pose: {xyz: [3, 0, 0]}}]"
+    for suffix in ("yml", "txt"):
+        case = load_small(tmp_path, named(suffix), **{f"cell__{suffix}": post})
+        assert [one.name for one in case.obstacles] == ["post"]
