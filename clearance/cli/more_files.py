@@ -122,10 +122,10 @@ class MoreFiles:
 
         replay = run.session.replay(run.rows)
         if self.glb is not None:
-            from clearance.report.still.glb import glb_of
+            from clearance.report.glb import glb_of
 
             write_file(self.glb, glb_of(run.record, replay))
         if self.png is not None:
-            from clearance.report.still.picture import png_of
+            from clearance.report.picture import png_of
 
-            write_file(self.png, png_of(run.record, replay))
+            write_file(self.png, png_of(run.record, replay, run.verdict))

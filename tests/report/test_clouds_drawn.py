@@ -7,10 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
-from clearance.report.still.glb import glb_of
-from clearance.report.still.picture import png_of
-from clearance.report.still.points import MOST, as_solids
-from clearance.report.still.scene import still_of
+from clearance.report.glb import glb_of
+from clearance.report.picture import png_of
+from clearance.report.still import MOST_POINTS, as_solids, still_of
 from clearance.view import play
 from tests.made_cases import flying
 from tests.report.browser import chromium, executable
@@ -78,10 +77,12 @@ def test_stills_show_points_as_solids():
     still = still_of(replay)
     sizes = sorted(len(triangles) for _, triangles in still.shapes)
     assert sizes[-1] == 8 * 3600
-    assert png_of(record, replay).startswith(b"\x89PNG")
+    assert png_of(record, replay, run.verdict).startswith(b"\x89PNG")
     shape = mesh_from_bytes(glb_of(record, replay), "moment.glb")
     assert shape.n_triangles > 8 * 3600
-    points = np.random.default_rng(1).uniform(-1.0, 1.0, (2 * MOST + 1, 3)).astype(np.float32)
+    points = (
+        np.random.default_rng(1).uniform(-1.0, 1.0, (2 * MOST_POINTS + 1, 3)).astype(np.float32)
+    )
     vertices, triangles = as_solids(points, np.empty((0, 3), dtype=np.int32))
     assert len(triangles) == 8 * (len(points) // 3 + 1)
     assert np.abs(vertices[:6] - points[0]).max() == pytest.approx(0.002, rel=1e-3)

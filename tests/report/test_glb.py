@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
-from clearance.report.still.glb import glb_of
-from clearance.report.still.scene import still_of
+from clearance.report.glb import glb_of
+from clearance.report.still import still_of
 from tests.report.made import replay_of
 from tests.report.records import record
 
@@ -77,6 +77,6 @@ def test_a_shape_that_two_bodies_have_is_written_once():
 
 
 def test_names_of_the_file_give_way_to_those_of_bodies():
-    from clearance.report.still.glb import free_name
+    from clearance.report.glb import free_name
 
     assert free_name("a", {"b"}) == "a" and free_name("a", {"a", "a_"}) == "a__"

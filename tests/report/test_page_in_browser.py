@@ -8,8 +8,7 @@ import pytest
 
 import clearance as cl
 from clearance.record.wording import mm
-from clearance.report.still.camera import overview
-from clearance.report.still.scene import still_of
+from clearance.report.still import overview, still_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.robot import Joint, JointKind, Robot

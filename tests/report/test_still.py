@@ -7,27 +7,19 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from clearance.report.still import drawing, raster
-from clearance.report.still.camera import Camera, at_gap, overview
-from clearance.report.still.clipping import segments_within, triangles_ahead
-from clearance.report.still.drawing import drawn as drawn_with
-from clearance.report.still.drawing import edges_of
-from clearance.report.still.edges import seen_edges
-from clearance.report.still.raster import NONE, Screen, covered, drawn_segments
-from clearance.report.still.scene import COLOURS, rgb, still_of
-from tests.report.made import replay_of
+from clearance.report import picture, raster
+from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of, seen_edges
+from clearance.report.raster import Screen, drawn_segments, surface
+from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
+from tests.report.made import replay_of, run_of
 from tests.report.records import record, with_contacts
 
 pytest.importorskip("matplotlib", reason="sets the words")
 
-from clearance.report.still.picture import HEIGHT, WIDTH, png_of
+NONE = -1
 
 FORWARD = Camera(np.zeros(3), np.array([[0.0, -1, 0], [0, 0, 1], [1, 0, 0]]), 0.01)
 """Looks along x, z up."""
-
-
-def drawn(still, camera, width, height):
-    return drawn_with(still, camera, width, height, edges_of(still))
 
 
 def slow_owners(screen: Screen, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,47 +47,35 @@ def slow_owners(screen: Screen, corners: np.ndarray) -> tuple[np.ndarray, np.nda
 
 @pytest.mark.parametrize("seed", range(6))
 def test_every_pixel_shows_what_a_ray_meets_first(seed):
+    """Triangles that reach behind the camera and beside the picture are among them."""
     rng = np.random.default_rng(seed)
     screen = Screen(FORWARD, 48, 32)
     corners = rng.uniform(-3, 3, (12, 1, 3)) + rng.uniform(-2, 2, (12, 3, 3)) + [2.0, 0, 0]
-    found = covered(screen, corners)
-    owners = np.full((32, 48), NONE)
-    window = found.window
-    owners[window.top : window.bottom, window.left : window.right] = found.owner
+    found = surface(screen, corners)
+    owners = np.full(32 * 48, NONE)
+    owners[found.pixels] = found.owner
     expected, is_sure = slow_owners(screen, corners)
-    assert (owners == expected)[is_sure].all()
-    assert is_sure.mean() > 0.9 and len(set(owners[is_sure].tolist())) > 1
+    assert (owners.reshape(32, 48) == expected)[is_sure].all()
+    assert is_sure.mean() > 0.9 and len(set(expected[is_sure].tolist())) > 1
 
 
-def test_small_and_large_triangles_are_drawn_alike(monkeypatch):
+def test_a_picture_is_the_same_however_much_is_looked_at_together(monkeypatch):
     corners = np.random.default_rng(3).uniform(-3, 3, (40, 3, 3)) + [4.0, 0, 0]
     screen = Screen(FORWARD, 120, 80)
-    first = covered(screen, corners)
-    monkeypatch.setattr(raster, "SMALL", 0)
-    large = covered(screen, corners)
-    monkeypatch.setattr(raster, "SMALL", 1 << 30)
-    monkeypatch.setattr(raster, "AT_ONCE", 500)
-    small = covered(screen, corners)
-    for other in (large, small):
-        assert np.array_equal(first.owner, other.owner) and np.array_equal(first.depth, other.depth)
-
-
-def test_what_lies_behind_the_camera_is_cut_off():
-    corners = np.array([[[0.0, 0, 1], [1, 0, 3], [0, 1, -1]], [[0, 0, -1], [1, 0, -2], [0, 1, 5]]])
-    parts, owners = triangles_ahead(corners, 0.5)
-    assert owners.tolist() == [1, 0, 0] and (parts[:, :, 2] >= 0.5 - 1e-12).all()
-    areas = [0.5 * np.linalg.norm(np.cross(p[1] - p[0], p[2] - p[0])) for p in (*parts, *corners)]
-    assert areas[1] + areas[2] < areas[3] and areas[0] < areas[4]
+    first = surface(screen, corners)
+    monkeypatch.setattr(raster, "AT_ONCE", 50)
+    for one, other in zip(first, surface(screen, corners), strict=True):
+        assert np.array_equal(one, other)
 
 
 def test_segments_are_cut_at_the_edge_of_the_picture():
+    """A line far beyond both sides, one that is behind the camera, and one that ends in the middle."""
     ends = np.array(
-        [[[-10.0, 5, 1], [30, 5, 1]], [[5, -10, 1], [5, -1, 1]], [[3, 4, 1], [6, 8, 2]]]
+        [[[4.0, 90, 0], [4, -90, 0]], [[-1, 0, 1], [-2, 0, 2]], [[-4, 0, 0.5], [4, 0, 0.5]]]
     )
-    assert segments_within(ends, 20, 10).tolist() == [
-        [[0, 5, 1], [20, 5, 1]],
-        [[3, 4, 1], [6, 8, 2]],
-    ]
+    for segments, n_columns in ((ends[:1], 40), (ends[1:2], 0), (ends[2:], 2)):
+        found = drawn_segments(Screen(FORWARD, 40, 40), segments, np.zeros((40, 40)), 0.0)
+        assert found.any(axis=0).sum() == n_columns
 
 
 def test_a_segment_is_hidden_by_what_is_before_it():
@@ -158,16 +138,20 @@ def test_the_common_region_shines_through():
 def test_the_picture_is_a_png_of_its_size_and_the_same_each_time(monkeypatch):
     run = record()
     replay = replay_of(run)
-    first = png_of(run, replay)
+    first = png_of(run, replay, run_of(run).verdict)
     assert Image.open(io.BytesIO(first)).size == (WIDTH, HEIGHT) == (1280, 800)
     assert np.asarray(Image.open(io.BytesIO(first)).convert("RGB")).std() > 10
-    monkeypatch.setattr(drawing, "FINER", 1)
-    assert png_of(run, replay) == png_of(run, replay) != first
+    monkeypatch.setattr(picture, "FINER", 1)
+    assert (
+        png_of(run, replay, run_of(run).verdict)
+        == png_of(run, replay, run_of(run).verdict)
+        != first
+    )
 
 
 @pytest.mark.slow
 def test_names_of_any_letters_are_words_not_formulas(monkeypatch):
-    monkeypatch.setattr(drawing, "FINER", 1)
+    monkeypatch.setattr(picture, "FINER", 1)
     run = record()
     odd = replace(run, case=replace(run.case, name="$x^{2$ 机器人 " + "long " * 90))
-    assert png_of(odd, replay_of(odd)).startswith(b"\x89PNG")
+    assert png_of(odd, replay_of(odd), run_of(odd).verdict).startswith(b"\x89PNG")

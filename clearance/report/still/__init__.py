@@ -1,1 +1,0 @@
-"""The worst moment standing still: as a picture, and as a GLB file. Not for: the whole motion (`page`, `view`)."""
