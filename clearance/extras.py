@@ -19,7 +19,7 @@ LIBRARIES = {
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
     "mujoco": ("mujoco",),
-    "report": ("meshcat", "matplotlib", "junitparser"),
+    "report": ("meshcat", "matplotlib"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),

@@ -8,7 +8,6 @@ Not for: what is in them (`answer`, `tables`, `junit`, `page`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from clearance.batch.answer import BatchAnswer
@@ -17,7 +16,7 @@ from clearance.batch.store_files import CASES, FINDINGS
 from clearance.batch.tables import write_tables, written_answer
 from clearance.errors import unwritable
 from clearance.record.wording import count
-from clearance.report.folder import write_file, written_file
+from clearance.report.folder import write_file
 
 PAGE, JUNIT = "batch.html", "junit.xml"
 ANSWER = (CASES, FINDINGS, PAGE, JUNIT)
@@ -31,9 +30,8 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     Raises:
         Unwritable: there is no way or no room; what is there of the older answer is gone all the same.
     """
-    from clearance.batch.junit import clean
     from clearance.batch.page import unfinished_page
-    from clearance.report.unfinished_junit import unfinished_junit
+    from clearance.report.junit import write_unfinished
 
     told = (
         f"{UNFINISHED}: of {count(n_cases, 'case')} some are not measured; the same command goes on"
@@ -41,7 +39,7 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     with unwritable(store.place):
         for name in ANSWER:
             (store.place / name).unlink(missing_ok=True)
-    write_file(store.place / JUNIT, unfinished_junit(clean(store.place.name), told))
+    write_unfinished(store.place.name, told, store.place / JUNIT)
     write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
 
 
@@ -51,10 +49,10 @@ def write_answer(answer: BatchAnswer, store: Store) -> None:
     Raises:
         Unwritable: there is no way or no room.
     """
-    from clearance.batch.junit import junit_of
+    from clearance.batch.junit import write_batch_junit
 
     write_tables(answer, store)
-    _write_texts(store.place / JUNIT, junit_of(answer, store.place.name))
+    write_batch_junit(answer, store.place.name, store.place / JUNIT)
     _write_page(answer, store.place)
 
 
@@ -73,9 +71,3 @@ def _write_page(answer: BatchAnswer, place: Path) -> None:
     from clearance.batch.page import page_of
 
     write_file(place / PAGE, page_of(answer, place).encode())
-
-
-def _write_texts(path: Path, texts: Iterable[str]) -> None:
-    with written_file(path) as file:
-        for text in texts:
-            file.write(text.encode())

@@ -41,9 +41,8 @@ class Outputs:
         from clearance.cli.places import require_file_place, require_folder_place
         from clearance.extras import require
 
-        for option, path in (("--out", self.out), ("--junit", self.junit)):
-            if path is not None:
-                require("report", option)
+        if self.out is not None:
+            require("report", "--out")
         require_folder_place(self.out)
         require_file_place(self.junit)
         require_file_place(self.for_ci.summary, "--summary")
@@ -72,11 +71,10 @@ class Outputs:
 
             withdraw_report(self.out)
         if self.junit is not None and self.junit.is_file():
-            from clearance.report.folder import write_file
-            from clearance.report.unfinished_junit import unfinished_junit
+            from clearance.report.junit import write_unfinished
 
             told = "this run has not come to an end; the same command goes on"
-            write_file(self.junit, unfinished_junit("clearance", told))
+            write_unfinished("clearance", told, self.junit)
 
     @property
     def files(self) -> list[Path]:
@@ -110,9 +108,9 @@ class Outputs:
         if self.out is not None:
             run.save(self.out, comparison)
         if self.junit is not None:
-            from clearance.report.junit import write_junit
+            from clearance.report.junit_cases import write_run_junit
 
-            write_junit(run.report_data, self.junit)
+            write_run_junit(run.report_data, self.junit)
 
 
 def _refuse_taken(path: Path, option: str, taken: dict[str, str]) -> None:

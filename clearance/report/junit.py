@@ -1,25 +1,18 @@
-"""The record as JUnit XML, so that a build server shows a violated limit as a failed test.
+"""JUnit XML of anything that has test cases: a run, a batch, and a run that has no answer yet.
 
-Which cases there are is in `junit_cases`; here they are written. Not for: judging anything.
+Which cases there are is in `junit_cases` and `batch.junit`; here they are written. Not for: judging anything.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
-from clearance.extras import importing
-from clearance.findings.verdict import Verdict
-from clearance.report.folder import write_file
-from clearance.report.junit_cases import TestResult, results_of
-from clearance.report.report_data import ReportData
-
-if TYPE_CHECKING:
-    import junitparser
+from clearance.report.folder import written_file
 
 MOST_BYTES = 28 * 2**20
 """Of the cases together; build servers refuse files of 30 MB."""
@@ -27,78 +20,113 @@ MOST_BYTES = 28 * 2**20
 MOST_LETTERS = 2000
 """Of a name or a message; what is longer is cut."""
 
+LEFT_OUT = "cases_left_out"
+"""The property that says how many cases a file has no room for."""
+
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """What XML 1.0 has no room for, escaped or not."""
 
+_AS_THEY_ARE = {"\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
+"""Signs that a reader turns into spaces where they stand in an attribute."""
 
-def write_junit(data: ReportData, path: str | Path) -> None:
-    """Writes one test case for the verdict, and one for each thing that can fail by itself.
 
-    What is waived is skipped, with who waives it and why. Where there are more cases than build servers read, the
-    last are left out, those that fail after all others; a property of the suite says how many.
+@dataclass(frozen=True)
+class TestResult:
+    """One test case.
+
+    Attributes:
+        group: of several that belong together. fault: the kind of failure; empty where it does not fail.
+        errs: whether that is an error, of a case that has no answer.
+    """
+
+    __test__ = False
+
+    group: str
+    name: str
+    text: str = ""
+    fault: str = ""
+    skipped: bool = False
+    errs: bool = False
+
+    @property
+    def outcome(self) -> str:
+        """The element that says how it stands."""
+        if self.fault:
+            return "error" if self.errs else "failure"
+        return "skipped" if self.skipped else "system-out"
+
+
+def write_junit(
+    suite: str, results: Sequence[TestResult], path: Path, properties: Mapping[str, str]
+) -> None:
+    """Writes a suite of test cases, the same bytes for the same cases.
+
+    Where there are more than build servers read, the last are left out, those that fail after all others, and a
+    property says how many.
 
     Raises:
-        Unavailable: junitparser is missing. Unwritable: the file cannot be written; an older one is left as it
-            was.
+        Unwritable: the file cannot be written; an older one is left as it was.
     """
-    with importing("report", "--junit"):
-        import junitparser
-
-    verdict, results = data.verdict, [*results_of(data)]
     kept = _that_fit(results)
-    suite = junitparser.TestSuite(_shown(data.record.case.name))
-    for name, value in _properties(verdict, len(results) - len(kept)).items():
-        suite.add_property(name, _shown(value))
-    suite.add_testcases([_case(result, name) for result, name in _named(kept)])
-    root = junitparser.JUnitXml()
-    root.add_testsuite(suite)
-    root.update_statistics()
-    write_file(Path(path), _text(root))
+    n_left_out = len(results) - len(kept)
+    told = properties | ({LEFT_OUT: str(n_left_out)} if n_left_out else {})
+    with written_file(path) as file:
+        for part in _parts(suite, kept, told):
+            file.write(part.encode())
 
 
-def _text(root: junitparser.JUnitXml) -> bytes:
-    """The document, a line a case, and with nothing in it that depends on time."""
-    head, tail = b'<?xml version="1.0" encoding="utf-8"?>\n', b"\n"
-    content = root.tostring()
-    for tag in (b"<testsuite ", b"<testcase ", b"<properties", b"</testsuite>", b"</testsuites>"):
-        content = content.replace(tag, b"\n" + tag)
-    return head + content + tail
+def write_unfinished(suite: str, text: str, path: Path) -> None:
+    """Writes the file of a run that has no answer yet, so that an older one, green perhaps, is not taken for its
+    answer: one case that is an error, and says why.
+
+    Raises:
+        Unwritable: as `write_junit`.
+    """
+    write_junit(suite, [TestResult("verdict", "finished", text, "Incomplete", errs=True)], path, {})
 
 
-def _properties(verdict: Verdict, n_left_out: int) -> dict[str, str]:
-    told = {
-        "verdict": verdict.status,
-        "basis": verdict.basis,
-        "exit_code": str(verdict.exit_code),
-        "not_checked": ", ".join(verdict.not_checked),
-    }
-    told |= {"self_clearance": "; ".join(verdict.self_clearance)} if verdict.self_clearance else {}
-    told |= {"clocks": verdict.clocks} if verdict.clocks else {}
-    return told | ({"cases_left_out": str(n_left_out)} if n_left_out else {})
+def _parts(
+    suite: str, results: Sequence[TestResult], properties: Mapping[str, str]
+) -> Iterator[str]:
+    n = Counter(result.outcome for result in results)
+    counted = f'tests="{len(results)}" failures="{n["failure"]}" errors="{n["error"]}" skipped="{n["skipped"]}"'
+    yield f'<?xml version="1.0" encoding="utf-8"?>\n<testsuites {counted}>\n'
+    yield f"<testsuite name={_quoted(suite)} {counted}>\n"
+    if properties:
+        rows = (f"<property name={_quoted(k)} value={_quoted(v)}/>" for k, v in properties.items())
+        yield f"<properties>{''.join(rows)}</properties>\n"
+    for result, name in _named(results):
+        yield f"{_case(result, name)}\n"
+    yield "</testsuite>\n</testsuites>\n"
 
 
-def _that_fit(results: list[TestResult]) -> list[TestResult]:
+def _case(result: TestResult, name: str) -> str:
+    begin = f"<testcase classname={_quoted(result.group)} name={_quoted(name)}"
+    if not result.text:
+        return f"{begin}/>"
+    kind = f"type={_quoted(result.fault)} " if result.fault else ""
+    told = f"<{result.outcome} {kind}message={_quoted(result.text)}/>"
+    if result.outcome == "system-out":
+        told = f"<system-out>{escape(shown(result.text))}</system-out>"
+    return f"{begin}>{told}</testcase>"
+
+
+def _that_fit(results: Sequence[TestResult]) -> Sequence[TestResult]:
     """The results that a file has room for, in their order; those that fail are the last to be left out."""
     room, kept = MOST_BYTES, set()
     for i in sorted(range(len(results)), key=lambda i: (not results[i].fault, i)):
-        room -= _size(results[i])
+        room -= len(_case(results[i], results[i].name).encode()) + 16
         if room < 0:
             break
         kept.add(i)
     return [result for i, result in enumerate(results) if i in kept]
 
 
-def _size(result: TestResult) -> int:
-    """[bytes] at most, in XML."""
-    texts = [result.group, result.name, result.text]
-    return 200 + sum(len(quoteattr(_shown(text)).encode()) for text in texts)
-
-
 def _named(results: Iterable[TestResult]) -> Iterator[tuple[TestResult, str]]:
     """Each result with a name that no other of its group has."""
     taken: Counter[tuple[str, str]] = Counter()
     for result in results:
-        group, name = _shown(result.group), _shown(result.name)
+        group, name = shown(result.group), shown(result.name)
         taken[group, name] += 1
         number = taken[group, name]
         while number > 1 and taken[group, f"{name} ({number})"]:
@@ -108,20 +136,11 @@ def _named(results: Iterable[TestResult]) -> Iterator[tuple[TestResult, str]]:
         yield result, told
 
 
-def _case(result: TestResult, name: str) -> junitparser.TestCase:
-    import junitparser
-
-    case = junitparser.TestCase(name, _shown(result.group))
-    if result.fault:
-        case.result = junitparser.Failure(_shown(result.text), result.fault)
-    elif result.skipped:
-        case.result = junitparser.Skipped(_shown(result.text))
-    else:
-        case.system_out = _shown(result.text)
-    return case
-
-
-def _shown(text: str) -> str:
+def shown(text: str) -> str:
     """A text that XML can hold; what it cannot is written as its escape, such as \\uffff."""
     found = _NO_XML.sub(lambda part: part[0].encode("unicode_escape").decode(), text)
     return found if len(found) <= MOST_LETTERS else f"{found[: MOST_LETTERS - 1]}…"
+
+
+def _quoted(text: str) -> str:
+    return quoteattr(shown(text), _AS_THEY_ARE)

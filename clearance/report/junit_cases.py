@@ -6,7 +6,7 @@ Not for: writing them (`junit`).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from pathlib import Path
 
 from clearance.findings.finding import (
     CLEARANCE,
@@ -34,6 +34,7 @@ from clearance.record.wording import (
     seconds,
     step_text,
 )
+from clearance.report.junit import TestResult, write_junit
 from clearance.report.pair_judge import PairJudge
 from clearance.report.report_data import ReportData
 from clearance.report.rules import name_shown
@@ -47,21 +48,26 @@ LIMIT = "LimitViolated"
 """The kind of failure that a clearance below its fail limit is."""
 
 
-@dataclass(frozen=True)
-class TestResult:
-    """One test case.
+def write_run_junit(data: ReportData, path: Path) -> None:
+    """Writes one test case for the verdict, and one for each thing that can fail by itself.
 
-    Attributes:
-        group: of several that belong together. fault: the kind of failure; empty where it does not fail.
+    What is waived is skipped, with who waives it and why.
+
+    Raises:
+        Unwritable: the file cannot be written; an older one is left as it was.
     """
+    write_junit(data.record.case.name, [*results_of(data)], path, _properties(data.verdict))
 
-    __test__ = False
 
-    group: str
-    name: str
-    text: str
-    fault: str = ""
-    skipped: bool = False
+def _properties(verdict: Verdict) -> dict[str, str]:
+    told = {
+        "verdict": verdict.status,
+        "basis": verdict.basis,
+        "exit_code": str(verdict.exit_code),
+        "not_checked": ", ".join(verdict.not_checked),
+    }
+    told |= {"self_clearance": "; ".join(verdict.self_clearance)} if verdict.self_clearance else {}
+    return told | ({"clocks": verdict.clocks} if verdict.clocks else {})
 
 
 def results_of(data: ReportData) -> Iterator[TestResult]:

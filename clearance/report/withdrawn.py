@@ -2,7 +2,7 @@
 
 A run that comes to its end replaces the folder; one that is stopped leaves the mark. The page says on top that it
 is older, and `summary.json`, which programs read, has another name. Not for: JUnit, which is written anew
-(`unfinished_junit`), nor what `clearance compare` refuses (`cli.run_rows`).
+(`junit`), nor what `clearance compare` refuses (`cli.run_rows`).
 """
 
 from __future__ import annotations

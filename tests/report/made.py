@@ -11,7 +11,7 @@ from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.names import pair_names
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
-from clearance.report import junit
+from clearance.report.junit_cases import write_run_junit
 from clearance.report.report_data import ReportData
 from clearance.run import Run
 from clearance.simulate.answers.contact.rows import FoundContacts
@@ -119,4 +119,4 @@ def write(made: Record | Run, folder, *args: Any, **options: Any) -> None:
 
 def write_junit(made: Record | Run, path) -> None:
     """Writes it as JUnit."""
-    junit.write_junit(data_of(made), path)
+    write_run_junit(data_of(made), path)
