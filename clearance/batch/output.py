@@ -15,8 +15,8 @@ from clearance.batch.store import Store
 from clearance.batch.store_files import CASES, FINDINGS
 from clearance.batch.tables import write_tables, written_answer
 from clearance.errors import unwritable
+from clearance.files import write_file
 from clearance.record.wording import count
-from clearance.report.folder import write_file
 
 PAGE, JUNIT = "batch.html", "junit.xml"
 ANSWER = (CASES, FINDINGS, PAGE, JUNIT)

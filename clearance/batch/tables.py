@@ -16,7 +16,7 @@ from clearance.batch.rows import FINDING
 from clearance.batch.store import Store
 from clearance.batch.store_files import CASES, FINDINGS
 from clearance.errors import BadInput
-from clearance.report.folder import written_file
+from clearance.files import written_file
 
 _STALE = b"stale waivers"
 """Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""

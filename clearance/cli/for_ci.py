@@ -120,7 +120,7 @@ class CiOutputs:
         """Writes summary and annotations."""
         if self.summary is None and not self.github:
             return
-        from clearance.report.folder import write_file
+        from clearance.files import write_file
         from clearance.report.markdown import markdown
 
         text = markdown(run.record, run.verdict, run.findings, comparison)

@@ -110,9 +110,9 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     """
     from clearance.case.case_file import load_case
     from clearance.cli.places import require_folder_place
+    from clearance.files import refuse_inputs
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
-    from clearance.overwriting import refuse_inputs
 
     options = _with_turn(options) | {"robot": _robot(options["robot"])}
     require_folder_place(out)

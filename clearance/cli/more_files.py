@@ -98,7 +98,7 @@ class MoreFiles:
         Raises:
             Unwritable: it cannot be written.
         """
-        from clearance.report.folder import write_file
+        from clearance.files import write_file
 
         if self.png is not None or self.glb is not None:
             self._write_still(run)
@@ -118,7 +118,7 @@ class MoreFiles:
                 click.echo(f"  {word:<11} {line}")
 
     def _write_still(self, run: Run) -> None:
-        from clearance.report.folder import write_file
+        from clearance.files import write_file
 
         replay = run.session.replay(run.rows)
         if self.glb is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import Unwritable
-from clearance.overwriting import refuse_inputs
+from clearance.files import refuse_inputs
 
 if TYPE_CHECKING:
     from clearance.world.case import Case

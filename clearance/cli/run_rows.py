@@ -1,6 +1,6 @@
 """Where the rows of a run with `--out` are kept while it runs: a hidden folder, gone when the report is there.
 
-Not for: the report itself (`report.folder`).
+Not for: the report itself (`clearance.files`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Files of one command, written all or none, and over nothing unasked. Not for: reports (`report.folder`)."""
+"""Files of one command, written all or none, and over nothing unasked. Not for: reports (`clearance.files`)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def write_files(
         Unwritable: a file is there already, or is one of `read`, or there is no way to write; the folder is as it
         was then.
     """
-    from clearance.report.folder import fill_folder
+    from clearance.files import fill_folder
 
     names = dict.fromkeys((*others, *contents))
     refuse_there([folder / name for name in names], force=force)

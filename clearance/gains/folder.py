@@ -11,14 +11,13 @@ from typing import Any
 
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
+from clearance.files import fill_folder, refuse_inputs
 from clearance.gains.answer import Gain
 from clearance.gains.change_parts import change_parts, joint_parts, proven_after, proven_bound
 from clearance.gains.changed_files import OWN as OF_CASE
 from clearance.gains.changed_files import case_files
 from clearance.gains.page import page_of
-from clearance.overwriting import refuse_inputs
 from clearance.record.moment import Moment
-from clearance.report.folder import fill_folder
 from clearance.report.output import OWN as OF_REPORT
 from clearance.report.output import json_text
 from clearance.run import Run

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
+from clearance.files import LAST
 from clearance.findings.verdict import KEPT, Verdict
 from clearance.receipt.asked import question_of, told_beside
 from clearance.receipt.case_data import CaseData, case_data
@@ -39,7 +40,6 @@ from clearance.receipt.verification import (
 )
 from clearance.receipt.writing import claims_of
 from clearance.record.status import Status
-from clearance.report.folder import LAST
 from clearance.run import Run, answer
 from clearance.world.case import Case
 

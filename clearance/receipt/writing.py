@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from clearance.errors import BadInput
+from clearance.files import write_file
 from clearance.progress import Progress
 from clearance.receipt.asked import asked_of, refuse_uncovered
 from clearance.receipt.case_data import CaseData, case_data, with_tolerances
@@ -22,7 +23,6 @@ from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import FILE_NAME, Receipt, receipt_bytes
 from clearance.receipt.remade_report import has_comparison, hashes_of, maker
 from clearance.receipt.search import MOST_ITEMS, EvidenceSearch, TooManyProofs
-from clearance.report.folder import write_file
 
 GIVEN_UP = (0.0, 0.12)
 """[-] Of what tolerances take, by which claims are below what they leave, but for the least of a rule; the first

@@ -12,9 +12,9 @@ import numpy as np
 from markupsafe import Markup
 
 from clearance.errors import BadInput
+from clearance.files import write_file
 from clearance.findings.comparison import ComparedFinding, Comparison, FindingChange
 from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
-from clearance.report.folder import write_file
 from clearance.report.markup import element, section, table
 from clearance.report.plain_page import ClearanceCurve, CurvesWithLimit, plain_page
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
-from clearance.report.folder import written_file
+from clearance.files import written_file
 
 MOST_BYTES = 28 * 2**20
 """Of the cases together; build servers refuse files of 30 MB."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from clearance.files import LAST, fill_folder
 from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
 from clearance.record.replay import FILE_NAME, EarlierBody, Replay
@@ -14,7 +15,6 @@ from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.report.budget_table import FILE_NAME as BUDGET
 from clearance.report.budget_table import budget_table
 from clearance.report.findings import findings
-from clearance.report.folder import LAST, fill_folder
 from clearance.report.moments_file import FILE_NAME as MOMENTS
 from clearance.report.moments_file import moments_text
 from clearance.report.more_curves import more_curves

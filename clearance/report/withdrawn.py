@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 from clearance.errors import unwritable
-from clearance.report.folder import LAST, write_file
+from clearance.files import LAST, write_file
 
 OLDER_SUMMARY = "summary.older.json"
 """The name of `summary.json` while the folder is not written anew."""

@@ -6,9 +6,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from clearance.files import fill_folder
 from clearance.formats.mesh.mesh_file import mesh_file
 from clearance.record.workspace import Workspace
-from clearance.report.folder import fill_folder
 from clearance.report.output import json_text
 from clearance.report.workspace_picture import picture_of
 

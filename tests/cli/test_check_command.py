@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from clearance.report.folder import LAST
+from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY
 from tests.cart import URDF
 

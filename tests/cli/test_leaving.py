@@ -23,7 +23,7 @@ import json, os, sys
 import clearance.cli.check, clearance.cli.commands, clearance.cli.places
 import clearance.compile.calls, clearance.case.case_file
 import clearance.formats.message.times, clearance.formats.robot.urdf.robot
-import clearance.query.pair_query, clearance.report.folder, clearance.report.output, clearance.run
+import clearance.query.pair_query, clearance.files, clearance.report.output, clearance.run
 import encodings.utf_8_sig, lxml.etree, markupsafe, pyarrow.csv, ruamel.yaml
 from clearance import cli
 from clearance.case import case_file

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from clearance.cli import run
-from clearance.report.folder import LAST
+from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY, marked_page, withdraw_report
 from tests.cli.test_leaving import write_case
 

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from clearance.errors import Unwritable
-from clearance.report.folder import fill_folder, write_file
+from clearance.files import fill_folder, write_file
 from clearance.report.output import OWN
 from tests.report.made import write
 from tests.report.records import record
@@ -161,7 +161,7 @@ def test_a_process_killed_at_any_move_leaves_one_report_or_none(tmp_path, exchan
 
 def die_at_move(i_move: int, exchanges: bool) -> None:
     """Kills this process before its move of that number; the last one is after all moves."""
-    from clearance.report import folder
+    from clearance import files
 
     moves = []
 
@@ -174,9 +174,9 @@ def die_at_move(i_move: int, exchanges: bool) -> None:
 
         return moved
 
-    folder._exchanged = counted(folder._exchanged) if exchanges else lambda one, other: False
-    folder.os = SimpleNamespace(**{**vars(os), "rename": counted(os.rename)})
-    folder.shutil = SimpleNamespace(rmtree=counted(shutil.rmtree))
+    files._exchanged = counted(files._exchanged) if exchanges else lambda one, other: False
+    files.os = SimpleNamespace(**{**vars(os), "rename": counted(os.rename)})
+    files.shutil = SimpleNamespace(rmtree=counted(shutil.rmtree))
 
 
 def test_one_file_is_whole_or_the_older_one(tmp_path, monkeypatch):

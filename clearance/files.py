@@ -1,11 +1,11 @@
-"""All or nothing: files that are either whole in their place or not there at all.
+"""All or nothing, and never over an input: files that are either whole in their place or not there at all.
 
 Everything is first written beside its place, on the same file system, and moved there when the last
-byte is on disk. A folder that holds nothing but an older report is exchanged as a whole, by one
-rename: a process killed at any moment leaves the older report or the new one. Where the folder
+byte is on disk. A folder that holds nothing but an older answer is exchanged as a whole, by one
+rename: a process killed at any moment leaves the older answer or the new one. Where the folder
 holds other files too, files are exchanged one by one: `LAST` moves last and is taken away first, so
-that a folder that holds it is whole; should a move fail or be interrupted, the older report is put
-back.
+that a folder that holds it is whole; should a move fail or be interrupted, the older answer is put
+back. Not for: which places a command may write to (`cli.places`).
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from clearance.errors import unwritable
+from clearance.errors import Unwritable, unwritable
 
 LAST = "summary.json"
+"""The file by which programs know that a report is whole."""
+
 _EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
 _HERE = -100  # AT_FDCWD
 _PARTIAL = ".partial"
@@ -36,7 +38,7 @@ def fill_folder(
     Other files in `folder` stay as they are.
 
     Args:
-        own: the names of all files that such a report can have; what an older one had of them goes.
+        own: the names of all files that such an answer can have; what an older one had of them goes.
         room: a folder to work in, on the same file system; beside or in `folder` by default.
 
     Raises:
@@ -44,7 +46,7 @@ def fill_folder(
     """
     with unwritable(folder):
         folder = Path(os.path.realpath(folder))
-        as_a_whole = not folder.is_dir() or _is_only_a_report(folder, own)
+        as_a_whole = not folder.is_dir() or _is_only_an_answer(folder, own)
         beside = room or (folder.parent if as_a_whole else folder)
         beside.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(prefix=".report-", suffix=_PARTIAL, dir=beside))
@@ -55,7 +57,7 @@ def fill_folder(
             if not folder.is_dir():
                 folder.parent.mkdir(parents=True, exist_ok=True)
                 os.rename(fresh, folder)
-            elif as_a_whole and _is_only_a_report(folder, own):
+            elif as_a_whole and _is_only_an_answer(folder, own):
                 _exchange_whole(fresh, folder, staging / "older")
             else:
                 _exchange_files(fresh, folder, staging / "older", own)
@@ -63,7 +65,7 @@ def fill_folder(
             shutil.rmtree(staging, ignore_errors=True)
 
 
-def _is_only_a_report(folder: Path, own: Collection[str]) -> bool:
+def _is_only_an_answer(folder: Path, own: Collection[str]) -> bool:
     """True if `folder` can be replaced as a whole: nothing of anybody else is in it, and nobody stands in it."""
     parent = folder.parent
     mine = os.stat(folder)
@@ -111,6 +113,29 @@ def written_file(path: Path) -> Iterator[BinaryIO]:
         except BaseException:
             Path(partial).unlink(missing_ok=True)
             raise
+
+
+def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[str | Path]) -> None:
+    """Raises `Unwritable` if one of the files `outputs` is one of `inputs`, by whatever name or link."""
+    read = {_identity(Path(path)): path for path in inputs}
+    read.pop(None, None)
+    for output in outputs:
+        found = read.get(_identity(output))
+        if found is not None:
+            raise Unwritable(
+                f"would overwrite {str(found)!r}, which this run reads",
+                where=str(output),
+                valid="another place is needed",
+            )
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What two names of one file share; None for what is not there."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _exchange_whole(fresh: Path, folder: Path, older: Path) -> None:
