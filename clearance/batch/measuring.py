@@ -21,7 +21,7 @@ from clearance.batch.shared_waivers import as_shared
 from clearance.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.errors import ClearanceError, Incomplete
 from clearance.formats.files.mesh_paths import variables_of
-from clearance.formats.robot.urdf.xacro_variables import variables_asked
+from clearance.formats.robot.urdf.xacro_file import variables_asked
 from clearance.formats.schema.manifest import TrajectoryOptions
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source

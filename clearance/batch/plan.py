@@ -18,9 +18,9 @@ from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.measuring import Fault
 from clearance.batch.outcome import Outcome
 from clearance.batch.store import Store
+from clearance.formats.files.found_files import leads_to
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.files.lookups import leads_to
-from clearance.formats.motion.bag_files import files_of
+from clearance.formats.motion.trajectory_file import files_of
 from clearance.world.case import LOOKUP
 
 Files = tuple[tuple[str, str], ...]

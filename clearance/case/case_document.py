@@ -12,7 +12,7 @@ from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.formats import read_scene, with_own_words
 from clearance.formats.scene.request import SceneContent, SceneRequest, includes_of
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.errors import validated
+from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.yaml_file import parse_yaml
 
 _NOTHING = SceneContent(None)

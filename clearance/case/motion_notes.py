@@ -1,18 +1,19 @@
-"""Notes on how what moves does so between the rows of its table, before the first and after the last.
-
-Not for: joints that nobody gives a value (`motion_names`).
+"""Notes on joints that nobody gives a value, and on how what moves does so between the rows of its table, and
+before the first and after the last.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import DuplicateName
 from clearance.world.case import Case
 from clearance.world.notice import listed
+from clearance.world.robot import Robot
 from clearance.world.timing import Timing
 
 MOST_NAMES = 8
@@ -125,3 +126,30 @@ def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Sent
     elif late:
         when = f"from {last:g} s"
         yield _Sentence(f"stands at its last sample {when}", f"stand at their last samples {when}")
+
+
+def check_not_given_twice(in_case: Iterable[str], in_trajectory: Iterable[str]) -> None:
+    """Refuses a fixed value for a joint that the trajectory moves.
+
+    Raises:
+        DuplicateName: with the joint.
+    """
+    columns = set(in_trajectory)
+    for name in in_case:
+        if name in columns:
+            raise DuplicateName(
+                f"joint {name!r} is also a column of the trajectory", valid="give it in one place"
+            )
+
+
+def note_on_joints_at_zero(robot: Robot, given: Iterable[str], field: str) -> list[str]:
+    """A note naming the moving joints that nobody gives a value; they stay at 0.
+
+    Args:
+        field: where a case file could give them one.
+    """
+    known = set(given)
+    left = [joint.name for joint in robot.moving_joints if joint.name not in known]
+    if not left:
+        return []
+    return [f"joints given neither by the trajectory nor by {field} stay at 0: {listed(left, 8)}"]

@@ -1,23 +1,28 @@
-"""Where the joints rest that a trajectory does not move: by the values of a case file, then by states of an SRDF
-or of the robot's own file.
+"""Where the joints rest that a trajectory does not move, and where a robot starts before its first sample: by the
+values of a case file, then by states of an SRDF or of the robot's own file.
 
-Not for: the states themselves (`srdf_states`).
+Not for: the states themselves (`srdf`), nor the start in a message (`motion.joint_points`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from clearance.case.motion_names import check_not_given_twice
-from clearance.errors import MissingKey, at
+import numpy as np
+
+from clearance.case.motion_notes import check_not_given_twice
+from clearance.errors import BadInput, BadTime, MissingKey, at
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.robot.srdf_states import StatePositions, positions_in_states, states_known
+from clearance.formats.robot.srdf import StatePositions, positions_in_states, states_known
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import states_of
+from clearance.formats.schema.pose import TrajectoryFile
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
+from clearance.world.start import started
+from clearance.world.trajectory import Trajectory
 
 
 def resting_positions(
@@ -67,3 +72,59 @@ def _note(shown: str, names: Sequence[str], taken: dict[str, float], others: Seq
     return told + (
         f"; the case or the trajectory says more of {listed(others, 8)}" if others else ""
     )
+
+
+def with_start(
+    entry: schema.RobotEntry, trajectory: Trajectory, robot: Robot, folder: Path, files: InputFiles
+) -> tuple[Trajectory, tuple[str, ...]]:
+    """The trajectory with a sample at 0 s added, if its entry gives a start; and a note.
+
+    Args:
+        folder: against which paths are looked up.
+
+    Raises:
+        BadTime: the trajectory begins at 0 s itself. BadInput: no such state, or joints that do not move.
+        MissingKey: a joint that moves has no start.
+    """
+    asked = entry.trajectory
+    if asked is None or asked.start_state is None:
+        return trajectory, ()
+    with at(f"{entry.trajectory_field}.start_state"):
+        if trajectory.times[0] <= 0.0:
+            raise BadTime(
+                f"the trajectory begins at {trajectory.times[0]:g} s itself", valid="no start_state"
+            )
+        positions = _positions(entry, asked, trajectory, robot, folder, files)
+    first = f"the first sample at {trajectory.times[0]:g} s"
+    note = f"joints start from rest in start_state at 0 s and go to {first} as between samples"
+    return started(trajectory, np.array(positions)), (note,)
+
+
+def _positions(
+    entry: schema.RobotEntry,
+    asked: TrajectoryFile,
+    trajectory: Trajectory,
+    robot: Robot,
+    folder: Path,
+    files: InputFiles,
+) -> list[float]:
+    given = asked.start_state
+    if isinstance(given, Mapping):
+        found = dict(given)
+        require_moving_joints(robot, found)
+        idle = [name for name in found if name not in trajectory.joint_names]
+        if idle:
+            raise BadInput(
+                f"the trajectory does not move {listed([*map(repr, idle)])}",
+                valid=f"{entry.field}.joints says where other joints rest",
+            )
+    else:
+        names = [given] if isinstance(given, str) else list(given or ())
+        found = positions_asked(entry, names, robot, folder, files)[1].positions
+    missing = [name for name in trajectory.joint_names if name not in found]
+    if missing:
+        raise MissingKey(
+            f"it has no position of {listed([*map(repr, missing)])}",
+            valid="a position of each joint that the trajectory moves",
+        )
+    return [found[name] for name in trajectory.joint_names]

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from clearance.errors import BadInput
-from clearance.formats.files.input_files import PYBULLET_DATA
-from clearance.formats.files.written_paths import path_from
+from clearance.formats.files.input_files import PYBULLET_DATA, path_from
 from clearance.formats.text.yaml_file import parse_yaml
 
 Node = dict[str, Any]

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from clearance.case.allow import checked_links
-from clearance.case.resting import resting_positions
-from clearance.case.start_state import with_start
+from clearance.case.resting import resting_positions, with_start
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore

@@ -12,9 +12,8 @@ from pydantic import BeforeValidator, Field
 
 from clearance.errors import BadInput, at
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.limits import TwoPatterns
-from clearance.formats.schema.strict_model import Level, Name, StrictModel
+from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
 from clearance.formats.text.yaml_file import parse_yaml
 from clearance.world.case import Case
 from clearance.world.waiver import Waiver

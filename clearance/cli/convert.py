@@ -56,11 +56,10 @@ def convert(
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.written_files import refuse_there, write_files
-    from clearance.formats.conversion.file_kind import kind_of
-    from clearance.formats.conversion.files import Conversion, converted
+    from clearance.formats.conversion.files import Conversion, converted, kind_of
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.known_formats import Kind
-    from clearance.formats.motion.trajectory_request import Choice
+    from clearance.formats.motion.trajectory_file import Choice
     from clearance.formats.scene.request import includes_of
 
     _require_place(in_file, out_file)

@@ -18,7 +18,7 @@ from clearance.findings.judgement import Judgement
 from clearance.findings.measurement_conditions import MeasurementConditions, conditions_of
 from clearance.findings.of_record import why_incomplete
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.schema.errors import place
+from clearance.formats.schema.strict_model import place
 from clearance.record.session import Session
 
 FILE_NAME = "findings.json"

@@ -143,7 +143,7 @@ def _message(name: str, suffixes: tuple[str, ...], language: str) -> Format:
         name,
         Kind.TRAJECTORY,
         suffixes,
-        f"motion.joint_trajectory_file:read_{language}_trajectory",
+        f"motion.joint_points:read_{language}_trajectory",
         f"motion.trajectory_writer:{language}_text",
         sniff.is_joint_trajectory,
         _MESSAGE_KEYS,
@@ -170,7 +170,7 @@ FORMATS = (
     _mesh("octomap", (".bt", ".ot"), "octree_file:read_octree"),
     Format("glTF", Kind.MESH, (".gltf",), what="a mesh", hint="export it as .glb, one binary file"),
     _cloud("PCD", (".pcd",), "pcd_file:read_pcd"),
-    _cloud("points of a PLY", (".ply",), "ply_points:read_ply_points", sniff=_unseen),
+    _cloud("points of a PLY", (".ply",), "points:read_ply_points", sniff=_unseen),
     _cloud(
         "points as text",
         (".csv", ".xyz", ".txt", ".asc"),

@@ -1,5 +1,5 @@
 """The files that say how a robot or an obstacle moves, found and read. Not for: their format (`trajectory_file`,
-`pose_formats`), nor which joints there are (`robots`).
+`pose_file`), nor which joints there are (`robots`).
 """
 
 from __future__ import annotations
@@ -12,13 +12,23 @@ from typing import TypeVar
 from clearance.errors import BadInput, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, refuse_foreign
-from clearance.formats.motion.bag_files import files_of, is_bag
 from clearance.formats.motion.joint_columns import without_followers
-from clearance.formats.motion.pose_formats import read_poses, read_samples
-from clearance.formats.motion.pose_table_request import PoseRequest, ReadPoses, ReadSamples
+from clearance.formats.motion.pose_file import (
+    PoseRequest,
+    ReadPoses,
+    ReadSamples,
+    read_poses,
+    read_samples,
+)
 from clearance.formats.motion.recording_gaps import as_recorded
-from clearance.formats.motion.trajectory_file import read_trajectory
-from clearance.formats.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import (
+    Choice,
+    ReadTrajectory,
+    TrajectoryRequest,
+    files_of,
+    is_bag,
+    read_trajectory,
+)
 from clearance.formats.schema.pose import PoseFile, TrajectoryFile
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import counted

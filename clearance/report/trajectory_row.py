@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.findings.finding import Finding
-from clearance.formats.motion.trajectory_lines import line_of_sample
+from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.record.record import Record
 from clearance.world.case import PlacedRobot
 

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from clearance import check
 from clearance.cli import run
 from clearance.formats.known_formats import Kind, suffixes_written
-from clearance.formats.motion.pose_formats import read_samples
-from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
 from clearance.formats.motion.pose_writer import written_poses
 from tests.examples import examples
 from tests.formats.making_cell import load_cell

@@ -12,8 +12,11 @@ from pathlib import Path
 import pytest
 
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.motion.trajectory_file import parse_trajectory, read_trajectory
-from clearance.formats.motion.trajectory_request import TrajectoryRequest
+from clearance.formats.motion.trajectory_file import (
+    TrajectoryRequest,
+    parse_trajectory,
+    read_trajectory,
+)
 from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
 
 TIMES = 10

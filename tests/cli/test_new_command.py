@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 
 from clearance import load_case
 from clearance.cli import run
-from clearance.formats.files.written_paths import path_from
+from clearance.formats.files.input_files import path_from
 from clearance.formats.text.yaml_file import parse_yaml
 from clearance.formats.text.yaml_text import flow
 from tests.formats.making import CASE, CUBE, PATH, cube_stl

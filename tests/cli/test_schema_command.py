@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from clearance.cli import run
 from clearance.errors import BadInput
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.errors import validated
+from clearance.formats.schema.strict_model import validated
 from tests.formats.making import CASE
 from tests.formats.making_cell import CELL
 

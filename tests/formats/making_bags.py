@@ -10,7 +10,7 @@ from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from clearance.formats.motion.ros_definitions import DEFINITIONS
+from clearance.formats.motion.rosbag_file import DEFINITIONS
 
 CONTAINERS = ("bag", "rosbag2 sqlite3", "rosbag2 mcap", "mcap")
 JOINTS = ("shoulder", "lift")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.formats.motion.trajectory_lines import line_of_sample
+from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.report.annotations import MOST, annotation_lines, command
 from clearance.report.markdown import MOST_ROWS, markdown, plain
 from clearance.report.trajectory_row import row_of, sample_at

@@ -12,17 +12,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from clearance.case.case_file import read_case
-from clearance.case.new_case.named_motion import PERIOD, motion_between
 from clearance.case.new_case.robot import NewCaseRequest, NewRobot, new_robot
 from clearance.case.new_case.scene import NewScene, new_scene
 from clearance.case.new_case.text import TOUCHING, CaseText, text_of
-from clearance.errors import MissingKey, NothingToMeasure, at
-from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.files.written_paths import path_from
+from clearance.errors import BadInput, MissingKey, NothingToMeasure, at
+from clearance.formats.files.input_files import InputFiles, path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.motion.trajectory_writer import written
-from clearance.formats.robot.srdf_states import NamedStates, names_of, states_known
+from clearance.formats.robot.srdf import NamedStates, names_of, positions_in_states, states_known
 from clearance.formats.text.notes import counted
 from clearance.formats.text.yaml_text import flow
 from clearance.world.case import Case, Source
@@ -31,6 +31,7 @@ from clearance.world.notice import START, Severity, listed
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_wrap import notices_on_wrap
+from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
 CASE, TRAJECTORY = "case.yaml", "trajectory.csv"
@@ -235,3 +236,29 @@ def _read_back(contents: Mapping[str, bytes], folder: Path) -> Case:
     for name, content in contents.items():
         files.hold(folder / name, content)
     return read_case(folder / CASE, files)
+
+
+PERIOD = 2.0
+"""[s] From one state to the next."""
+
+
+def motion_between(known: NamedStates, states: Sequence[str], robot: Robot) -> Trajectory:
+    """The robot in each state in turn, joints moving linearly; one that a state leaves alone stays where it was.
+
+    Raises:
+        BadInput: as `positions_in_states`, or fewer than two states.
+    """
+    if len(states) < 2:
+        raise BadInput(
+            f"{len(states)} state is given", valid="two or more, for a motion between them"
+        )
+    found = [positions_in_states(known, [state], robot).positions for state in states]
+    names = [joint.name for joint in robot.moving_joints if any(joint.name in one for one in found)]
+    rows = np.array([[_held(name, i, found) for name in names] for i in range(len(found))])
+    return Trajectory(PERIOD * np.arange(len(states)), tuple(names), rows)
+
+
+def _held(name: str, i_state: int, found: Sequence[dict[str, float]]) -> float:
+    """Where a joint is: by this state, else by the last before it, else by the first that says so."""
+    before = [one[name] for one in found[: i_state + 1] if name in one]
+    return before[-1] if before else next(one[name] for one in found if name in one)

@@ -12,12 +12,11 @@ from typing import Any
 
 from clearance.case.robots import RobotReader
 from clearance.errors import NothingToMeasure
-from clearance.formats.files.input_files import resolved
-from clearance.formats.files.written_paths import path_from
+from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.pose import TrajectoryFile
+from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.notes import counted
 from clearance.world.case import PlacedRobot
 from clearance.world.notice import listed

@@ -10,18 +10,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from clearance.case.held_parts import with_held_parts
 from clearance.case.new_case.robot import NewCaseRequest
-from clearance.case.scene_rows import with_scene_rows
-from clearance.formats.files.input_files import resolved
-from clearance.formats.files.written_paths import path_from
+from clearance.case.scene_rows import with_held_parts, with_scene_rows
+from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SKIP, SceneContent, SceneRequest, includes_of
 from clearance.formats.scene.writer import written_scene
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.notes import counted
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot

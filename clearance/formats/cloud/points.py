@@ -1,10 +1,12 @@
-"""Points as a file of a scan has them. Not for: bodies made of them (`formats`)."""
+"""Points as a file of a scan has them, and those of a PLY file. Not for: bodies made of them (`formats`)."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+
+from clearance.formats.mesh.ply_file import elements_of, vertices
 
 
 class Points(NamedTuple):
@@ -19,3 +21,15 @@ class Points(NamedTuple):
     places: np.ndarray
     notes: tuple[str, ...] = ()
     in_metres: bool = False
+
+
+def read_ply_points(data: bytes) -> Points:
+    """The vertices of a PLY file, as points of a scan; faces are passed over.
+
+    Raises:
+        BadSyntax, MissingKey: as `read_ply`.
+    """
+    elements = elements_of(data)
+    faces = [name for name in ("face", "tristrips") if name in elements and elements[name].n_rows]
+    notes = ("its faces are passed over: only the vertices are taken",) if faces else ()
+    return Points(vertices(elements), notes)

@@ -21,8 +21,8 @@ from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.scene.writer import rows_of, written_scene
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.strict_model import validated
 from clearance.formats.text.yaml_text import flow
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.rules import matches

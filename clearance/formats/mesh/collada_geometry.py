@@ -1,7 +1,7 @@
 """A COLLADA `<geometry>` to triangles in its own coordinates: sources, accessors and primitives.
 
 Everything is read as the accessor says (offset, stride, named params), in double precision, and every
-count that the file states is held against what it holds. Not for: where a geometry is placed (`collada_scene`).
+count that the file states is held against what it holds. Not for: where a geometry is placed (`collada_file`).
 Source: Khronos, COLLADA 1.4.1, chapter 5 (`accessor`, `float_array`, `polygons`, `tristrips`, …).
 """
 
@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadSyntax, MissingKey, at
-from clearance.formats.mesh.polygon_cut import cut_rings
-from clearance.formats.mesh.strips import fan, strip
+from clearance.formats.mesh.polygon_cut import cut_rings, fan, strip
 from clearance.formats.mesh.triangles import Triangles, checked, refuse_missing_corners
 from clearance.formats.text.numbers import floats, integers
 

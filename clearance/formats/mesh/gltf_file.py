@@ -1,9 +1,10 @@
-"""glTF 2.0 in one binary file (.glb) to triangles, z up: the container, its document, and the scene's nodes.
+"""glTF 2.0 in one binary file (.glb) to triangles, z up: the container, its document, the scene's nodes and
+meshes.
 
 Own code, because the usual readers drop in silence what they do not know: a Draco mesh becomes a point, meshopt
 and instances vanish, quantized positions come out 65,535 times too large. Here what is placed is read as the
-specification says, or refused. Not for: accessors and primitives (`gltf_mesh`). Source: Khronos, glTF 2.0,
-chapters 3.5 (scenes and nodes), 4.4 (binary container); 3.4 says y up.
+specification says, or refused. Not for: accessors (`gltf_buffers`). Source: Khronos, glTF 2.0, chapters 3.5
+(scenes and nodes), 3.7 (primitives, morph targets), 4.4 (binary container); 3.4 says y up.
 """
 
 from __future__ import annotations
@@ -15,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, NotFinite, at
-from clearance.formats.mesh.gltf_buffers import Buffers
-from clearance.formats.mesh.gltf_mesh import mesh_pieces
-from clearance.formats.mesh.gltf_object import GltfObject
+from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
 from clearance.formats.mesh.placing import Z_FROM_Y_UP, joined, placed
+from clearance.formats.mesh.polygon_cut import fan, strip
 from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.triangles import Triangles
+from clearance.formats.mesh.triangles import Triangles, refuse_missing_corners
 
 _HARMLESS = (
     "KHR_materials_",
@@ -169,3 +169,67 @@ def _moved_turned_scaled(node: GltfObject) -> np.ndarray:
     matrix[:3, :3] = turn * node.numbers("scale", (1.0, 1.0, 1.0), 3)
     matrix[:3, 3] = node.numbers("translation", (0.0, 0.0, 0.0), 3)
     return matrix
+
+
+_POINTS_AND_LINES = (0, 1, 2, 3)
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+def mesh_pieces(mesh: GltfObject, weights: np.ndarray | None, buffers: Buffers) -> list[Triangles]:
+    """The triangles of each primitive of a mesh; points and lines have none.
+
+    Args:
+        weights: of the morph targets; None for the mesh's own.
+    """
+    used = mesh.numbers("weights", ()) if weights is None else weights
+    pieces = []
+    for i in range(len(mesh.items("primitives"))):
+        with at(f"primitive {i}"):
+            primitive = mesh.item("primitives", i)
+            if primitive.index("mode", _TRIANGLES) not in _POINTS_AND_LINES:
+                pieces.append(_piece(primitive, used, buffers))
+    return pieces
+
+
+def _piece(primitive: GltfObject, weights: np.ndarray, buffers: Buffers) -> Triangles:
+    primitive.refuse_extension("KHR_draco_mesh_compression")
+    vertices = buffers.read(primitive.object("attributes").index("POSITION"), 3).astype(np.float64)
+    vertices = _morphed(vertices, primitive, weights, buffers)
+    if "indices" in primitive.value:
+        indices = buffers.read(primitive.index("indices"), 1)[:, 0]
+        if indices.dtype.kind != "u":
+            raise BadSyntax("indices are signed or fractions", valid="unsigned whole numbers")
+        corners = indices.astype(np.int64)
+    else:
+        corners = np.arange(len(vertices))
+    refuse_missing_corners(corners, len(vertices))
+    return Triangles(vertices, _by_mode(primitive.index("mode", _TRIANGLES), corners))
+
+
+def _by_mode(mode: int, corners: np.ndarray) -> np.ndarray:
+    if mode == _TRIANGLES:
+        if len(corners) % 3:
+            raise BadSyntax(f"{len(corners)} corners of triangles", valid="three for each")
+        return corners.reshape(-1, 3)
+    if mode not in (_STRIP, _FAN):
+        raise BadSyntax(f"mode {mode}", valid="0 to 6")
+    return strip(corners) if mode == _STRIP else fan(corners)
+
+
+def _morphed(
+    vertices: np.ndarray, primitive: GltfObject, weights: np.ndarray, buffers: Buffers
+) -> np.ndarray:
+    """The vertices with each morph target's displacements added by its weight."""
+    targets = primitive.items("targets")
+    if len(weights) not in (0, len(targets)):
+        raise BadSyntax(
+            f"{len(weights)} weights", valid=f"{len(targets)}, one for each morph target"
+        )
+    for i in np.flatnonzero(weights):
+        target = primitive.item("targets", int(i))
+        if "POSITION" in target.value:
+            moved = buffers.read(target.index("POSITION"), 3)
+            if moved.shape != vertices.shape:
+                raise BadSyntax(f"{target.place} has {len(moved)} points", valid=f"{len(vertices)}")
+            vertices = vertices + weights[i] * moved
+    return vertices

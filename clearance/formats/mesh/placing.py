@@ -1,7 +1,7 @@
 """Pieces of a scene joined into one surface, and the bound on how much a small file can ask for.
 
 A scene may place one piece many times, and nodes that place each other make ten times more of it a
-level: copies are counted. Not for: what a piece is (`collada_geometry`, `gltf_mesh`).
+level: copies are counted. Not for: what a piece is (`collada_geometry`, `gltf_file`).
 """
 
 from __future__ import annotations

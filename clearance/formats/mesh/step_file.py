@@ -2,25 +2,28 @@
 
 Corners of facets lie on the surface, so facets cut through what is round and span what is hollow: the bound holds
 either way, and a case takes it off the clearance (`Polyhedron.shortfall`). What cannot be proven of the facets is
-asked for twice as fine as it is counted. Not for: what the file's text says (`step_text`).
+asked for twice as fine as it is counted.
 
 Source: Open CASCADE, BRepMesh_IncrementalMesh (linear and angular deflection), RWGltf (metres, single precision).
 """
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from clearance.errors import BadDimension, BadSyntax
 from clearance.extras import require
-from clearance.formats.mesh.gltf_buffers import Buffers
-from clearance.formats.mesh.gltf_file import chunks, read_glb
+from clearance.formats.mesh.gltf_buffers import Buffers, GltfObject
+from clearance.formats.mesh.gltf_file import chunks, mesh_pieces, read_glb
 from clearance.formats.mesh.placing import Z_FROM_Y_UP
 from clearance.formats.mesh.request import MeshRequest
-from clearance.formats.mesh.step_facets import Facets, facets_of
-from clearance.formats.mesh.step_text import step_facts
 from clearance.formats.mesh.triangles import Triangles
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION
 
@@ -100,3 +103,230 @@ def _tessellated(data: bytes, tolerance: float) -> bytes:
     if not done.stdout:
         raise BadSyntax("Open CASCADE cannot read it", valid="a STEP file of AP203, AP214 or AP242")
     return done.stdout
+
+
+MOST_BYTES = 200_000_000
+
+_FACE = re.compile(rb"(?<![A-Z0-9_])(?:ADVANCED_FACE|FACE_SURFACE|FACE)\s*\(")
+
+_UNREAD = {
+    b"TRIANGULATED_FACE": "it holds facets whose distance from the surface is not known",
+    b"COMPLEX_TRIANGULATED_FACE": "it holds facets whose distance from the surface is not known",
+    b"CSG_SOLID": "it holds solids that are made of others by rule",
+    b"BOOLEAN_RESULT": "it holds solids that are made of others by rule",
+    b"SWEPT_AREA_SOLID": "it holds solids that are made of others by rule",
+    b"EXTRUDED_AREA_SOLID": "it holds solids that are made of others by rule",
+    b"REVOLVED_AREA_SOLID": "it holds solids that are made of others by rule",
+    b"HALF_SPACE_SOLID": "it holds solids that are made of others by rule",
+    b"DOCUMENT_FILE": "it names other files, which are not opened",
+}
+"""Entities that are read in part or elsewhere, and why they are refused."""
+
+_PREFIXES = {
+    b"$": 1.0, b".KILO.": 1e3, b".DECI.": 1e-1, b".CENTI.": 1e-2, b".MILLI.": 1e-3, b".MICRO.": 1e-6,
+    b".NANO.": 1e-9,
+}  # fmt: skip
+
+_ACCURACY = re.compile(
+    rb"UNCERTAINTY_MEASURE_WITH_UNIT\s*\(\s*LENGTH_MEASURE\s*\(\s*([^()\s]+)\s*\)\s*,\s*#(\d+)"
+)
+_METRE = re.compile(rb"SI_UNIT\s*\(\s*(\$|\.[A-Z]+\.)\s*,\s*\.METRE\.")
+_CONVERSION = re.compile(rb"CONVERSION_BASED_UNIT\s*\(\s*'[^']*'\s*,\s*#(\d+)")
+_LENGTH = re.compile(rb"LENGTH_MEASURE\s*\(\s*([^()\s]+)\s*\)\s*,\s*#(\d+)")
+
+
+class StepFacts(NamedTuple):
+    """What a file says of itself.
+
+    Attributes:
+        n_faces: as many faces as it has. accuracy: [m] how far it says its surfaces may be apart where they meet.
+    """
+
+    n_faces: int
+    accuracy: float
+
+
+def step_facts(data: bytes) -> StepFacts:
+    """The facts of a STEP file.
+
+    Raises:
+        BadSyntax: not STEP, cut off, too long, without faces, of a kind that is not read, or of unknown units.
+    """
+    if len(data) > MOST_BYTES:
+        raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
+    text = data.strip()
+    if not text.startswith(b"ISO-10303-21;"):
+        raise BadSyntax("not a STEP file", valid="ISO-10303-21; at its beginning")
+    if not text.endswith(b"END-ISO-10303-21;"):
+        raise BadSyntax("the STEP file is cut off", valid="END-ISO-10303-21; at its end")
+    plain = re.sub(rb"/\*.*?\*/", b" ", text, flags=re.DOTALL)
+    for entity, why in _UNREAD.items():
+        if re.search(rb"(?<![A-Z0-9_])" + entity + rb"\s*\(", plain):
+            raise BadSyntax(
+                f"{entity.decode()} is not read: {why}", valid="solids of faces, in one file"
+            )
+    n_faces = len(_FACE.findall(plain))
+    if not n_faces:
+        raise BadSyntax("the STEP file has no faces", valid="a solid, or a surface")
+    return StepFacts(n_faces, _accuracy(plain))
+
+
+def _accuracy(text: bytes) -> float:
+    """[m] the largest accuracy that is stated; 0 where none is."""
+    stated = [_number(value) * _metres(text, unit, 0) for value, unit in _ACCURACY.findall(text)]
+    if any(not 0.0 <= value < 1.0 for value in stated):
+        raise BadSyntax(f"its accuracy is {max(stated):g} m", valid="0 to 1 m")
+    return max(stated, default=0.0)
+
+
+def _metres(text: bytes, unit: bytes, depth: int) -> float:
+    """[m] how long a unit is, by the number of its entity."""
+    entity = re.search(rb"#" + unit + rb"\s*=([^;]*);", text)
+    body = b"" if entity is None or depth > 5 else entity[1]
+    if (si := _METRE.search(body)) and si[1] in _PREFIXES:
+        return _PREFIXES[si[1]]
+    if (of := _CONVERSION.search(body)) and (
+        measure := re.search(rb"#" + of[1] + rb"\s*=([^;]*);", text)
+    ):
+        if length := _LENGTH.search(measure[1]):
+            return _number(length[1]) * _metres(text, length[2], depth + 1)
+    raise BadSyntax(
+        f"#{unit.decode():.20} is no length unit that is known",
+        valid="SI_UNIT or a conversion of it",
+    )
+
+
+def _number(text: bytes) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < 1e9:
+        raise BadSyntax(
+            f"{text.decode(errors='replace')!r:.40} is given as a length", valid="a number"
+        )
+    return value
+
+
+_EXTENSION = "TM_brep_faces"
+
+_STEPS = 4
+"""A triangle is looked at in 15 points: its corners, and where each side is cut into four."""
+
+
+class Facets(NamedTuple):
+    """What is known of the facets of a file.
+
+    Attributes:
+        n_faces: faces that have a triangle. n_free: those of them that are of no known kind.
+        off: [m] the farthest that a point of a triangle was found from its face.
+        reach: [m] the largest coordinate.
+    """
+
+    n_faces: int
+    n_free: int
+    off: float
+    reach: float
+
+
+def facets_of(document: GltfObject, buffers: Buffers) -> Facets:
+    """What is known of the facets in a GLB document with faces.
+
+    Raises:
+        BadSyntax: a face without a triangle, or triangles of no face.
+    """
+    found = [Facets(0, 0, 0.0, 0.0)]
+    for i in range(len(document.items("meshes"))):
+        mesh = document.item("meshes", i)
+        pieces = mesh_pieces(mesh, None, buffers)
+        for k, piece in enumerate(pieces):
+            found.append(
+                _of_piece(mesh.item("primitives", k), piece.vertices, piece.corners, buffers)
+            )
+    n_faces, n_free, off, reach = zip(*found, strict=True)
+    return Facets(sum(n_faces), sum(n_free), max(off), max(reach))
+
+
+def _of_piece(
+    primitive: GltfObject, vertices: np.ndarray, corners: np.ndarray, buffers: Buffers
+) -> Facets:
+    known = primitive.object("extensions").object(_EXTENSION)
+    faces = known.items("faces")
+    of_face = buffers.read(known.index("faceIndices"), 1)[:, 0].astype(np.int64)
+    if len(of_face) != len(corners) or (of_face >= len(faces)).any():
+        raise BadSyntax("triangles of no face", valid="a face for each triangle")
+    order = np.argsort(of_face, kind="stable")
+    ends = np.searchsorted(of_face[order], np.arange(len(faces) + 1))
+    n_free, off = 0, 0.0
+    for i, face in enumerate(faces):
+        own = order[ends[i] : ends[i + 1]]
+        if not len(own):
+            raise BadSyntax(f"face {i} of {len(faces)} has no facets", valid="a face that is sound")
+        kind = face.get("type") if isinstance(face, dict) else None
+        if kind not in _DISTANCES:
+            n_free += 1
+            continue
+        points = _lattice(vertices[corners[own]])
+        off = max(off, float(np.abs(_DISTANCES[kind](GltfObject(face, f"face {i}"), points)).max()))
+    return Facets(len(faces), n_free, off, float(np.abs(vertices).max()))
+
+
+def _lattice(triangles: np.ndarray) -> np.ndarray:
+    """(n, 3) points of (m, 3, 3) triangles."""
+    shares = [
+        (i / _STEPS, k / _STEPS, (_STEPS - i - k) / _STEPS)
+        for i in range(_STEPS + 1)
+        for k in range(_STEPS + 1 - i)
+    ]
+    return np.einsum("pc,mcx->mpx", np.array(shares), triangles).reshape(-1, 3)
+
+
+def _from_plane(face: GltfObject, points: np.ndarray) -> np.ndarray:
+    return (points - face.numbers("origin", (), 3)) @ _unit(face, "normal")
+
+
+def _from_cylinder(face: GltfObject, points: np.ndarray) -> np.ndarray:
+    across, _ = _about(face, "origin", points)
+    return across - _length(face, "radius")
+
+
+def _from_cone(face: GltfObject, points: np.ndarray) -> np.ndarray:
+    across, along = _about(face, "apex", points)
+    angle = abs(_length(face, "semi_angle"))
+    return across * np.cos(angle) - np.abs(along) * np.sin(angle)
+
+
+def _from_sphere(face: GltfObject, points: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(points - face.numbers("center", (), 3), axis=1) - _length(face, "radius")
+
+
+def _from_torus(face: GltfObject, points: np.ndarray) -> np.ndarray:
+    across, along = _about(face, "center", points)
+    return np.hypot(across - _length(face, "major_radius"), along) - _length(face, "minor_radius")
+
+
+_DISTANCES: dict[str, Callable[[GltfObject, np.ndarray], np.ndarray]] = {
+    "plane": _from_plane,
+    "cylinder": _from_cylinder,
+    "cone": _from_cone,
+    "sphere": _from_sphere,
+    "torus": _from_torus,
+}
+"""[m] the distances of points from a face's surface, inside or outside, by its kind."""
+
+
+def _about(face: GltfObject, centre: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Distances of points from the axis, and along it."""
+    axis = _unit(face, "axis")
+    seen = points - face.numbers(centre, (), 3)
+    along = seen @ axis
+    return np.linalg.norm(seen - along[:, None] * axis, axis=1), along
+
+
+def _unit(face: GltfObject, key: str) -> np.ndarray:
+    vector = face.numbers(key, (), 3)
+    return vector / np.linalg.norm(vector)
+
+
+def _length(face: GltfObject, key: str) -> float:
+    return float(GltfObject({key: [face.value.get(key)]}, face.place).numbers(key, (), 1)[0])

@@ -10,7 +10,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from clearance.errors import BadInput, BadShape, MissingKey, nearest_name
-from clearance.formats.message.documents import DEPTH, Fields, told
+from clearance.formats.message.documents import (
+    DEPTH,
+    Fields,
+    told,
+)
 
 _HOLDERS = (
     "joint_trajectory",

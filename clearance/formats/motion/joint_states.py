@@ -14,7 +14,7 @@ import numpy as np
 from clearance.errors import BadInput, BadShape, BadTime, NotFinite
 from clearance.formats.message.times import NANO
 from clearance.formats.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
-from clearance.formats.motion.trajectory_request import ReadTrajectory
+from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.notice import HOLD, listed
 from clearance.world.trajectory import SHORTEST, Trajectory

@@ -21,7 +21,7 @@ from clearance.formats.message.documents import (
 )
 from clearance.formats.message.times import NANO, nanoseconds_in
 from clearance.formats.message.values import items, message, numbers, text
-from clearance.formats.motion.pose_table_request import (
+from clearance.formats.motion.pose_file import (
     PoseRequest,
     PoseSamples,
     ReadSamples,

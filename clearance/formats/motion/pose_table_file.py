@@ -11,7 +11,7 @@ import io
 import numpy as np
 
 from clearance.errors import BadInput, BadPose, MissingKey, UnknownKey, at, nearest_name
-from clearance.formats.motion.pose_table_request import (
+from clearance.formats.motion.pose_file import (
     PoseRequest,
     PoseSamples,
     ReadSamples,
@@ -22,6 +22,7 @@ from clearance.formats.table.column_units import (
     columns_in,
     in_own_units,
     note_on_units,
+    notes_on_names,
     with_time,
 )
 from clearance.formats.table.csv_table import (
@@ -35,7 +36,6 @@ from clearance.formats.table.csv_table import (
     refuse_standing_time,
     require_time,
 )
-from clearance.formats.table.table_names import notes_on_names
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.tolerance import LARGEST, ROUNDED_ROTATION
 from clearance.world.pose_table import PoseTable

@@ -1,4 +1,4 @@
-"""A pose table to a file that `pose_formats` reads back: CSV, or stamped poses in YAML or JSON.
+"""A pose table to a file that `pose_file` reads back: CSV, or stamped poses in YAML or JSON.
 
 Every number is written so that it comes back bit for bit, quaternions as their file had them; times of messages
 are whole nanoseconds. What would not come back is refused. Not for: reading (`pose_table_file`, `pose_messages`).
@@ -16,8 +16,7 @@ import numpy as np
 from clearance.errors import BadInput, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import NANO, whole_times
-from clearance.formats.motion.pose_formats import read_samples
-from clearance.formats.motion.pose_table_request import PoseRequest, PoseSamples
+from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
 from clearance.formats.text.file_start import POSE_COLUMNS
 from clearance.formats.text.yaml_text import flow
 

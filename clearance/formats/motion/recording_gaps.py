@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.formats.motion.trajectory_request import ReadTrajectory
+from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.notice import HOLD, NOT_MEASURED
 from clearance.world.trajectory import Hole, Trajectory
 

@@ -2,7 +2,7 @@
 
 A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
 all joints have one or none. What is written otherwise (units, separators, no header, no times) is told in a note.
-Not for: which joints the robot has (`motion_names`), nor how a table is parsed (`csv_table`).
+Not for: which joints the robot has (`case.motion_notes`), nor how a table is parsed (`csv_table`).
 """
 
 from __future__ import annotations
@@ -12,15 +12,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, nearest_name
-from clearance.formats.motion.joint_columns import remedy, require_joints
-from clearance.formats.motion.quaternion_columns import by_angles, joints_by_angles, turned_joints
-from clearance.formats.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.formats.motion.joint_columns import (
+    by_angles,
+    joints_by_angles,
+    remedy,
+    require_joints,
+    turned_joints,
+)
+from clearance.formats.motion.trajectory_file import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.formats.table.column_units import (
     VELOCITY,
     Column,
+    chosen_columns,
     columns_in,
     in_own_units,
     note_on_units,
+    notes_on_names,
     with_time,
 )
 from clearance.formats.table.csv_table import (
@@ -35,7 +42,6 @@ from clearance.formats.table.csv_table import (
     refuse_standing_time,
     require_time,
 )
-from clearance.formats.table.table_names import chosen_columns, notes_on_names
 from clearance.world.trajectory import Trajectory
 
 

@@ -1,16 +1,87 @@
-"""A trajectory file to a trajectory, by the reader of its format.
+"""What a reader of trajectories is asked for and gives, the reader of a file by its format, and the line of a
+table that a sample is on.
 
-Not for: which joints the robot has (`world.moving_joints`).
+Not for: the formats (`known_formats`), nor which joints the robot has (`world.moving_joints`).
 """
 
 from __future__ import annotations
 
 import io
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import NamedTuple
 
-from clearance.errors import at
-from clearance.formats.known_formats import Kind, format_of, function_at
-from clearance.formats.motion.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.errors import BadInput, at
+from clearance.formats.known_formats import BAGS, Kind, format_of, function_at
+from clearance.formats.table.csv_table import Opener, as_written, first_row, line_of_row
+from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a case file says about a trajectory file beside its path; None where it says nothing.
+
+    Attributes:
+        which: the number of the trajectory that is meant, from 1, in a file that holds several.
+        units: of angles and lengths that name no unit themselves: keys of `column_units.UNITS`.
+        joints: the columns beside time of a table without a header.
+        period: [s] from row to row of a table without times.
+        topic: of a bag.
+        gaps: what joints do in holes of a recording: one of `world.notice.GAPS`.
+        columns: of a table, pairs of `time`, a joint, or a joint and `/velocity`, and the column that it is; other
+            columns are left out.
+    """
+
+    which: int | None = None
+    units: tuple[str, str] | None = None
+    joints: tuple[str, ...] | None = None
+    period: float | None = None
+    topic: str | None = None
+    gaps: str | None = None
+    columns: tuple[tuple[str, str], ...] | None = None
+
+    def refuse_others(self, used: Collection[str], what: str) -> None:
+        """Nothing, if all that is said is of use.
+
+        Args:
+            used: names of attributes. what: the kind of file, for the message.
+
+        Raises:
+            BadInput: the first that says nothing about such a file.
+        """
+        for name in (one.name for one in fields(self)):
+            if name not in used and getattr(self, name) is not None:
+                raise BadInput(
+                    f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
+                )
+
+
+@dataclass(frozen=True)
+class TrajectoryRequest:
+    """A file to read.
+
+    Attributes:
+        opened: opens the file, `n_bytes` long, again and again.
+        joints_needed: False for a robot that has no joint to move, for which times alone do.
+        turns: of each joint that moves, whether it turns; empty where the robot is not known.
+        robot: whose joints those of a table must be; None where it is not known.
+    """
+
+    opened: Opener
+    n_bytes: int
+    joints_needed: bool = True
+    choice: Choice = Choice()
+    turns: Mapping[str, bool] = field(default_factory=dict)
+    robot: Robot | None = None
+
+
+class ReadTrajectory(NamedTuple):
+    """A trajectory, and a line each on what was taken how."""
+
+    trajectory: Trajectory
+    notes: tuple[str, ...] = ()
 
 
 def read_trajectory(request: TrajectoryRequest, shown: str) -> ReadTrajectory:
@@ -33,3 +104,29 @@ def parse_trajectory(data: bytes, shown: str, choice: Choice | None = None) -> T
     """The samples in the content of a file, as `read_trajectory` finds them in the file."""
     request = TrajectoryRequest(lambda: io.BytesIO(data), len(data), choice=choice or Choice())
     return read_trajectory(request, shown).trajectory
+
+
+def line_of_sample(path: str, sample: int) -> int | None:
+    """The line, from 1, of a sample, from 0; None in a file that is no table, or has no such row any more."""
+    known = format_of(Kind.TRAJECTORY, path)
+    if known is None or known.name != "CSV" or not Path(path).is_file():
+        return None
+    table = as_written(lambda: open(path, "rb"))
+    try:
+        if table.float_of("".join(first_row(table)[:1])) is not None:
+            table = table._replace(names=("",))  # the first row is numbers: there is no header
+        return line_of_row(table, sample)
+    except (AssertionError, ValueError):  # it was written anew since it was read
+        return None
+
+
+def is_bag(path: Path) -> bool:
+    """Whether a path is that of a bag: a folder, or a file by its suffix."""
+    return path.suffix.lower() in BAGS or path.is_dir()
+
+
+def files_of(path: Path) -> list[Path]:
+    """The files of a bag."""
+    if not path.is_dir():
+        return [path]
+    return sorted(one for one in path.iterdir() if one.is_file() and not one.name.startswith("."))

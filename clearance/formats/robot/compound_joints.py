@@ -3,7 +3,7 @@
 A planar joint slides along x and y and turns about z, a ball joint turns about z, y and x, a floating joint does
 both. A part is called joint/x, joint/yaw and so on, and its frame the same; the last part carries the child.
 Between two samples each part goes as its own values say. Not for: which joints a file has
-(`urdf.joints`, `mjcf.tree`).
+(`urdf.joints`, `mjcf.joints`).
 
 Source: MoveIt 2, planar_joint_model and floating_joint_model (order of the parts); ROS, URDF (roll, pitch, yaw).
 """

@@ -1,28 +1,36 @@
-"""The files of a robot that say how far, how fast and how exactly its joints go, held against the robot.
+"""The files of a robot that say how far, how fast and how exactly its joints go, held against the robot:
+MoveIt's `joint_limits.yaml`, and `ros2_controllers.yaml` and its like of ROS 1.
 
-Not for: their formats (`joint_limits_file`, `controllers_file`).
+As in MoveIt, a limit counts where its `has_…` is true. A tolerance of 0, or none, means that the controller
+does not look. Not for: what is beyond the limits (`world.joint_speeds`), nor what a tolerance does to a
+clearance.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
-from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadDimension, BadInput, MissingKey, UnknownJoint, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.robot.joint_limits_file import FileLimits, parse_joint_limits
+from clearance.formats.message.documents import Fields, told
+from clearance.formats.message.parameter_values import (
+    mapping,
+    number,
+    parameters,
+    require_keys,
+    truth,
+)
 from clearance.formats.schema import case as schema
 from clearance.world.joint_positions import turns
 from clearance.world.motion_limits import NO_LIMIT, MotionLimit, PathTolerance
+from clearance.world.names import checked_name
 from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from clearance.formats.robot.controllers_file import Controller
 
 _Value = TypeVar("_Value")
 
@@ -59,8 +67,6 @@ def limited(
         motion = {name: one.motion for name, one in known.items() if one.motion != NO_LIMIT}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
-        from clearance.formats.robot.controllers_file import parse_controllers
-
         path = resolved(given.controllers, folder)
         shown = files.shown(path)
         with at(f"{entry.field}.controllers"), at(shown):
@@ -182,3 +188,156 @@ def _notes_on_tolerances(
     joints = [name for one in controllers for name in one.tolerances if name not in known]
     if joints:
         yield f"joints that the robot cannot move are left out: {listed(joints, 8)}"
+
+
+_WRAPPED_IN = ("robot_description_planning", "ros__parameters")
+
+_USED = {
+    "has_position_limits": ("min_position", "max_position"),
+    "has_velocity_limits": ("max_velocity",),
+    "has_acceleration_limits": ("max_acceleration",),
+}
+_UNUSED = (
+    "has_jerk_limits", "max_jerk", "has_effort_limits", "max_effort", "has_deceleration_limits",
+    "max_deceleration", "min_velocity", "min_acceleration", "angle_wraparound", "has_soft_limits", "k_position",
+    "k_velocity", "soft_lower_limit", "soft_upper_limit",
+)  # fmt: skip
+
+_KEYS = (*_USED, *(key for keys in _USED.values() for key in keys), *_UNUSED)
+
+
+@dataclass(frozen=True)
+class FileLimits:
+    """What a file says of one joint.
+
+    Attributes:
+        lower, upper: [rad] or [m]; infinite where it says nothing.
+        unused: keys that are there and say nothing here.
+    """
+
+    lower: float = -math.inf
+    upper: float = math.inf
+    motion: MotionLimit = NO_LIMIT
+    unused: tuple[str, ...] = ()
+
+
+def parse_joint_limits(data: bytes) -> dict[str, FileLimits]:
+    """Limits by joint.
+
+    Raises:
+        BadInput: with the joint and the key.
+    """
+    found = list(_blocks(parameters(data)))
+    if not found:
+        raise MissingKey("'joint_limits' is missing", valid="MoveIt's file of that name")
+    if len(found) > 1:
+        raise BadInput(f"there are {len(found)} mappings 'joint_limits'", valid="one")
+    limits = {}
+    for name, given in mapping(found[0]).items():
+        with at(f"joint_limits.{name:.60}"):
+            limits[checked_name(name)] = _limits(mapping(given))
+    return limits
+
+
+def _blocks(given: Fields, depth: int = 0) -> Iterator[object]:
+    """The values of `joint_limits`, at the top or in what ROS wraps parameters in: nodes, and their parameters."""
+    if "joint_limits" in given:
+        yield given["joint_limits"]
+        return
+    for key, value in given.items():
+        if isinstance(value, Fields) and depth < 4 and (depth == 0 or key in _WRAPPED_IN):
+            yield from _blocks(value, depth + 1)
+
+
+def _limits(given: Fields) -> FileLimits:
+    require_keys(given, _KEYS)
+    unused = [key for key in _UNUSED if key in given]
+    values: dict[str, float] = {}
+    for has, keys in _USED.items():
+        if not truth(given, has):
+            unused += [key for key in keys if key in given]
+            continue
+        for key in keys:
+            if key not in given:
+                raise MissingKey(f"{has} is true, but {key!r} is missing")
+            values[key] = number(given, key)
+    lower, upper = values.get("min_position", -math.inf), values.get("max_position", math.inf)
+    if lower > upper:
+        raise BadInput(f"min_position {lower:g} is above max_position {upper:g}")
+    for key in ("max_velocity", "max_acceleration"):
+        if values.get(key, 1.0) <= 0.0:
+            raise BadDimension(f"{key} is {values[key]:g}", valid="above 0")
+    motion = MotionLimit(
+        values.get("max_velocity", math.inf), values.get("max_acceleration", math.inf)
+    )
+    return FileLimits(lower, upper, motion, tuple(unused))
+
+
+_DEPTH = 4
+"""Namespaces that a controller may be in."""
+
+_TOLERANCES = ("trajectory", "goal")
+
+_OF_ALL = ("goal_time", "stopped_velocity_tolerance")
+"""Constraints that are of no joint."""
+
+
+@dataclass(frozen=True)
+class Controller:
+    """A controller that follows trajectories, and the tolerances of its joints."""
+
+    name: str
+    tolerances: dict[str, PathTolerance]
+
+
+def parse_controllers(data: bytes) -> list[Controller]:
+    """The controllers in a file that have joints.
+
+    Raises:
+        MissingKey: none has. BadInput: with the controller and the key.
+    """
+    found = list(_controllers(parameters(data)))
+    if not found:
+        raise MissingKey("no controller in it has 'joints' or 'constraints'")
+    return found
+
+
+def _controllers(given: Fields, depth: int = 0) -> Iterator[Controller]:
+    for name, value in given.items():
+        if not isinstance(value, Fields):
+            continue
+        body = value.get("ros__parameters", value)
+        if not isinstance(body, Fields):
+            continue
+        with at(f"{name:.60}"):
+            if "constraints" in body or isinstance(body.get("joints"), list):
+                yield Controller(checked_name(name), _tolerances(body))
+            elif depth < _DEPTH:
+                yield from _controllers(body, depth + 1)
+
+
+def _tolerances(body: Fields) -> dict[str, PathTolerance]:
+    """Of each joint that the controller names."""
+    joints = body.get("joints", [])
+    if not isinstance(joints, list) or not all(isinstance(joint, str) for joint in joints):
+        raise BadInput(f"{told(joints)} is given", where="joints", valid="a list of names")
+    found = {checked_name(joint): PathTolerance() for joint in joints}
+    with at("constraints"):
+        for name, given in mapping(body.get("constraints", Fields())).items():
+            if name in _OF_ALL:
+                continue
+            with at(f"{name:.60}"):
+                found[checked_name(name)] = _tolerance(mapping(given))
+    return found
+
+
+def _tolerance(given: Fields) -> PathTolerance:
+    require_keys(given, _TOLERANCES)
+    return PathTolerance(*(_length(given, key) for key in _TOLERANCES))
+
+
+def _length(given: Fields, key: str) -> float:
+    value = number(given, key) if key in given else 0.0
+    if value < 0.0:
+        raise BadDimension(f"{value:g} is given", where=key, valid="0 or more")
+    return value or math.inf

@@ -1,11 +1,14 @@
-"""Which of a link's shapes are the robot's, those to collide with or those to be seen, and what that leaves out.
+"""Which of a link's shapes are the robot's, those to collide with or those to be seen, and what that leaves
+out; and the box that stands for a plane.
 
-Not for: the shapes themselves (`urdf.shapes`, `mjcf.shapes`).
+Not for: the shapes themselves (`urdf.shapes`, `mjcf.shapes`), nor where a plane is (`sdf.geometry`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.formats.robot.request import Geometry
@@ -59,3 +62,22 @@ def notes_on_bare(kinds: Kinds) -> list[str]:
         return []
     count = "1 link" if len(bare) == 1 else f"{len(bare)} links"
     return [f"{count} without any shape: {listed(bare, 6)}"]
+
+
+PLANE_SIDE, PLANE_DEPTH = 40.0, 1.0
+"""[m] The box that stands for an infinite plane, below it; arms work within 20 m of their base."""
+
+PLANE_SIZE = (PLANE_SIDE, PLANE_SIDE, PLANE_DEPTH)
+
+
+def plane_from_box() -> np.ndarray:
+    """(4, 4) [m] the pose of the box on a plane, the z axis of which is its normal."""
+    pose = np.eye(4)
+    pose[2, 3] = -0.5 * PLANE_DEPTH
+    return pose
+
+
+def note_on_planes(names: Sequence[str]) -> str:
+    """A note on the boxes that stand for planes."""
+    size = f"{PLANE_SIDE:g} m wide and {PLANE_DEPTH:g} m deep"
+    return f"planes are boxes {size} below them: {listed(names, 6)}"

@@ -1,20 +1,32 @@
-"""SRDF, MoveIt's file of which links of a robot may touch, to a `CollisionMatrix`.
+"""SRDF, MoveIt's file of which links of a robot may touch, to a `CollisionMatrix`; and its named states, or
+those of the robot's own file, to positions of its joints.
 
-Groups, end effectors and virtual joints are passed over. Not for: named states (`srdf_states`), nor what an excuse
-is worth.
+Groups, end effectors and virtual joints are passed over. Not for: what an excuse is worth.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from clearance.errors import BadInput, BadSyntax, MissingKey, at, nearest_name
+from clearance.errors import (
+    BadInput,
+    BadShape,
+    BadSyntax,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+    UnknownState,
+    at,
+    nearest_name,
+)
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot.robot_element import robot_element
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.names import checked_name
+from clearance.world.notice import listed
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
@@ -142,3 +154,166 @@ def _notes(shown: str, n_left_out: int, unknown: frozenset[str], n_of_one: int) 
         yield (
             f"{shown}: {n_left_out} rows name links that the robot does not have and are left out: {listed}"
         )
+
+
+class GroupState(NamedTuple):
+    """Positions [rad] or [m] that a group of joints has by name; a joint of several freedoms has several.
+
+    Attributes:
+        group: empty where the file names none, as files that are not for MoveIt do.
+    """
+
+    group: str
+    name: str
+    positions: dict[str, tuple[float, ...]]
+
+    @property
+    def full_name(self) -> str:
+        """Its name with that of the group."""
+        return f"{self.group}/{self.name}" if self.group else self.name
+
+
+class StatePositions(NamedTuple):
+    """Positions by moving joint of a robot, and a line each on what was left out."""
+
+    positions: dict[str, float]
+    notes: tuple[str, ...]
+
+
+class NamedStates(NamedTuple):
+    """The states that a file names, and how that file is shown."""
+
+    shown: str
+    states: list[GroupState]
+
+
+def states_known(
+    srdf: Path | None, robot: Robot, robot_file: Path, files: InputFiles
+) -> NamedStates:
+    """The states of an SRDF file; without one, those that the robot's own file names.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    if srdf is None:
+        states = [
+            GroupState("", name, {joint: (value,) for joint, value in positions.items()})
+            for name, positions in robot.states.items()
+        ]
+        return NamedStates(files.shown(robot_file), states)
+    shown = files.shown(srdf)
+    with at(shown):
+        return NamedStates(shown, read_states(srdf, files))
+
+
+def positions_in_states(known: NamedStates, names: Sequence[str], robot: Robot) -> StatePositions:
+    """The positions that states give to joints of the robot; those it cannot set are left out.
+
+    Args:
+        names: of states, or group/state.
+
+    Raises:
+        UnknownState: no such state, or of several groups. BadInput: two that give one joint another position, or
+        one that speaks of no joint of the robot; with the file.
+    """
+    shown = known.shown
+    with at(shown):
+        asked = [_chosen(name, known.states) for name in names]
+        positions: dict[str, float] = {}
+        for state in asked:
+            _take(positions, state, robot)
+    taken = [state.full_name for state in asked]
+    left = [name for state in asked for name in state.positions if name not in positions]
+    notes = [
+        f"{shown}: of state {listed(taken)}, joints that cannot be set are left out: {listed(left, 8)}"
+    ]
+    return StatePositions(positions, tuple(notes if left else ()))
+
+
+def read_states(path: Path, files: InputFiles) -> list[GroupState]:
+    """All states in an SRDF file, in its order.
+
+    Raises:
+        BadInput: with the element.
+    """
+    states = []
+    for i, element in enumerate(srdf_root(path, files).iterfind("group_state")):
+        with at(f"group_state[{i}]"):
+            states.append(_state(element))
+    return states
+
+
+def _state(element: Element) -> GroupState:
+    positions: dict[str, tuple[float, ...]] = {}
+    for joint in element.iterfind("joint"):
+        name = _named(joint, "name")
+        if name in positions:
+            raise DuplicateName(f"joint {name!r} is there twice", valid="each joint once")
+        with at(f"joint {name!r}"):
+            positions[name] = _numbers(joint.get("value"))
+    group = checked_name(element.get("group") or "")
+    return GroupState(group, _named(element, "name"), positions)
+
+
+def _named(element: Element, attribute: str) -> str:
+    name = element.get(attribute)
+    if not name:
+        raise MissingKey(f"<{element.tag}> has no {attribute}")
+    return checked_name(name)
+
+
+def _numbers(text: str | None) -> tuple[float, ...]:
+    words = (text or "").split()
+    try:
+        values = tuple(float(word) for word in words if "_" not in word)
+    except ValueError:
+        values = ()
+    if not words or len(values) != len(words):
+        raise BadShape(f"value={text!r:.60} is given", valid="a number")
+    if not all(map(math.isfinite, values)):
+        raise NotFinite(f"value={text!r:.60} is given", valid="a finite number")
+    return values
+
+
+def _chosen(name: str, states: Sequence[GroupState]) -> GroupState:
+    found = [state for state in states if name in (state.full_name, state.name)]
+    exact = [state for state in found if state.full_name == name] or found
+    if len(exact) == 1:
+        return exact[0]
+    if not exact:
+        raise UnknownState(
+            f"unknown state {name!r}",
+            valid=nearest_name(name, names_of(states)) if states else "it has none",
+        )
+    groups = [state.full_name for state in exact]
+    raise UnknownState(
+        f"there are {len(exact)} states {name!r}", valid=f"one of {listed(groups, 8)}"
+    )
+
+
+def names_of(states: Sequence[GroupState]) -> list[str]:
+    """As each can be asked for; without the group where no other has the name."""
+    alone = [state.name for state in states]
+    return [state.name if alone.count(state.name) == 1 else state.full_name for state in states]
+
+
+def _take(positions: dict[str, float], state: GroupState, robot: Robot) -> None:
+    """Adds what a state gives to joints that can be set."""
+    moving = {joint.name for joint in robot.moving_joints}
+    own = {
+        name: values[0]
+        for name, values in state.positions.items()
+        if name in moving and len(values) == 1
+    }
+    if not own:
+        raise BadInput(
+            f"state {state.full_name!r} speaks of no joint that robot {robot.name!r} can move",
+            valid=nearest_name(next(iter(state.positions), ""), moving),
+        )
+    for name, position in own.items():
+        if positions.setdefault(name, position) != position:
+            raise BadInput(
+                f"joint {name!r} is at {positions[name]:g} in a state before "
+                f"and at {position:g} in {state.full_name!r}",
+                valid="states of other groups",
+            )

@@ -10,8 +10,8 @@ from dataclasses import replace
 from clearance.errors import BadInput
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.scene.request import SceneContent, SceneRequest
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.strict_model import validated
 from clearance.world.notice import Notice, Severity
 
 

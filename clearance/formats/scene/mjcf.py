@@ -12,7 +12,7 @@ from clearance.errors import BadInput, at
 from clearance.formats.mesh.off_file import off_text
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import mjcf_document
-from clearance.formats.robot.mjcf.model import MjcfGeom, MjcfModel
+from clearance.formats.robot.mjcf.mujoco_adapter import MjcfGeom, MjcfModel
 from clearance.formats.robot.mjcf.shapes import (
     MjcfShapes,
     body_from_shape,
@@ -20,9 +20,8 @@ from clearance.formats.robot.mjcf.shapes import (
     primitive,
     triangles_of,
 )
-from clearance.formats.robot.plane_box import note_on_planes
-from clearance.formats.scene.pose_row import pose_row
-from clearance.formats.scene.request import SceneContent, SceneRequest
+from clearance.formats.robot.shape_kinds import note_on_planes
+from clearance.formats.scene.request import SceneContent, SceneRequest, pose_row
 from clearance.world.notice import Notice, Severity, listed
 
 

@@ -1,4 +1,6 @@
-"""What is asked of a reader of scene files, and what it gives. Not for: reading them."""
+"""What is asked of a reader of scene files, and what it gives: rows as a YAML scene has them. Not for: reading
+them.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.world.notice import Notice
@@ -72,3 +76,30 @@ class SceneContent:
     link_padding: dict[str, float] = field(default_factory=dict)
     held: tuple[HeldPart, ...] = ()
     frame: str = ""
+
+
+def pose_row(pose: np.ndarray) -> dict[str, list[float]]:
+    """The row of a (4, 4) pose [m]; without a rotation where there is none.
+
+    Exactness: the place is the same; the rotation read back is off by a few roundings.
+    """
+    row = {"xyz": pose[:3, 3].tolist()}
+    if not np.array_equal(pose[:3, :3], np.eye(3)):
+        row["quat_xyzw"] = _quaternion(pose[:3, :3])
+    return row
+
+
+def _quaternion(rotation: np.ndarray) -> list[float]:
+    """The unit quaternion, the scalar last, by its largest component.
+
+    Source: Shepperd, Quaternion from rotation matrix, 1978.
+    """
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.tolist()
+    rows = {
+        xx + yy + zz: (zy - yz, xz - zx, yx - xy, 1 + xx + yy + zz),
+        xx - yy - zz: (1 + xx - yy - zz, xy + yx, xz + zx, zy - yz),
+        yy - xx - zz: (xy + yx, 1 + yy - xx - zz, yz + zy, xz - zx),
+        zz - xx - yy: (xz + zx, yz + zy, 1 + zz - xx - yy, yx - xy),
+    }
+    quaternion = np.array(rows[max(rows)])
+    return (quaternion / np.linalg.norm(quaternion)).tolist()

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.errors import shown
-from clearance.formats.files.input_files import PYBULLET_DATA
-from clearance.formats.files.written_paths import path_from
+from clearance.formats.files.input_files import PYBULLET_DATA, path_from
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.text.yaml_text import flow
 

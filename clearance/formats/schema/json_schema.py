@@ -1,6 +1,6 @@
 """The case file's schema as JSON Schema, so that editors complete keys and mark faults while one writes.
 
-Made from `case`, with what its validators take beside the plain types. Not for: checking (`errors`).
+Made from `case`, with what its validators take beside the plain types. Not for: checking (`strict_model`).
 """
 
 from __future__ import annotations
@@ -9,12 +9,11 @@ from collections.abc import Iterator
 from typing import Any
 
 from clearance.formats.known_formats import Kind, names_of
-from clearance.formats.preset_files import preset_names
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
 from clearance.formats.schema.strict_model import StrictModel
-from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS
+from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
 from clearance.world.notice import KINDS
 
 _NAMES_OF_STATES = {

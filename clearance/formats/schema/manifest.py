@@ -15,9 +15,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from clearance.errors import BadInput, MissingKey
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.schema.case import Kind
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.pose import TrajectoryFile
-from clearance.formats.schema.strict_model import Level, Name, StrictModel
+from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
 from clearance.formats.text.yaml_file import parse_yaml
 
 _KEYS = re.compile(rb"^(cases|cell|trajectories)\s*:", re.MULTILINE)

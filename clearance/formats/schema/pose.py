@@ -1,6 +1,6 @@
 """The schema of where something is: poses, what it stands on, and files that say where it goes.
 
-Not for: reading those files (`trajectory_file`, `pose_formats`).
+Not for: reading those files (`trajectory_file`, `pose_file`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from clearance.errors import BadInput
-from clearance.formats.motion.trajectory_request import Choice
+from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.schema.shape import Triple
 from clearance.formats.schema.strict_model import Name, StrictModel
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy

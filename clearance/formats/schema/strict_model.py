@@ -1,13 +1,27 @@
-"""What all models of a case file's schema are: mappings whose keys are known, numbers that are numbers."""
+"""What all models of a case file's schema are: mappings whose keys are known, numbers that are numbers; and
+what they object to, as one line of ours: given, where, what is valid.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from clearance.errors import BadInput, UnknownKey, nearest_name
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    BadShape,
+    ClearanceError,
+    MissingKey,
+    NotFinite,
+    UnknownKey,
+    nearest_name,
+)
 from clearance.world.names import checked_name
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
 
@@ -41,3 +55,76 @@ class StrictModel(BaseModel):
             if key in cls.FILLED and data[key] is None:
                 raise BadInput("nothing is given", where=key, valid="a value, or no such key")
         return data
+
+
+Model = TypeVar("Model", bound=BaseModel)
+
+_FAULT: dict[str, type[BadInput]] = {
+    "finite_number": NotFinite,
+    "greater_than": BadDimension,
+    "too_short": BadShape,
+    "too_long": BadShape,
+}
+
+
+def validated(model: type[Model], data: object, shown: str) -> Model:
+    """The model made from plain data.
+
+    Args:
+        shown: the file's name in errors.
+
+    Raises:
+        BadInput: the first fault found, at `shown: path.to[2].field`.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _translated(error.errors()[0], shown) from None
+
+
+def place(location: tuple[int | str, ...]) -> str:
+    """`("scene", "obstacles", 2, "pose")` as `scene.obstacles[2].pose`."""
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return text.lstrip(".")
+
+
+def _translated(detail: ErrorDetails, shown: str) -> ClearanceError:
+    location = tuple(detail["loc"])
+    own = detail.get("ctx", {}).get("error")
+    if isinstance(own, ClearanceError):
+        inner = ".".join(part for part in (place(location), own.where) if part)
+        own.where = f"{shown}: {inner}" if inner else shown
+        return own
+    if detail["type"] == "missing":
+        return MissingKey(f"{location[-1]!r} is missing", where=_joined(shown, location[:-1]))
+    fault = _FAULT.get(detail["type"], BadInput)
+    return fault(_given(detail["input"]), where=_joined(shown, location), valid=_remedy(detail))
+
+
+def _joined(shown: str, location: tuple[int | str, ...]) -> str:
+    return f"{shown}: {place(location)}" if location else shown
+
+
+def _given(value: object) -> str:
+    if value is None:
+        return "nothing is given"
+    text = repr(value)
+    return f"{text if len(text) <= 60 else text[:57] + '...'} is given"
+
+
+def _remedy(detail: ErrorDetails) -> str:
+    context = detail.get("ctx", {})
+    if detail["type"] in ("too_short", "too_long"):
+        least, most = context.get("min_length"), context.get("max_length")
+        return f"{least or most} values are needed"
+    if detail["type"] == "string_too_short":
+        return "a text that is not empty is needed"
+    text = (
+        detail["msg"]
+        .replace("Input should be ", "")
+        .replace("a valid i", "an i")
+        .replace("a valid", "a")
+    )
+    return f"{text} is needed"

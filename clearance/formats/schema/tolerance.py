@@ -7,6 +7,7 @@ are of one thing (`tolerance.block`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import (
@@ -20,7 +21,6 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 
 from clearance.errors import BadDimension, BadInput, nearest_name
-from clearance.formats.preset_files import preset_names
 from clearance.formats.schema.strict_model import Name, StrictModel
 from clearance.world.budget import COVERAGE
 
@@ -211,3 +211,11 @@ class Tolerance(StrictModel):
         if not any(getattr(self, key) for key in ERRORS):
             raise BadInput("no error is given", valid=f"one of {', '.join(ERRORS)}")
         return self
+
+
+FOLDER = Path(__file__).parents[1] / "presets"
+
+
+def preset_names() -> tuple[str, ...]:
+    """The names of all presets."""
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.yaml")))

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from clearance import load_case
-from clearance.case.tolerance.presets import preset
+from clearance.case.tolerance.block import preset
 from clearance.case.tolerance.tolerance_file import with_tolerance
 from clearance.errors import (
     BadDimension,
@@ -19,7 +19,7 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
-from clearance.formats.preset_files import preset_names
+from clearance.formats.schema.tolerance import preset_names
 from clearance.world.budget import (
     Budget,
     JointTolerance,

@@ -10,7 +10,7 @@ import clearance as cl
 from clearance.case.case_file import load_case
 from clearance.errors import BadInput, ClearanceError
 from clearance.formats.cloud.formats import cloud_from_bytes, read_points
-from clearance.formats.cloud.lzf import decompressed
+from clearance.formats.cloud.pcd_file import decompressed
 from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.geometry.point_cloud import PointCloud
 from tests.formats.making_clouds import XYZ, lzf, pcd, ply, table

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from clearance.errors import BadInput, BadShape
-from clearance.formats.conversion.file_kind import kind_of
+from clearance.formats.conversion.files import kind_of
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import Kind
 from clearance.formats.text.file_start import LONGEST

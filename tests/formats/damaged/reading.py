@@ -81,8 +81,8 @@ def scene(data: bytes, folder: Path, name: str) -> object:
     from clearance.formats.scene.formats import read_scene
     from clearance.formats.scene.obstacles import make_obstacles
     from clearance.formats.scene.request import SceneRequest
-    from clearance.formats.schema.errors import validated
     from clearance.formats.schema.obstacle import Scene
+    from clearance.formats.schema.strict_model import validated
 
     (folder / "m.stl").write_bytes(binary_stl())
     (folder / name).write_bytes(data)
@@ -99,7 +99,7 @@ def trajectory(data: bytes, folder: Path, name: str) -> object:
 
 
 def bag(path: Path) -> object:
-    from clearance.formats.motion.trajectory_request import Choice
+    from clearance.formats.motion.trajectory_file import Choice
     from clearance.formats.timed_files import load_trajectory
 
     return load_trajectory(path, Choice())
@@ -114,8 +114,7 @@ def bag_folder(path: Path) -> object:
 
 
 def poses(data: bytes, folder: Path, name: str) -> object:
-    from clearance.formats.motion.pose_formats import read_poses
-    from clearance.formats.motion.pose_table_request import PoseRequest
+    from clearance.formats.motion.pose_file import PoseRequest, read_poses
 
     return read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
 

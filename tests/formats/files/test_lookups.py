@@ -3,8 +3,8 @@
 import trimesh
 
 from clearance.case.case_file import load_case
+from clearance.formats.files.found_files import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.files.lookups import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.report.provenance import inputs
 
 URDF = """<robot name="cart"><link name="ground"/>

@@ -10,8 +10,7 @@ from clearance.case.case_file import load_case
 from clearance.case.recorded_run import with_recorded
 from clearance.cli import run
 from clearance.errors import BadInput, BadPose, BadShape, BadSyntax, MissingKey, UnknownJoint
-from clearance.formats.motion.trajectory_file import read_trajectory
-from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from tests.formats.making import ARM, PATH, write_case
 from tests.formats.making_case import TWO_JOINTS, changed, load_small

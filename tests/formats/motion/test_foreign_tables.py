@@ -18,8 +18,7 @@ from clearance.errors import (
     DuplicateName,
     MissingKey,
 )
-from clearance.formats.motion.trajectory_file import read_trajectory
-from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from tests.examples import examples
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed, load_small

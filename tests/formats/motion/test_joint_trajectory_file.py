@@ -21,8 +21,12 @@ from clearance.errors import (
     UnknownJoint,
     UnknownKey,
 )
-from clearance.formats.motion.trajectory_file import parse_trajectory, read_trajectory
-from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import (
+    Choice,
+    TrajectoryRequest,
+    parse_trajectory,
+    read_trajectory,
+)
 from tests.examples import examples, some_slow
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed, load_small

@@ -9,8 +9,7 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.errors import BadInput, BadPose, BadTime, ClearanceError
-from clearance.formats.motion.pose_formats import read_poses
-from clearance.formats.motion.pose_table_request import PoseRequest
+from clearance.formats.motion.pose_file import PoseRequest, read_poses
 from tests.formats.making_cell import DOOR, load_cell, write_cell
 
 STAMPED = """header:

@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadInput
-from clearance.formats.motion.pose_formats import read_poses
+from clearance.formats.motion.pose_file import PoseRequest, read_poses
 from clearance.formats.motion.pose_table_file import parse_pose_table
-from clearance.formats.motion.pose_table_request import PoseRequest
 from clearance.formats.text.file_start import POSE_COLUMNS
 
 TEXT = "time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"

@@ -7,7 +7,7 @@ import pytest
 from clearance import check
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadTime, ClearanceError, NotFinite
-from clearance.formats.motion.trajectory_request import Choice
+from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.timed_files import load_trajectory
 from tests.formats.making import write_case
 from tests.formats.making_case import TWO_JOINTS, changed

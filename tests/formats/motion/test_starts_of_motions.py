@@ -9,8 +9,7 @@ import pytest
 from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadTime, MissingKey, UnknownJoint
-from clearance.formats.motion.trajectory_file import read_trajectory
-from clearance.formats.motion.trajectory_request import Choice, TrajectoryRequest
+from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from clearance.world.cubic import positions_along
 from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small

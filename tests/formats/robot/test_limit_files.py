@@ -6,8 +6,7 @@ import pytest
 
 from clearance import check, load_case
 from clearance.errors import BadInput, ClearanceError, MissingKey, UnknownJoint, UnknownKey
-from clearance.formats.robot.controllers_file import parse_controllers
-from clearance.formats.robot.joint_limits_file import parse_joint_limits
+from clearance.formats.robot.limit_files import parse_controllers, parse_joint_limits
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.notice import Severity
 from clearance.world.plausibility import notices_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.formats.robot.mjcf.filters import BITS, EXCLUDE, PARENT
+from clearance.formats.robot.mjcf.robot import BITS, EXCLUDE, PARENT
 from clearance.profiles.swept_bodies import swept_bodies
 from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 from clearance.world.collision_matrix import ADJACENT

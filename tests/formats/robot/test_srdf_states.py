@@ -5,7 +5,7 @@ import pytest
 from clearance.cli import run
 from clearance.errors import BadInput, BadShape, BadSyntax, ClearanceError, MissingKey, UnknownState
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.robot.srdf_states import read_states
+from clearance.formats.robot.srdf import read_states
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
 JOINTS = '<joint name="shoulder" value="0.3"/><joint name="lift" value="0.05"/>'

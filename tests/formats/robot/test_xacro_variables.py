@@ -2,7 +2,7 @@
 
 import pytest
 
-from clearance.formats.robot.urdf.xacro_variables import variables_asked
+from clearance.formats.robot.urdf.xacro_file import variables_asked
 from clearance.world.case import Source
 
 

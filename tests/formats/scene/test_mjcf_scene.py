@@ -9,8 +9,8 @@ from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.formats import read_scene
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneRequest
-from clearance.formats.schema.errors import validated
 from clearance.formats.schema.obstacle import Scene
+from clearance.formats.schema.strict_model import validated
 from tests.formats.making_case import load_small
 from tests.formats.making_mjcf import BALL, mjcf, write_mjcf
 

@@ -15,9 +15,8 @@ import numpy as np
 from clearance.errors import BadInput, BadSyntax, MissingFile, at
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import MjcfDocument
-from clearance.formats.robot.mjcf.model import MjcfGeom, MjcfMesh, MjcfModel
-from clearance.formats.robot.mjcf.mujoco_adapter import MjcfSpec
-from clearance.formats.robot.plane_box import PLANE_SIZE, plane_from_box
+from clearance.formats.robot.mjcf.mujoco_adapter import MjcfGeom, MjcfMesh, MjcfModel, MjcfSpec
+from clearance.formats.robot.shape_kinds import PLANE_SIZE, plane_from_box
 from clearance.formats.text.notes import grouped
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope_hull import hull_faces

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.formats.files.found_files import FoundFiles
-from clearance.formats.files.lookups import MESH, note_lookup
+from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
 from clearance.formats.files.mesh_paths import mesh_path
 from clearance.formats.mesh_store import MeshStore, Scale
 from clearance.formats.plausibility import scale_notices

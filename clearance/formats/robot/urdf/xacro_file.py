@@ -9,24 +9,20 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from clearance.errors import (
-    BadSyntax,
-    MissingFile,
-    Unavailable,
-    UnknownKey,
-    nearest_name,
-)
+from clearance.errors import BadSyntax, MissingFile, Unavailable, UnknownKey, nearest_name
 from clearance.extras import install, is_installed
-from clearance.formats.files.found_files import notes_on_variables
-from clearance.formats.files.input_files import InputFiles
-from clearance.formats.files.lookups import PACKAGE, note_lookup
+from clearance.formats.files.found_files import PACKAGE, note_lookup, notes_on_variables
+from clearance.formats.files.input_files import InputFiles, regular_file
 from clearance.formats.robot.request import RobotRequest
+from clearance.world.case import Source
 from clearance.world.notice import listed
 
 MOST_WORK = 30
@@ -178,3 +174,24 @@ def _warnings(said: str, shown: str, folder: Path) -> list[str]:
         return []
     others = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
     return [f"{shown}: xacro warns: {lines[0].replace(f'{os.path.abspath(folder)}/', '')}{others}"]
+
+
+_SUFFIXES = frozenset({".xacro", ".xml", ".urdf"})
+
+_ASKED = re.compile(rb"\$\(\s*(?:opt)?env\s+([A-Za-z_]\w*)")
+
+
+def variables_asked(sources: Iterable[Source]) -> tuple[str, ...]:
+    """The names of the variables that some files ask for, sorted."""
+    files = [one for one in sources if os.path.splitext(one.read_from)[1].lower() in _SUFFIXES]
+    return tuple(sorted({name for one in files for name in _in_file(one.read_from, one.sha256)}))
+
+
+@lru_cache(maxsize=256)
+def _in_file(path: str, sha256: str) -> frozenset[str]:
+    """Those of one file, by its content; of one that is gone none, and its case is then measured again."""
+    try:
+        with regular_file(Path(path)) as file:
+            return frozenset(name.decode() for name in _ASKED.findall(file.read()))
+    except OSError:
+        return frozenset()

@@ -1,12 +1,20 @@
-"""MoveIt's CollisionObject messages to rows of a YAML scene. Not for: what they are attached to."""
+"""MoveIt's CollisionObject messages, and its shapes there and in `.scene` files, to rows of a YAML scene. Not
+for: what they are attached to.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, at
+from clearance.errors import BadDimension, BadInput, BadShape, at, nearest_name
+from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
+from clearance.formats.files.mesh_paths import mesh_path
+from clearance.formats.mesh.octree_file import file_of_message, octree_of
+from clearance.formats.mesh.off_file import off_text
 from clearance.formats.message.values import (
     Message,
     Poses,
@@ -17,8 +25,7 @@ from clearance.formats.message.values import (
     numbers,
     text,
 )
-from clearance.formats.scene.moveit.shapes import KINDS, Row, SceneMeshes, primitive
-from clearance.formats.scene.pose_row import pose_row
+from clearance.formats.scene.request import SceneRequest, pose_row
 
 _ADD = (None, 0, "0", "add", "ADD", "\0", "")
 
@@ -101,3 +108,116 @@ def _corners(value: object) -> list[int]:
     if not isinstance(corners, list) or [type(corner) for corner in corners] != [int] * 3:
         raise BadShape(f"{value!r:.60} is given", where="triangles", valid="3 vertex_indices")
     return corners
+
+
+Row = dict[str, Any]
+
+KINDS = {1: "box", 2: "sphere", 3: "cylinder", 4: "cone", 5: "prism"}
+"""`SolidPrimitive.type`, by number."""
+
+MOST_VALUES = 3_000_000
+"""Vertices and triangles written out in one scene; a shape counts as a hundred."""
+
+_N_DIMENSIONS = {"box": 3, "sphere": 1, "cylinder": 2}
+
+
+def primitive(kind: str, dimensions: Sequence[float]) -> Row:
+    """A box of three lengths, a sphere of a radius, or a cylinder of height and radius.
+
+    Raises:
+        BadInput: another kind. BadShape, BadDimension: no such dimensions.
+    """
+    if kind not in _N_DIMENSIONS:
+        if kind in ("cone", "prism", "plane"):
+            raise BadInput(f"a {kind} is not read", valid="a mesh of the same shape, or a box")
+        raise BadInput(f"{kind!r:.40} is no kind of shape", valid=nearest_name(kind, _N_DIMENSIONS))
+    needed = _N_DIMENSIONS[kind]
+    if len(dimensions) != needed:
+        raise BadShape(f"{len(dimensions)} dimensions of a {kind}", valid=f"{needed} are needed")
+    if not all(length > 0.0 for length in dimensions):
+        raise BadDimension(f"dimensions {list(dimensions)} of a {kind}", valid="above 0 m")
+    if kind == "box":
+        return {"box": {"size": list(dimensions)}}
+    if kind == "sphere":
+        return {"sphere": {"radius": dimensions[0]}}
+    return {"cylinder": {"radius": dimensions[1], "length": dimensions[0]}}
+
+
+class SceneMeshes:
+    """The meshes of one scene: those written out in it, and those that it names.
+
+    Args:
+        asked: the scene.
+    """
+
+    def __init__(self, asked: SceneRequest) -> None:
+        self._asked = asked
+        self._n_inline = 0
+        self._n_left = MOST_VALUES
+        self.found = FoundFiles()
+
+    def take(self, n: int) -> None:
+        """Counts what is read: a file may name one part of itself again and again.
+
+        Raises:
+            BadInput: it is too much.
+        """
+        self._n_left -= n
+        if self._n_left < 0:
+            most = f"{MOST_VALUES} vertices and triangles, or {MOST_VALUES // 100} shapes"
+            raise BadInput(f"more than {most}", valid="fewer")
+
+    def inline(self, vertices: list[list[float]], triangles: list[list[int]]) -> Row:
+        """A mesh written out in the scene, which is kept as a file beside it that is not on disk.
+
+        Raises:
+            BadShape: a corner that is not there.
+        """
+        for triangle in triangles:
+            if not all(0 <= corner < len(vertices) for corner in triangle):
+                raise BadShape(
+                    f"triangle {triangle} of {len(vertices)} vertices",
+                    valid="corners that are there",
+                )
+        name = f"{self._asked.path.name}.mesh{self._n_inline}.off"
+        self._n_inline += 1
+        self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
+        return {"mesh": {"file": name}}
+
+    def octomap(self, given: Message) -> Row | None:
+        """An octomap written out in the scene, kept likewise; None where no cell of it is occupied.
+
+        Raises:
+            BadInput: another kind of map, data that are no bytes, or a tree that is cut off.
+        """
+        data = items(given, "data")
+        if not all(type(byte) is int and -128 <= byte <= 255 for byte in data):
+            raise BadInput("a byte is no whole number of -128 to 255", where="data", valid="bytes")
+        content = file_of_message(
+            bytes(byte & 255 for byte in data),
+            text(given, "id"),
+            number(given.get("resolution"), "resolution"),
+            is_binary=given.get("binary") is True,
+        )
+        if not len(octree_of(content).sizes):
+            return None
+        name = f"{self._asked.path.name}.octomap.bt"
+        self._asked.files.hold(self._asked.path.parent / name, content)
+        return {"mesh": {"file": name}}
+
+    def named(self, uri: str, scale: list[float]) -> Row:
+        """A mesh file.
+
+        Raises:
+            MissingFile: it is not there. BadDimension: a scale of 0.
+        """
+        if 0.0 in scale:
+            raise BadDimension(f"scale {scale}", valid="a scale is not zero")
+        place = uri, self._asked.path.parent, self._asked.package_dirs
+        found = mesh_path(*place)
+        note_lookup(self._asked.files, MESH, *place, found.path)
+        shown = self._asked.files.shown(found.path)
+        self.found.add(uri, found, shown)
+        axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
+        file = os.path.relpath(found.path, self._asked.path.parent)
+        return {"mesh": {"file": file, "scale": scale} | axis}

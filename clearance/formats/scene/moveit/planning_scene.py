@@ -1,6 +1,8 @@
 """MoveIt's PlanningScene in YAML, as a message is printed or as robowflex writes it, to a scene.
 
-World objects become obstacles, attached ones ride on their link. Not for: the robot's state, colours.
+World objects become obstacles, attached ones ride on their link, pairs of the AllowedCollisionMatrix may touch.
+Not for: the robot's state, colours. Source: MoveIt, collision_detection::AllowedCollisionMatrix: an entry goes
+before a default.
 """
 
 from __future__ import annotations
@@ -11,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, at
+from clearance.errors import BadDimension, BadInput, BadShape, at
 from clearance.formats.message.values import Message, Poses, items, message, messages, number, text
-from clearance.formats.scene.moveit.matrix import allowed_pairs
-from clearance.formats.scene.moveit.objects import object_rows
-from clearance.formats.scene.moveit.shapes import Row, SceneMeshes
-from clearance.formats.scene.pose_row import pose_row
-from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest
+from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
+from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest, pose_row
 from clearance.formats.text.notes import note_on_rounded
+from clearance.world.names import require_own_names
 from clearance.world.rules import pattern_of
 
 OCTOMAP = "<octomap>"
@@ -230,3 +230,70 @@ def _lost(raw: Message, state: Message) -> Iterator[str]:
 def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
     for where, given in messages(state, "attached_collision_objects"):
         yield where, message(given, "object")
+
+
+MOST_NAMES = 2000
+"""Of which there are two million pairs."""
+
+ANY = "*"
+"""Stands for every body."""
+
+
+def allowed_pairs(matrix: Message) -> list[tuple[str, str]]:
+    """The pairs of names of which an entry is true, each once, as patterns of those names alone; with `ANY` for a
+    default that is true.
+
+    A default holds for pairs of which there is no entry; where the entries of a name forbid something, its default
+    is left out, so that more is measured and not less.
+
+    Raises:
+        BadShape: rows and names that are not as many. BadInput: an entry that is neither true nor false.
+        DuplicateName: two rows of one name.
+    """
+    with at("allowed_collision_matrix"):
+        names = _names(matrix, "entry_names")
+        if len(names) > MOST_NAMES:
+            raise BadInput(f"{len(names)} entry_names are given", valid=f"{MOST_NAMES} or fewer")
+        rows = [_row(row, len(names)) for row in items(matrix, "entry_values")]
+        require_own_names("entry_name", names)
+        if len(rows) != len(names):
+            raise BadShape(
+                f"{len(rows)} entry_values of {len(names)} entry_names", valid="one each"
+            )
+        patterns = [pattern_of(name) for name in names]
+        pairs = [
+            (patterns[i], patterns[j])
+            for i in range(len(names))
+            for j in range(i + 1, len(names))
+            if rows[i][j] and rows[j][i]
+        ]
+        forbidding = {name for name, row in zip(names, rows, strict=True) if not all(row)}
+        return pairs + [
+            (pattern_of(name), ANY) for name in _defaults(matrix) if name not in forbidding
+        ]
+
+
+def _defaults(matrix: Message) -> list[str]:
+    names = _names(matrix, "default_entry_names")
+    values = items(matrix, "default_entry_values")
+    if len(values) != len(names):
+        raise BadShape(f"{len(values)} default_entry_values of {len(names)}", valid="one each")
+    return [name for name, value in zip(names, _row(values, len(names)), strict=True) if value]
+
+
+def _names(matrix: Message, key: str) -> list[str]:
+    names = items(matrix, key)
+    if not all(isinstance(name, str) for name in names):
+        raise BadInput("a name is no text", where=key, valid="names")
+    return names
+
+
+def _row(given: object, n: int) -> list[bool]:
+    row = given.get("enabled") if isinstance(given, dict) else given
+    if not isinstance(row, list) or len(row) != n:
+        raise BadShape(
+            f"{given!r:.60} is given", where="entry_values", valid=f"{n} of true or false"
+        )
+    if not all(value in (0, 1) for value in row):
+        raise BadInput(f"{given!r:.60} is given", where="entry_values", valid="true or false")
+    return [bool(value) for value in row]

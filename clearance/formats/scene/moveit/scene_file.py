@@ -11,8 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.errors import BadSyntax, at
-from clearance.formats.scene.moveit.objects import named_rows
-from clearance.formats.scene.moveit.shapes import Row, SceneMeshes, primitive
+from clearance.formats.scene.moveit.objects import Row, SceneMeshes, named_rows, primitive
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.text.numbers import floats, integers
 from clearance.geometry.pose import pose_from_quaternion

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, at, nearest_name
-from clearance.formats.robot.plane_box import PLANE_DEPTH, PLANE_SIDE
+from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.sdf.document import numbers_of, text_of
 from clearance.formats.text.numbers import is_zero
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, UnknownKey, at, nearest_name
-from clearance.formats.files.found_files import FoundFiles
-from clearance.formats.files.lookups import MODEL, OPTIONAL, note_lookup
+from clearance.formats.files.found_files import MODEL, OPTIONAL, FoundFiles, note_lookup
 from clearance.formats.files.mesh_paths import model_path
 from clearance.formats.scene.request import SKIP, SceneRequest
 from clearance.formats.scene.sdf.document import NEWEST, sdf_element, text_of

@@ -1,4 +1,5 @@
-"""The collisions of an SDF world or model, nested and included models among them, each where its frames put it.
+"""The collisions of an SDF world or model, nested and included models among them, each where its frames put it;
+and whether a saved `<state>` of the world says the same.
 
 Source: SDF specification 1.11, "Pose Frame Semantics" and "Composition". Not for: finding included files
 (`include`), nor the shapes (`geometry`).
@@ -13,9 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadInput, at, nearest_name
 from clearance.formats.scene.sdf.document import base_of, name_of, pose_of, text_of
-from clearance.formats.scene.sdf.frames import ROOT, NamedFrames
 from clearance.formats.scene.sdf.geometry import geometry_of
 from clearance.geometry.pose import inverse
 
@@ -177,3 +177,94 @@ def _add_frames(element: Element, frames: NamedFrames) -> None:
         with at(f"joint {joint.get('name')!r}"):
             base = base_of(joint) or text_of(joint, "child", ROOT)
             frames.add(name_of(joint), base, pose_of(joint))
+
+
+ROOT = ""
+"""The frame of the model or world itself."""
+
+
+class NamedFrames:
+    """Frames by name, each given in another; `a::b` is b in the model a.
+
+    Args:
+        root: what files call the frame of the model or world itself: `__model__` or `world`.
+    """
+
+    def __init__(self, root: str) -> None:
+        self._given: dict[str, tuple[str, np.ndarray]] = {}
+        self._inner: dict[str, NamedFrames] = {}
+        self._merged: list[str] = []
+        self._found = {ROOT: np.eye(4), root: np.eye(4)}
+
+    def add(self, name: str, base: str, pose: np.ndarray) -> None:
+        """A frame at `pose` (4, 4) [m] in the frame `base`; of two of one name the first counts."""
+        self._given.setdefault(name, (base, pose))
+
+    def add_model(
+        self, name: str, frames: NamedFrames, base: str, pose: np.ndarray, *, merged: bool = False
+    ) -> None:
+        """A model within, its frames seen as `name::frame`, and, if it is merged, as this one's own."""
+        self.add(name, base, pose)
+        self._inner.setdefault(name, frames)
+        if merged:
+            self._merged.append(name)
+
+    def pose(self, name: str) -> np.ndarray:
+        """The (4, 4) pose [m] of a frame in the model or world.
+
+        Raises:
+            BadInput: there is no such frame, or frames that refer to each other in a ring.
+        """
+        way: dict[str, np.ndarray] = {}
+        while name not in self._found:
+            if name in way:
+                raise BadInput(f"frame {name!r:.60} is relative to itself", valid="no ring")
+            base, way[name] = self._step(name)
+            name = base
+        pose = self._found[name]
+        for step, local in reversed(way.items()):
+            pose = self._found[step] = pose @ local
+        return pose
+
+    def _step(self, name: str) -> tuple[str, np.ndarray]:
+        """The frame in which a frame is given, and its pose there."""
+        if name in self._given:
+            return self._given[name]
+        head, _, rest = name.partition("::")
+        if rest and head in self._inner:
+            return head, self._inner[head].pose(rest)
+        for model in self._merged:
+            if name in self._inner[model]._given:
+                return model, self._inner[model].pose(name)
+        raise BadInput(f"there is no frame {name!r:.60}", valid=nearest_name(name, self._given))
+
+
+SAME = 1e-4
+"""[m], and of entries of a rotation: states are written with six digits."""
+
+
+def require_state_as_placed(world: Element, frames: NamedFrames) -> None:
+    """Nothing, if a saved state has every model and link where the world itself places them.
+
+    Raises:
+        BadInput: a model or link elsewhere, or one that the world does not have.
+    """
+    for state in world.iterfind("state"):
+        for model in state.iterfind("model"):
+            with at(f"state: model {model.get('name')!r}"):
+                _require_same(model, name_of(model), frames)
+                for link in model.iterfind("link"):
+                    with at(f"link {link.get('name')!r}"):
+                        _require_same(link, f"{name_of(model)}::{name_of(link)}", frames)
+        if state.find("insertions") is not None:
+            raise BadInput("<insertions> add models", where="state", valid="models in the world")
+
+
+def _require_same(element: Element, name: str, frames: NamedFrames) -> None:
+    if element.find("pose") is None:
+        return
+    if not np.abs(pose_of(element) - frames.pose(name)).max() <= SAME:
+        raise BadInput(
+            "it was saved elsewhere than it is placed",
+            valid="its saved pose in <model>, or no <state>",
+        )

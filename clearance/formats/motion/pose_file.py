@@ -1,4 +1,6 @@
-"""What a reader of pose tables is asked for, and what it gives. Not for: the formats (`pose_formats`)."""
+"""What a reader of poses is asked for and gives, and the reader of a file by its format. Not for: when poses
+are followed (`timed_files`).
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, at
+from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import note_on_rounded
 from clearance.geometry.quaternions import of_unit_length
@@ -82,3 +85,33 @@ class ReadPoses(NamedTuple):
 
     table: PoseTable
     notes: tuple[str, ...] = ()
+
+
+def read_samples(request: PoseRequest, shown: str) -> ReadSamples:
+    """The samples in a file, as they stand there.
+
+    Args:
+        shown: the file's name, in errors.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    with at(shown):
+        known = format_of(Kind.POSES, shown)
+        assert known is not None  # as any file is CSV where nothing says otherwise
+        found: ReadSamples = function_at(known.read)(request)
+    return found
+
+
+def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
+    """The table of the samples in a file.
+
+    Args:
+        shown: the file's name, in errors.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    samples, notes = read_samples(request, shown)
+    with at(shown):
+        return ReadPoses(samples.table(), notes)
