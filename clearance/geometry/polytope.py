@@ -1,12 +1,11 @@
 """A convex body by its corners, merged faces and half-spaces: what intersections are made of.
 
-A `Polytope` that exists is solid: at least four corners, closed outward faces, a volume above 0.
-Not for: concave bodies (`Polyhedron`).
+A `Polytope` that exists is solid: at least four corners, closed outward faces, a volume above 0. Graphs that
+the kernels walk on are made when first asked for and then kept. Not for: concave bodies (`Polyhedron`).
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -16,12 +15,23 @@ import numpy as np
 from clearance.errors import BadPolygon
 from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope_graph import (
+    TrivalentPolytope,
+    trivalent_form,
+    twins,
+    vertex_graph,
+)
 from clearance.geometry.polytope_hull import (
     NotSolid,
     checked_rows,
     corners_of_half_spaces,
     hull_faces,
 )
+from clearance.kernels.polytope.body import HEAD, LEAD, ROW, PackedBody
+from clearance.kernels.polytope.exits import bound_cells, exit_cells
+from clearance.kernels.polytope.faces import face_areas, ring_moments
+
+FACES_PER_CELL = 0.5
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -96,6 +106,8 @@ class Polytope:
             ("vertices", corners),
             ("face_starts", self.face_starts),
             ("face_vertices", self.face_vertices),
+            ("trivalent", self.trivalent),
+            ("_twin", self._twin),
         ):
             object.__setattr__(made, name, value)
         return made
@@ -184,31 +196,91 @@ class Polytope:
         return self.offsets_about(self.centroid)
 
     @cached_property
-    def face_rows(self) -> np.ndarray:
-        """(f, 5) of each face the normal, its plane's distance from the centroid [m], and 1 over that."""
-        return np.column_stack([self.normals, self.face_widths, 1.0 / self.face_widths])
+    def _twin(self) -> np.ndarray:
+        twin = twins(self.face_starts, self.face_vertices, len(self.vertices))
+        assert twin is not None, "`hull_faces` gives only faces of which each edge has its reverse"
+        return twin
 
     @cached_property
     def vertex_graph(self) -> tuple[np.ndarray, np.ndarray]:
         """(n + 1,) starts and (e,) neighbours of the vertices."""
-        order = np.argsort(self.face_vertices, kind="stable")
-        places = np.arange(len(self.vertices) + 1)
-        heads = self.face_vertices[rings_of(self.face_starts).ahead]
-        return np.searchsorted(self.face_vertices[order], places), heads[order]
+        return vertex_graph(self.face_starts, self.face_vertices, len(self.vertices))
+
+    @cached_property
+    def face_graph(self) -> tuple[np.ndarray, np.ndarray]:
+        """(f + 1,) starts and (e,) neighbours of the faces, over their edges in order."""
+        entry_face = np.repeat(np.arange(self.n_faces), np.diff(self.face_starts))
+        return self.face_starts, entry_face[self._twin]
+
+    @cached_property
+    def trivalent(self) -> TrivalentPolytope:
+        """The body with each corner split into vertices of three faces."""
+        return trivalent_form(self.face_starts, self.face_vertices, self._twin, len(self.vertices))
+
+    @cached_property
+    def packed(self) -> PackedBody:
+        """The body as the kernels of `query` take it, with its map of directions."""
+        rings, planes = (
+            (self.face_starts, self.face_vertices),
+            (self.normals, self.anchors, self.face_widths),
+        )
+        return packed(self.vertices, rings, self.centroid, planes, self.face_graph[1])
+
+    @cached_property
+    def packed_at(self) -> tuple[int, int, int, int]:
+        """Where `packed` lies in memory (`kernels.polytope.bodies`), for as long as this body is held."""
+        numbers, indices = self.packed
+        return numbers.ctypes.data, len(numbers), indices.ctypes.data, len(indices)
+
+    @cached_property
+    def face_areas(self) -> np.ndarray:
+        """(f, 4) area [m^2] and centroid [m] of each face."""
+        return face_areas(self.packed)
+
+    def prepared(self) -> Self:
+        """Itself, with all that intersections need made ahead."""
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.packed_at)
+        _ = self.box
+        return self
 
 
-def ring_moments(
-    places: np.ndarray, starts: np.ndarray, corners: np.ndarray, origin: np.ndarray
-) -> np.ndarray:
-    """(volume [m^3], volume times centroid less `origin` [m^4]) inside rings that close a surface.
+def packed(
+    vertices: np.ndarray,
+    rings: tuple[np.ndarray, np.ndarray],
+    centroid: np.ndarray,
+    planes: tuple[np.ndarray, np.ndarray, np.ndarray],
+    neighbours: np.ndarray,
+) -> PackedBody:
+    """The arrays of a body with faces `rings` (starts, corners), planes (normals, a corner of each, distance
+    from the centroid) and `neighbours`, the face over each edge, as the edges stand in `rings`.
 
-    Args:
-        places: (n, 3) [m]. starts: (f + 1,) where rings begin in `corners`, which are rows of `places`.
-    """
-    entries = np.arange(len(corners))
-    inner = np.setdiff1d(entries, [starts[:-1], starts[1:] - 1], assume_unique=True)
-    apex = np.repeat(corners[starts[:-1]], np.diff(starts) - 2)
-    fans = (places - origin)[np.stack([apex, corners[inner], corners[inner + 1]], axis=1)]
-    cones = np.einsum("ij,ij->i", fans[:, 0], np.cross(fans[:, 1], fans[:, 2])) / 6.0
-    parts = np.column_stack([cones, 0.25 * cones[:, None] * fans.sum(axis=1)])
-    return np.array([math.fsum(column) for column in parts.T.tolist()])
+    The layout is described in `kernels.polytope.body`."""
+    normals, anchors, widths = planes
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
+    f = len(normals)
+    k = int(np.clip(np.ceil(np.sqrt(f / FACES_PER_CELL / 6.0)), 1, 128))
+    round_from_body, body_from_round, pad = _rounding_map(vertices - centroid)
+    cells, faces = exit_cells((vertices - centroid) @ round_from_body.T, *rings, k, pad)
+    order = np.argsort(cells, kind="stable")
+    lead = LEAD + 6 * k * k + 1
+    starts = lead + np.searchsorted(cells[order], np.arange(6 * k * k + 1))
+    begin = lead + len(faces)
+    first, n_edges = begin + f + 1, len(neighbours)
+    lead_numbers = [f, k, begin, n_edges, HEAD + ROW * f + 6 * k * k, 0, 0, 0]
+    parts = lead_numbers, starts, faces[order], rings[0] + first, rings[1], neighbours
+    indices = np.concatenate(parts).astype(np.int32)
+    head = np.concatenate([centroid, round_from_body.ravel(), [widths.max(), size, 0.0, 0.0]])
+    rows = np.column_stack([normals, 1.0 / widths, anchors, widths])
+    numbers = np.concatenate([head, rows.ravel(), np.zeros(6 * k * k), vertices.ravel()])
+    body = PackedBody(numbers, indices)
+    bound_cells(body, body_from_round)
+    return body
+
+
+def _rounding_map(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """(3, 3) to a frame in which the corners spread alike in all directions, back, and the cells' margin."""
+    values, axes = np.linalg.eigh(corners.T @ corners / len(corners))
+    spread = np.sqrt(np.maximum(values, values.max() * 1e-24))
+    there = (axes / spread) @ axes.T
+    back = (axes * spread) @ axes.T
+    return there, back, 1e-9 + 1e-14 * float(spread.max() / spread.min())

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
-from clearance.geometry.edges import rings_of, twins
+from clearance.geometry.polytope_graph import twins
 
 
 class NotSolid(BadDimension):
@@ -57,7 +57,7 @@ def hull_faces(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         rings = sorted(_rings(hull, group), key=min)
         starts = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])])
         flat = np.concatenate(rings)
-        if (twins(flat, flat[rings_of(starts).ahead]) >= 0).all():
+        if twins(starts, flat, len(points)) is not None:
             used, flat = np.unique(flat, return_inverse=True)
             return points[used], starts, flat
     raise NotSolid("the hull of the points is thinner than rounding", valid="a thicker body")

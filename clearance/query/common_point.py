@@ -21,7 +21,6 @@ from clearance.kernels.polytope.depth import (
     SHARES,
     SOLUTION,
     WARM,
-    Bodies,
     T,
     deepen_all,
 )
@@ -124,7 +123,7 @@ def common_point(
         NotFinite: a pose that is not.
 
     Exactness: "overlap" is never said of bodies whose inner points are fewer than rounding
-        (`ROUNDING` times the size) deep; all faces of each body are visited; at
+        (`ROUNDING` times the size) deep; each body's faces are visited through a map that misses none; at
         most `MAX_PASSES` rounds, counted.
     Source: Tereshchenko (2013), section 2.2 needs the point; the linear programme in four unknowns with
         faces on demand is the simplex method (Dantzig 1963) on its dual.
@@ -137,20 +136,13 @@ def common_point(
     known = len(bodies) < 3 and len(warm) == 4 and all(_names_a_face(bodies, name) for name in warm)
     block, names = np.empty((N_ROWS, 4)), np.array(warm if known else (-4, -3, -2, -1))
     begin = WARM if known else COLD
+    rows = np.array([body.packed_at for body in bodies])
     settled, n_faces, passes = deepen_all(
-        _stacked(bodies), frames, origin, block, names, MARGIN, begin, MAX_PASSES
+        rows, frames, origin, block, names, MARGIN, begin, MAX_PASSES
     )
     if not settled and block[SOLUTION, T] > 0.0:
         _lower_to_what_is_sure(bodies, frames, origin, block[SOLUTION])
     return _judged(bodies, origin, block, names, n_faces, passes)
-
-
-def _stacked(bodies: list[Polytope]) -> Bodies:
-    starts = np.cumsum([0, *(body.n_faces for body in bodies)])
-    faces = np.concatenate([body.face_rows for body in bodies])
-    centroids = np.array([body.centroid for body in bodies])
-    reach = 16.0 * (bodies[0].size + bodies[min(1, len(bodies) - 1)].size)
-    return Bodies(faces, starts, centroids, reach)
 
 
 def _names_a_face(bodies: list[Polytope], name: int) -> bool:

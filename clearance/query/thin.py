@@ -1,17 +1,22 @@
-"""The volume of a thin common region, to the last digits: found again in a frame that makes it round.
+"""The volume of a thin common region, to the last digits: cut again in a frame that makes it round.
 
 Only faces whose planes come near the region take part, each as the planes of the exact hull of its corners,
 because a merged face is flat only to rounding, and that is large compared with a thin region. Not for: finding the
-region (`region`).
+region (`cutting`).
 """
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 
-from clearance.geometry.polytope import Polytope, ring_moments
+from clearance.geometry.polytope import Polytope
+from clearance.kernels.polytope.cut import CUT, N_ROWS, cut_by_planes
+from clearance.kernels.polytope.faces import face_rings
 from clearance.kernels.polytope.thin import stretched_planes, supporting_triples
-from clearance.query.region import ON_PLANE, Region, SharedPlanes, dual_rings
+from clearance.query.cutting import ON_PLANE, CuttingTask, by_edges
+from clearance.query.region import Region
 
 THIN = 0.02
 """[-] A region is thin if its volume is less than this times its reach squared times the smallest body's reach:
@@ -20,61 +25,52 @@ planes err by roundings of the body, and over the region's area these have cost 
 MOST_PLANES = 1000
 MOST_CORNERS = 12
 
-_WALLS = np.concatenate([np.eye(3), -np.eye(3)])
-"""Normals of the cube [-1, 1]^3 about a region in its own frame."""
+_CUBE = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
-def is_thin(region: Region, volume: float) -> bool:
-    """True if the volume [m^3] of a region has lost digits."""
-    reach = float(np.abs(region.places).max())
-    return volume < THIN * reach * reach * region.shared.tolerance / ON_PLANE
+def is_thin(task: CuttingTask, volume: float, reach: float) -> bool:
+    """True if the volume [m^3] of a region with coordinates up to `reach` [m] has lost digits."""
+    return volume < THIN * reach * reach * task.tolerance / ON_PLANE
 
 
-def refined(region: Region) -> tuple[Region, np.ndarray] | None:
-    """(region, moments about the origin) given the region found; None if it fails.
+def refined(task: CuttingTask, places: np.ndarray) -> tuple[Region, np.ndarray] | None:
+    """(region, moments about the origin) given the corners (n, 3) of the region found; None if it fails.
 
     It fails where more than `MOST_PLANES` planes are near, or rounding leaves nothing.
     """
-    shared, places = region.shared, region.places
     for margin in (1.5, 8.0):
         frame, middle = _frame_of(places, margin)
-        names, corners = _near_faces(shared, frame, middle)
+        names, corners = _near_faces(task, frame, middle)
         if not 0 < len(names) <= MOST_PLANES:
             return None
-        origin = shared.origin + middle
+        origin = task.origin + middle
         planes = stretched_planes(corners, origin[None, :], np.ascontiguousarray(frame))
-        normals = np.concatenate([planes[:, :3], _WALLS])
-        inner = np.linalg.solve(frame, places.mean(axis=0) - middle)
-        offsets = np.append(planes[:, 3], np.ones(len(_WALLS))) - normals @ inner
-        dual = dual_rings(normals, offsets)
-        if dual is None:
+        order = np.argsort(planes[:, 3], kind="stable")
+        cut = _cut_box(planes[order])
+        if cut is None:
             return None
-        spots, (numbers, starts, rows), _ = dual
-        if numbers.max() < len(names):  # no wall of the cube is left
-            spots = spots + inner
-            found = Region(shared, middle + spots @ frame.T, names[numbers], starts, rows)
-            moments = ring_moments(spots, starts, rows, inner)
-            moments[1:] += inner * moments[0]
-            return found, _unstretched(moments, frame, middle)
+        spots, (numbers, starts, rows), moments = cut
+        if numbers.min() >= 6:
+            region = Region(task, middle + spots @ frame.T, names[order][numbers - 6], starts, rows)
+            return region, _unstretched(moments, frame, middle)
     return None
 
 
 def _frame_of(places: np.ndarray, margin: float) -> tuple[np.ndarray, np.ndarray]:
     """(columns, middle): the region lies well inside the box middle + columns [-1, 1]^3."""
     axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2].T
-    axes[:, 0] *= np.sign(np.linalg.det(axes))  # a mirrored frame would turn faces inside out
     low, high = (places @ axes).min(axis=0), (places @ axes).max(axis=0)
     return axes * (0.5 * margin * (high - low)), axes @ (0.5 * (low + high))
 
 
 def _near_faces(
-    shared: SharedPlanes, frame: np.ndarray, middle: np.ndarray
+    task: CuttingTask, frame: np.ndarray, middle: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(k,) plane numbers and (k, 3, 3) corners of all planes that come near the box."""
     names, corners = [], []
-    for base, body in zip(shared.bases, shared.bodies, strict=False):
-        over = np.abs(body.normals @ frame).sum(axis=1) - body.offsets_about(shared.origin + middle)
-        for face in np.flatnonzero(over > -8.0 * shared.tolerance).tolist():
+    for base, body in zip(task.bases, task.bodies, strict=False):
+        over = np.abs(body.normals @ frame).sum(axis=1) - body.offsets_about(task.origin + middle)
+        for face in np.flatnonzero(over > -8.0 * task.tolerance).tolist():
             for triple in _exact_triples(body, face):
                 names.append(base + face)
                 corners.append(triple)
@@ -103,6 +99,27 @@ def _bound(body: Polytope, triples: np.ndarray) -> np.ndarray:
     lengths = np.sqrt((normals**2).sum(axis=1))
     reach = body.size + np.abs(triples[:, 0]).max(axis=1)
     return (lengths > 0.0) & (most <= ON_PLANE * reach * lengths)
+
+
+def _cut_box(planes: np.ndarray):
+    """(places, rings, moments) in the stretched frame, or None."""
+    rows = 64 + 4 * len(planes)
+    block = np.zeros(12 * rows)  # as `kernels.polytope.cut.cut_in` says
+    spots = block[: 4 * rows].reshape(-1, 4)
+    mesh = block[4 * rows : 8 * rows].view(np.int32).reshape(-1, 8)
+    spots[:8, :3], mesh[:8] = _box()
+    state, table = np.array([0, 0, 8, 0, 0]), np.zeros((6 + len(planes), 3), dtype=np.int32)
+    if cut_by_planes(block, state, table, planes, 6, ON_PLANE) != CUT:
+        return None
+    moments = by_edges(block, state, table)
+    return spots[:, :3], face_rings(mesh, state[N_ROWS]), moments[:4]
+
+
+@functools.cache
+def _box() -> tuple[np.ndarray, np.ndarray]:
+    """(places, mesh) of the cube [-1, 1]^3 as arguments of kernels."""
+    cube = Polytope(_CUBE)
+    return cube.vertices[cube.trivalent.corner], cube.trivalent.mesh
 
 
 def _unstretched(moments: np.ndarray, frame: np.ndarray, middle: np.ndarray) -> np.ndarray:

@@ -1,9 +1,9 @@
 """Shared regions and common points against the peers: the table of `clearance/query/POLYTOPES.md`, and a CSV.
 
 Run from the repository's root: `python scripts/bench/polytopes.py [--largest N] [--seconds S] [--csv FILE]`.
-Fixed seed, bodies made outside the clock, warmed up, peers in the same process. The least of the
-repetitions is reported with their median and the least processor time: on a busy machine the first two drift
-apart, and the third is what can be compared.
+Fixed seed, bodies prepared outside the clock, warmed up, peers in the same process. The least of the
+repetitions is reported with their median and the least processor time (of all threads together): on a busy
+machine the first two drift apart, and the third is what can be compared.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from clearance.query.intersection import intersect
 
 
 def ball(rng: np.random.Generator, n: int, centre: np.ndarray) -> Polytope:
-    """The hull of n points on a unit sphere."""
+    """The hull of n points on a unit sphere, ready to be cut."""
     v = rng.normal(size=(n, 3))
-    return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre)
+    return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre).prepared()
 
 
 def timed(call, budget: float) -> tuple[float, float, float]:
@@ -76,9 +76,12 @@ def rows_of(m: int, n: int, budget: float) -> list[list]:
     spread = 0.4 if m == 2 else 0.05
     bodies = [ball(rng, n, rng.normal(size=3) * spread) for _ in range(m)]
     calls = {"intersect": lambda: intersect(bodies), "common_point": lambda: common_point(bodies)}
-    if m == 2:
+    if m > 2:
+        calls["intersect, 2 threads"] = lambda: intersect(bodies, threads=2)
+    else:
         calls["common_point_paper (GJK)"] = lambda: common_point_paper(*bodies)
     if m * n <= 64000:
+        calls["intersect, dual"] = lambda: intersect(bodies, "dual")
         calls["LP + Qhull (scipy)"] = lambda: lp_and_qhull(bodies)
     peer = manifold_of(bodies)
     if peer:

@@ -65,7 +65,7 @@ def test_polytopes_measures_ours_and_the_peers(tmp_path):
     rows = rows_of(out)
     assert all(0.0 < float(row["least_ms"]) <= float(row["median_ms"]) for row in rows)
     assert {(row["m"], row["n"]) for row in rows} == {("2", "50"), ("64", "50")}
-    assert {"intersect", "common_point", "common_point, warm, a pose"} <= {
+    assert {"intersect", "common_point", "intersect, 2 threads", "common_point, warm, a pose"} <= {
         row["what"] for row in rows
     }
     assert "LP + Qhull" in said

@@ -11,7 +11,7 @@ from clearance.errors import BadPolygon, BadShape, ClearanceError, EmptyMesh, No
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid, Unbounded
-from clearance.kernels.polytope.depth import exit_face
+from clearance.kernels.polytope.exits import cell_of, exit_in
 from tests.oracle.polytope_volumes import half_spaces, shared_volume
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
@@ -51,6 +51,17 @@ def test_flat_needle_like_and_huge_boxes(scale):
     assert abs(body.volume / np.prod(scale) - 1.0) < 1e-15
 
 
+def test_the_trivalent_form_is_a_closed_surface():
+    body = Polytope(np.random.default_rng(3).normal(size=(60, 3)))
+    form = body.trivalent
+    assert len(form.corner) == 2 * body.n_faces - 4
+    for v, row in enumerate(form.across):
+        for k, w in enumerate(row):
+            assert v in form.across[w]
+            shared = {form.planes[v, (k + 1) % 3], form.planes[v, (k + 2) % 3]}
+            assert shared <= set(form.planes[w])
+
+
 @pytest.mark.parametrize(
     ("make", "error"),
     [
@@ -85,7 +96,7 @@ def test_a_concave_or_open_polyhedron_is_refused():
     "shape", [(1, 1, 1), (1e-6, 1, 1), (1, 1e-6, 1e-6), (1, 30, 0.1), (1e6, 1e6, 1e6)]
 )
 @pytest.mark.parametrize("n", [4, 12, 400])
-def test_a_ray_leaves_through_the_face_of_the_greatest_gauge(shape, n):
+def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n):
     rng = np.random.default_rng([n, 5])
     v = rng.normal(size=(n, 3)) * shape @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
     body = Polytope(v + [3.0, -2.0, 1.0])
@@ -95,7 +106,9 @@ def test_a_ray_leaves_through_the_face_of_the_greatest_gauge(shape, n):
     gauges = (x @ (body.normals / body.face_widths[:, None]).T).max(axis=1)
     rounding = 64.0 * 2.0**-53 * np.abs(body.vertices).max() / body.face_widths.min()
     for point, gauge in zip(x, gauges, strict=True):
-        assert exit_face(body.face_rows, *point)[1] == pytest.approx(gauge, rel=rounding)
+        cell, bound = cell_of(body.packed, *point)
+        assert exit_in(body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
+        assert bound >= gauge * (1.0 - rounding)
 
 
 @pytest.mark.parametrize("kind", [np.float32, np.longdouble, object])

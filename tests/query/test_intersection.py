@@ -7,9 +7,10 @@ import itertools
 import numpy as np
 import pytest
 
-from clearance.errors import BadShape, EmptyMesh
+from clearance.errors import BadDimension, EmptyMesh
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
+from clearance.query import cutting, intersection
 from clearance.query.intersection import intersect
 from tests.oracle.polytope_volumes import shared_volume
 
@@ -28,12 +29,13 @@ def cluster(m: int, n: int, seed: int = 0) -> list[Polytope]:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("method", ["cut", "dual"])
 @pytest.mark.parametrize(("m", "n"), [(2, 4), (2, 7), (3, 4), (3, 6), (5, 4)])
-def test_volumes_are_the_exact_ones(m, n):
+def test_volumes_are_the_exact_ones(m, n, method):
     for seed in range(3):
         points = np.random.default_rng([m, n, seed]).normal(size=(m, n, 3))
         bodies = [Polytope(p) for p in points]
-        exact, found = float(shared_volume(*points)), intersect(bodies)
+        exact, found = float(shared_volume(*points)), intersect(bodies, method)
         assert found.volume == pytest.approx(exact, rel=1e-13, abs=0.0)
         assert (found.dimension == 3) == (exact > 0.0)
 
@@ -57,13 +59,14 @@ def icosahedral_tetrahedra() -> list[np.ndarray]:
     return [sign * first @ r.T for sign in (1.0, -1.0) for r in rotations]
 
 
-def test_ten_tetrahedra_and_five_octahedra_share_an_icosahedron():
+@pytest.mark.parametrize("method", ["cut", "dual"])
+def test_ten_tetrahedra_and_five_octahedra_share_an_icosahedron(method):
     tetrahedra = icosahedral_tetrahedra()
     octahedra = [
         np.array([(a + b) / 2 for a, b in itertools.combinations(t, 2)]) for t in tetrahedra[:5]
     ]
     for bodies in (tetrahedra, octahedra):
-        found = intersect([Polytope(points) for points in bodies])
+        found = intersect([Polytope(points) for points in bodies], method)
         inradius = np.sqrt(1.0 / 3.0)
         edge = inradius * 12.0 / (np.sqrt(3.0) * (3.0 + 5**0.5))
         assert found.volume == pytest.approx(5.0 * (3.0 + 5**0.5) / 12.0 * edge**3, rel=1e-13)
@@ -84,17 +87,19 @@ def test_copies_shifted_by_1e_12():
     shifted = points + [1e-12, 0, 0]
     exact = float(shared_volume(points, shifted))
     found = intersect([Polytope(points), Polytope(shifted)])
+    assert found.method == "cut"
     assert found.volume == pytest.approx(exact, rel=1e-14)
 
 
 @pytest.mark.parametrize(("m", "n"), [(2, 200), (7, 30), (64, 12), (64, 50)])
-def test_order_changes_nothing_beyond_1e_14(m, n):
+def test_order_and_threads_change_nothing_beyond_1e_14(m, n):
     bodies = cluster(m, n)
     first = intersect(bodies).volume
     assert first > 0.0
     for seed in range(2):
         order = np.random.default_rng(seed).permutation(m)
         assert intersect([bodies[i] for i in order]).volume == pytest.approx(first, rel=1e-14)
+    assert intersect(bodies, threads=2).volume == pytest.approx(first, rel=1e-14)
 
 
 @pytest.mark.slow
@@ -108,11 +113,11 @@ def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
     assert (found.vertices @ rows[:, :3].T + rows[:, 3]).max() < 1e-14
     peer = ConvexHull(HalfspaceIntersection(rows, found.common.point).intersections)
     assert found.volume == pytest.approx(peer.volume, rel=1e-12)
-    assert 2 * (len(found.vertices) + len(found.faces) - 2) == sum(map(len, found.faces))
 
 
 @pytest.mark.slow
-def test_the_order_of_the_bodies_changes_no_face():
+@pytest.mark.parametrize("name", ["PATCHED_FROM", "HALVED_FROM"])
+def test_patches_and_halves_change_nothing(name, monkeypatch):
     families = [
         cluster(m, n, seed)
         for m, n in ((2, 8), (2, 60), (2, 400), (5, 40), (24, 30))
@@ -126,14 +131,41 @@ def test_the_order_of_the_bodies_changes_no_face():
         [Polytope(CUBE * s - np.array(s) / 2) for s in ((1, 1, 9), (1, 9, 1), (9, 1, 1))]
     )
     families.append([ball(500, 1), Polytope((CUBE - 0.5) * [0.1, 0.1, 9.0]), ball(300, 2)])
-    for bodies in families:
-        before, found = intersect(bodies), intersect(bodies[::-1])
+    plain = [intersect(bodies) for bodies in families]
+    monkeypatch.setattr(cutting if name == "PATCHED_FROM" else intersection, name, 0)
+    for bodies, before in zip(families, plain, strict=True):
+        found = intersect(bodies)
         assert found.volume == pytest.approx(before.volume, rel=1e-14)
+        assert {tuple(row) for row in found.provenance} == {tuple(row) for row in before.provenance}
         assert len(found.vertices) == len(before.vertices)
         assert sorted(map(len, found.faces)) == sorted(map(len, before.faces))
 
 
-def test_no_plane_is_missed_between_bodies_of_many_faces():
+def test_growing_on_the_way_forgets_no_vertex(monkeypatch):
+    families = [cluster(m, n) for m, n in ((2, 60), (2, 900), (9, 40))]
+    points = np.random.default_rng(8).normal(size=(90, 3))
+    families.append(
+        [Polytope(points + shift * np.array([1e-12, 2e-12, 0.0])) for shift in range(4)]
+    )
+    families.append(
+        [Polytope(CUBE), Polytope(2.9 * np.vstack([np.eye(3), -np.eye(3)]))]
+    )  # cuts one corner
+    plain = [intersect(bodies) for bodies in families]
+    monkeypatch.setattr(cutting, "ROWS_A_VERTEX", 1)
+    grown = []
+    monkeypatch.setattr(
+        cutting.Cutting,
+        "_grown",
+        lambda self, grow=cutting.Cutting._grown: (grown.append(1), grow(self)),
+    )
+    for bodies, before in zip(families, plain, strict=True):
+        found = intersect(bodies)
+        assert found.volume == pytest.approx(before.volume, rel=1e-14)
+        assert {tuple(row) for row in found.provenance} == {tuple(row) for row in before.provenance}
+    assert len(grown) >= len(families)
+
+
+def test_no_plane_is_missed_where_rounding_makes_a_false_top():
     rng = np.random.default_rng(1)
     rng.normal(size=(100, 3))
     v = rng.normal(size=(2, 1000, 3))
@@ -202,24 +234,8 @@ def test_apart_is_an_answer_and_containment_the_inner_body():
 def test_refusals():
     for call, error in (
         (lambda: intersect([]), EmptyMesh),
-        (lambda: intersect([CUBE]), BadShape),
+        (lambda: intersect([Polytope(CUBE)], "best"), BadDimension),
+        (lambda: intersect([Polytope(CUBE)], threads=0), BadDimension),
     ):
         with pytest.raises(error):
             call()
-
-
-def test_a_moved_body_is_the_hull_of_the_moved_corners():
-    rng = np.random.default_rng(5)
-    pose = np.eye(4)
-    pose[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    pose[:3, :3] *= np.linalg.det(pose[:3, :3])
-    pose[:3, 3] = rng.normal(size=3)
-    body, other = cluster(2, 60, 4)
-    moved = body.moved(pose)
-    again = Polytope(body.vertices @ pose[:3, :3].T + pose[:3, 3])
-    assert moved.volume == pytest.approx(again.volume, rel=1e-14)
-    assert moved.n_faces == again.n_faces
-    there = other.moved(pose)
-    assert intersect([moved, there]).volume == pytest.approx(
-        intersect([body, other]).volume, rel=1e-13
-    )

@@ -6,10 +6,10 @@ import itertools
 
 import numpy as np
 import pytest
-from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
 from clearance.geometry.polytope import Polytope
+from clearance.query import intersection
 from clearance.query.common_point import MAX_PASSES, common_point
 from clearance.query.intersection import intersect
 from tests.examples import first_fast
@@ -98,18 +98,14 @@ def test_regular_solids_share_regular_solids():
 
 
 @pytest.mark.parametrize(("m", "n"), [(3, 8), (8, 5), (16, 4), (64, 4), (64, 30)])
-def test_many_bodies_share_what_the_hull_of_their_half_spaces_holds(m, n):
+def test_many_bodies_both_ways(m, n):
     for seed in range(3):
         rng = np.random.default_rng([m, n, seed])
         bodies = [Polytope(rng.normal(size=(n, 3)) + rng.normal(size=3) * 0.1) for _ in range(m)]
-        found = intersect(bodies)
-        if found.relation == "overlap":
-            rows = np.vstack([body.half_spaces for body in bodies])
-            peer = ConvexHull(HalfspaceIntersection(rows, found.common.point).intersections)
-            assert found.volume == pytest.approx(peer.volume, rel=1e-11, abs=0.0)
-        else:
-            assert found.volume == 0.0 and found.common.certificate is not None
-        assert found.common.passes < MAX_PASSES and found.common.n_faces < 16 * m
+        cut, dual = (intersect(bodies, method) for method in ("cut", "dual"))
+        assert cut.relation == dual.relation and cut.volume >= 0.0
+        assert cut.volume == pytest.approx(dual.volume, rel=1e-11, abs=0.0)
+        assert cut.common.passes < MAX_PASSES and cut.common.n_faces < 16 * m
 
 
 @pytest.mark.slow
@@ -125,6 +121,16 @@ def test_no_volume_is_negative_and_none_is_an_exception():
         assert found.common.passes <= MAX_PASSES
         relations.add(found.relation)
     assert relations == {"overlap", "touch", "apart"}
+
+
+def test_bytes_do_not_depend_on_the_number_of_threads(monkeypatch):
+    monkeypatch.setattr(intersection, "HALVED_FROM", 100)
+    rng = np.random.default_rng(2)
+    bodies = [Polytope(rng.normal(size=(60, 3)) + 0.2 * rng.normal(size=3)) for _ in range(12)]
+    one, two, three = (intersect(bodies, threads=n) for n in (1, 2, 3))
+    assert one.volume == two.volume == three.volume > 0.0
+    assert one.vertices.tobytes() == two.vertices.tobytes() == three.vertices.tobytes()
+    assert one.provenance.tobytes() == two.provenance.tobytes()
 
 
 @pytest.mark.parametrize("n", [4, 60, 900])

@@ -3,7 +3,7 @@
 Each body k is {x: n_i.(x - c_k) <= w_i} with w_i > 0, c_k inside it. Sought are x and the greatest t with
 n_i.x + w_i t <= n_i.c_k + w_i for all faces of all bodies: t > 0 is strictly inside all, t < 0 proves that
 at most four faces have nothing in common (Helly). The dual simplex basis has four faces; the entering face
-is the one through which the ray from c_k to x leaves the body: all are looked at, none is missed.
+is the one through which the ray from c_k to x leaves the body, from its map of directions: none is missed.
 All x are about a common origin. Not for: the region itself.
 """
 
@@ -14,14 +14,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.declared import Floats, Floats2, Floats3, Integers
+from clearance.compile.declared import Floats, Floats2, Floats3, Integers, Integers2
 from clearance.compile.decorators import inline, kernel
+from clearance.kernels.polytope.bodies import body_at
+from clearance.kernels.polytope.body import (
+    NORMAL,
+    SIZE,
+    WIDTH,
+    PackedBody,
+    centroid_of,
+    face_number,
+    face_vector,
+)
+from clearance.kernels.polytope.exits import cell_of, exit_in
 
 TURN = 4
 """Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
-
-WIDTH, INVERSE_WIDTH = 3, 4
-"""Where w and 1/w stand after n in a body's row of a face."""
 
 T = 3
 """Where t stands after x in the solution, and w after n in a face's row."""
@@ -63,27 +71,11 @@ def basis_in(block, names):
     )  # fmt: skip
 
 
-class Bodies(NamedTuple):
-    """Convex bodies, one after another.
-
-    Attributes:
-        faces: (f, 5) outward unit normal n, the plane's distance w [m] from the body's centroid, and 1/w.
-        starts: (m + 1,) the first face of each body. centroids: (m, 3) [m].
-        reach: [m] how far away the walls of a cold start are.
-    """
-
-    faces: Floats2
-    starts: Integers
-    centroids: Floats2
-    reach: float
-
-
 class PlacedBody(NamedTuple):
-    """A body: its `Bodies.faces`, its centroid (3,), (4, 4) world_from_body, and its number."""
+    """A body, its number, and (4, 4) world_from_body."""
 
-    faces: Floats2
-    centroid: Floats
-    pose: Floats2
+    body: PackedBody
+    pose: np.ndarray
     name: int
 
 
@@ -154,8 +146,9 @@ def start_around(basis, reach):
 @inline
 def put_face(basis, j, placed, away, face):
     """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
-    pose, row = placed.pose, placed.faces[face]
-    x, y, z, width = row[0], row[1], row[2], row[WIDTH]
+    pose, numbers = placed.pose, placed.body.numbers
+    width = face_number(numbers, face, WIDTH)
+    x, y, z = face_vector(numbers, face, NORMAL)
     bound = width
     for i in range(3):
         n = pose[i, 0] * x + pose[i, 1] * y + pose[i, 2] * z
@@ -169,8 +162,9 @@ def put_face(basis, j, placed, away, face):
 @inline
 def leaving(basis, placed, face):
     """The place in the basis that the ratio test gives to a face, or -1."""
-    pose, row = placed.pose, placed.faces[face]
-    x, y, z, width = row[0], row[1], row[2], row[WIDTH]
+    pose, numbers = placed.pose, placed.body.numbers
+    width = face_number(numbers, face, WIDTH)
+    x, y, z = face_vector(numbers, face, NORMAL)
     leave = -1
     least = math.inf
     steepest = 0.0
@@ -193,7 +187,7 @@ def leaving(basis, placed, face):
 def centre_of(placed, origin):
     """From the origin to the body's centroid in the world."""
     pose = placed.pose
-    x, y, z = placed.centroid[0], placed.centroid[1], placed.centroid[2]
+    x, y, z = centroid_of(placed.body.numbers)
     return (
         (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]) - origin[0],
         (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]) - origin[1],
@@ -209,21 +203,9 @@ def is_apart(basis):
 
 
 @inline
-def exit_face(faces, x, y, z):
-    """(face, gauge): the first face with the greatest n.v/w at v = (x, y, z) about the centroid."""
-    best, face = -math.inf, 0
-    for i in range(len(faces)):
-        row = faces[i]
-        gauge = (row[0] * x + row[1] * y + row[2] * z) * row[INVERSE_WIDTH]
-        if gauge > best:
-            best, face = gauge, i
-    return face, best
-
-
-@inline
 def deepen(placed, origin, basis, margin):
     """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
-    pose, away = placed.pose, centre_of(placed, origin)
+    pose, body, away = placed.pose, placed.body, centre_of(placed, origin)
     names = basis.names
     for n_entered in range(TURN):
         x = basis.solution[0] - away[0]
@@ -232,7 +214,8 @@ def deepen(placed, origin, basis, margin):
         u = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
         v = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
         w = pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z
-        face, gauge = exit_face(placed.faces, u, v, w)
+        cell, _ = cell_of(body, u, v, w)
+        face, gauge = exit_in(body, cell, u, v, w)
         if gauge <= 1.0 - basis.solution[T] + margin:
             return True, n_entered
         name = (placed.name << 32) + np.int64(face)
@@ -256,20 +239,20 @@ def recall(placed, origin, basis):
 
 
 @inline
-def deepen_two(a, b, origin, basis, margin, begin, reach, passes):
+def deepen_two(a, b, origin, basis, margin, begin, passes):
     """Brings in faces of bodies `a` and `b` by turns until neither has a worse one; (settled, faces, passes).
 
     Args:
         a, b: `PlacedBody`.
         origin: (3,) what all x are about. basis: a `Basis`, changed in place.
         begin: COLD, WARM (from the faces named, if they still hold) or ON (from the basis as it is).
-        reach: as in `Bodies`. passes: how many rounds at most; stops when four real faces have t < -1e-6.
+        passes: how many rounds at most; stops when four real faces have t < -1e-6.
     """
     if begin == WARM:
         recall(a, origin, basis)
         recall(b, origin, basis)
     if begin == COLD or (begin == WARM and not solve(basis)):
-        start_around(basis, reach)
+        start_around(basis, 16.0 * (a.body.numbers[SIZE] + b.body.numbers[SIZE]))
     n_entered = 0
     n_level = 0
     for i_pass in range(1, passes + 1):
@@ -286,15 +269,14 @@ def deepen_two(a, b, origin, basis, margin, begin, reach, passes):
 
 
 @inline
-def placed_body(bodies, poses, k):
+def placed_body(rows, poses, k):
     """Body `k`; where there is one pose it is that of all."""
-    faces = bodies.faces[bodies.starts[k] : bodies.starts[k + 1]]
-    return PlacedBody(faces, bodies.centroids[k], poses[min(k, len(poses) - 1)], k)
+    return PlacedBody(body_at(rows, k), poses[min(k, len(poses) - 1)], k)
 
 
 @kernel
 def deepen_all(
-    bodies: Bodies,
+    rows: Integers2,
     poses: Floats3,
     origin: Floats,
     block: Floats2,
@@ -306,20 +288,18 @@ def deepen_all(
     """Brings in faces of all bodies, two bodies at a time until none has a worse one; (settled, faces, passes).
 
     Args:
-        poses: (m, 4, 4) world_from_body, or (1, 4, 4) for all.
+        rows: (m, 4) the bodies, of `polytope.bodies`. poses: (m, 4, 4) world_from_body, or (1, 4, 4) for all.
         block: (`N_ROWS`, 4) the numbers of a `Basis`. names: (4,) its names.
         passes: how many rounds over all bodies at most. Else as `deepen_two`.
     """
-    m, basis = len(bodies.centroids), basis_in(block, names)
+    m, basis = len(rows), basis_in(block, names)
     at_once, n_rounds = (passes, 1) if m < 3 else (2, passes)
     n_entered = 0
     for i_round in range(1, n_rounds + 1):
         n_before, settled = n_entered, True
         for k in range(0, m, 2):
-            a, b = placed_body(bodies, poses, k), placed_body(bodies, poses, min(k + 1, m - 1))
-            sure, n, n_passes = deepen_two(
-                a, b, origin, basis, margin, begin, bodies.reach, at_once
-            )
+            a, b = placed_body(rows, poses, k), placed_body(rows, poses, min(k + 1, m - 1))
+            sure, n, n_passes = deepen_two(a, b, origin, basis, margin, begin, at_once)
             if m < 3:
                 return sure, n, n_passes
             begin, n_entered, settled = ON, n_entered + n, settled and sure

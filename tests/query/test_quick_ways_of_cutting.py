@@ -1,0 +1,154 @@
+"""What makes cutting quick changes no answer: the inner ball, bounds of cells, rows closed up, whole faces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from clearance.geometry.polytope import Polytope
+from clearance.kernels.polytope.body import HEAD, INVERSE_WIDTH, ROW
+from clearance.kernels.polytope.exits import cell_of, is_in_ball
+from clearance.query import cutting, intersection
+from clearance.query.common_point import common_point
+from clearance.query.cutting import Cutting, CuttingTask, cut_down
+from clearance.query.intersection import intersect
+
+SHAPES = [(1, 1, 1), (1, 1, 1e-3), (1, 1e-6, 1e-6), (1e6, 1, 1e-5)]
+
+
+def cluster(m: int, n: int, seed: int, spread: float = 0.2) -> list[Polytope]:
+    rng = np.random.default_rng([m, n, seed])
+    points = rng.normal(size=(m, n, 3))
+    points /= np.linalg.norm(points, axis=2)[..., None]
+    return [Polytope(p * rng.uniform(0.8, 1.2, 3) + rng.normal(size=3) * spread) for p in points]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [4, 9, 300])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
+    """But for what the corners of so slender a body stand out of its own planes, relatively (`polytope.exits`)."""
+    rng = np.random.default_rng(n)
+    turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    body = Polytope(rng.normal(size=(n, 3)) * shape @ turn)
+    packed = body.packed
+    gauges = (body.normals / body.face_widths[:, None]).T
+    standing_out = max(0.0, ((body.vertices - body.centroid) @ gauges).max() - 1.0)
+    on_surface = rng.normal(size=(2000, 3)) * shape @ turn
+    on_surface /= (on_surface @ gauges).max(axis=1)[:, None]
+    for x in on_surface:
+        assert not is_in_ball(packed, *(x * (1.0 - 1e-9)))
+        assert cell_of(packed, *x)[1] >= 1.0 - 1e-13 - standing_out
+    resolved = max(shape) / min(shape) < 1e8  # else its round frame is lost to rounding
+    if n == 300 and resolved:
+        assert any(is_in_ball(packed, *(0.9 * x)) for x in on_surface)
+
+
+@pytest.mark.slow
+def test_the_ball_touches_the_nearest_plane_of_a_cube():
+    cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
+    packed, numbers = cube.packed, cube.packed.numbers
+    assert is_in_ball(packed, 1.0 - 1e-8, 0, 0) and not is_in_ball(packed, 1.0 - 1e-9, 0, 0)
+    assert not is_in_ball(packed, 0.6, 0.6, 0.6)
+    assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
+    rng = np.random.default_rng(seed)
+    m = int(rng.integers(2, 65))
+    n = int(np.exp(rng.uniform(np.log(4), np.log(min(5000, 40000 / m)))))
+    bodies = cluster(m, n, seed)
+    found = intersect(bodies)
+    if found.relation == "overlap":
+        assert found.volume == pytest.approx(intersect(bodies, "dual").volume, rel=1e-12)
+        ends = sum(map(len, found.faces))
+        assert 2 * (len(found.vertices) + len(found.faces) - 2) == ends
+    else:
+        assert found.volume == 0.0 and found.common.certificate is not None
+
+
+@pytest.mark.parametrize("sparse", [0.0, 2.0])
+def test_closing_up_rows_changes_no_bit(sparse, monkeypatch):
+    bodies = cluster(12, 200, 1)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
+    usual = cut_down(task).moments()
+    monkeypatch.setattr(cutting, "SPARSE", sparse)
+    cut = cut_down(task)
+    assert cut.moments()[0] == pytest.approx(usual[0], rel=2e-15)
+    assert (cut.state[0] > 0) == (sparse == 2.0)
+
+
+@pytest.mark.parametrize(("m", "n", "spread"), [(2, 2000, 0.4), (2, 1500, 0.05), (5, 300, 0.3)])
+def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
+    bodies = cluster(m, n, 3, spread)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
+    cut = cut_down(task)
+    by_faces = cut.moments()
+    by_edges = cutting.by_edges(cut.block, cut.state, cut.table)
+    assert by_faces == pytest.approx(by_edges, rel=1e-14, abs=1e-15)
+
+
+def test_a_body_of_its_own_faces_only_has_its_volume():
+    body = cluster(2, 50, 0)[0]
+    cut = Cutting(CuttingTask.about([body], body.centroid), 0)
+    moments = cut.moments()
+    assert moments[0] == pytest.approx(body.volume, rel=1e-15)
+    assert moments[1:4] / moments[0] == pytest.approx(np.zeros(3), abs=1e-15)
+
+
+def test_bodies_are_taken_by_the_room_they_leave():
+    big = Polytope(np.array(np.meshgrid([-3, 3], [-3, 3], [-3, 3])).reshape(3, 8).T * 1.0)
+    bodies = [big, *cluster(3, 30, 2, 0.3)]
+    task = CuttingTask.about(bodies, common_point(bodies).point)
+    rooms = [body.offsets_about(task.origin).min() for body in bodies]
+    assert task.order[-1] == 0 and sorted(task.order) == [0, 1, 2, 3]
+    assert task.order[0] == min(range(4), key=lambda k: bodies[k].volume)
+    assert rooms[task.order[1]] <= rooms[task.order[2]] <= rooms[task.order[3]]
+
+
+def test_a_moved_body_is_the_hull_of_the_moved_corners():
+    rng = np.random.default_rng(5)
+    pose = np.eye(4)
+    pose[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    pose[:3, :3] *= np.linalg.det(pose[:3, :3])
+    pose[:3, 3] = rng.normal(size=3)
+    body, other = cluster(2, 60, 4)
+    moved = body.moved(pose)
+    again = Polytope(body.vertices @ pose[:3, :3].T + pose[:3, 3])
+    assert moved.volume == pytest.approx(again.volume, rel=1e-14)
+    assert moved.n_faces == again.n_faces
+    there = other.moved(pose)
+    assert intersect([moved, there]).volume == pytest.approx(
+        intersect([body, other]).volume, rel=1e-13
+    )
+
+
+@pytest.mark.parametrize("rows", [cutting.ROWS_A_VERTEX, 1])
+def test_bodies_cut_in_one_call_are_cut_as_one_by_one(rows, monkeypatch):
+    bodies = cluster(12, 100, 4, spread=0.05)
+    task = CuttingTask.about(bodies, common_point(bodies).point)
+    one_by_one = Cutting(task, task.order[0])
+    assert all(one_by_one.by(k) for k in task.order[1:])
+    monkeypatch.setattr(
+        cutting, "ROWS_A_VERTEX", rows
+    )  # 1: the call stops where the rows are full, and goes on
+    at_once = Cutting(task, task.order[0])
+    n_first = len(at_once.spots)
+    assert at_once.by(*task.order[1:])
+    assert (len(at_once.spots) > n_first) == (rows == 1)
+    assert at_once.moments()[0] == pytest.approx(one_by_one.moments()[0], rel=4e-15)
+    if rows == cutting.ROWS_A_VERTEX:
+        assert at_once.moments().tobytes() == one_by_one.moments().tobytes()
+
+
+def test_what_breaks_in_the_other_thread_is_raised_by_the_call(monkeypatch):
+    def broken(task, side):
+        if side < 0.0:
+            raise KeyError("the far side")
+
+    monkeypatch.setattr(intersection, "HALVED_FROM", 10)
+    monkeypatch.setattr(intersection, "cut_down", broken)
+    with pytest.raises(KeyError, match="the far side"):
+        intersect(cluster(3, 10, 5, spread=0.05), threads=2)
