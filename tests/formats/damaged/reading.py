@@ -123,10 +123,10 @@ def xacro(path: Path) -> object:
     """What is evaluated in the process that is started for it, and then read as URDF."""
     from clearance.errors import BadSyntax
     from clearance.formats.robot.urdf.elements import parse_document
-    from clearance.formats.robot.urdf.xacro_process import ChildWatch, evaluated
+    from clearance.formats.robot.urdf.xacro_process import evaluated
 
     with contextlib.redirect_stderr(io.StringIO()):  # its process hands it on as notes
-        made = evaluated(path, {}, ChildWatch())
+        made = evaluated(path, {})
     if "problem" in made:
         raise BadSyntax(made["problem"], where=path.name)
     parse_document(made["urdf"].encode())

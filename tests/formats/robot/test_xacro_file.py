@@ -2,6 +2,9 @@
 
 import json
 import math
+import os
+import subprocess
+import sys
 
 import pytest
 
@@ -14,7 +17,7 @@ from clearance.formats.robot.request import RobotRequest
 from clearance.formats.robot.urdf import xacro_file
 from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.formats.robot.urdf.xacro_file import expanded
-from clearance.formats.robot.urdf.xacro_process import ChildWatch, evaluated
+from clearance.formats.robot.urdf.xacro_process import evaluated
 from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
@@ -200,21 +203,20 @@ def test_work_without_end_is_ended(tmp_path, monkeypatch):
         made(path)
 
 
-def test_more_than_reading_is_refused():
-    watch = ChildWatch()
-    watch.on = True
-    watch("open", ("/a/b.xacro", "r", 0))
-    watch("open", ("/a/b.pyc", "rb", 0))
-    assert [*watch.opened] == ["/a/b.xacro"]
-    for event, arguments in [
-        ("socket.connect", (None, None)),
-        ("subprocess.Popen", ("true", [], None, None)),
-        ("open", ("/a/b", "w", 0)),
-        ("open", ("/a/b", None, 1)),
-        ("os.remove", ("/a/b", -1)),
-    ]:
-        with pytest.raises(Exception, match="refused"):
-            watch(event, arguments)
+def test_it_has_so_much_memory_and_no_more(tmp_path):
+    with pytest.raises(BadSyntax, match="it needs too much memory"):
+        made(write_package(tmp_path, body('<link name="${len([0] * 10**9)}"/>')))
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the system bounds no process")
+def test_it_writes_no_file(tmp_path):
+    program = (
+        "from pathlib import Path\n"
+        "from clearance.formats.robot.urdf.xacro_process import _limit_work\n"
+        f"_limit_work(9, 1 << 30)\nPath({str(tmp_path / 'a')!r}).write_text('a')"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert "File too large" in done.stderr and not (tmp_path / "a").read_bytes()
 
 
 def test_a_file_cut_off_anywhere_is_refused(tmp_path):
@@ -228,7 +230,7 @@ def test_a_file_cut_off_anywhere_is_refused(tmp_path):
     ]:
         path.write_text(texts[0])
         other.write_text(texts[1])
-        answer = evaluated(path, {}, ChildWatch())
+        answer = evaluated(path, {})
         if texts == (main, macro):
             assert b'<link name="2"/>' in answer["urdf"].encode()
         else:

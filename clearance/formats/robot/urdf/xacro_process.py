@@ -1,8 +1,9 @@
-"""xacro in a process of its own, and its adapter: what is asked comes as JSON on stdin, the URDF goes to stdout.
+"""xacro in a process of its own, and its adapter: what is asked comes as JSON on stdin, the URDF goes to
+stdout.
 
-xacro evaluates Python and keeps what it does in its module, so one run must not meet another, nor last. What it
-opens is told, so that it can be hashed. Writing, other processes and the network are refused: a hedge against
-accidents, no wall against a hostile file. Not for: importing (`xacro_file` starts it).
+xacro evaluates Python and keeps what it does in its module, so one run must not meet another, nor last. The
+operating system bounds its work and its memory and lets it write no file; it is no wall against a hostile file,
+which can read and send what the user can. Not for: importing (`xacro_file` starts it).
 """
 
 from __future__ import annotations
@@ -17,45 +18,9 @@ from typing import Any
 MOST_TEXT = 64_000_000
 """[characters] Of the URDF."""
 
-_REFUSED = (
-    "socket.", "subprocess.", "os.system", "os.exec", "os.fork", "os.posix_spawn", "os.spawn", "os.startfile",
-    "os.remove", "os.rename", "os.rmdir", "os.mkdir", "os.link", "os.symlink", "os.truncate", "os.ch", "os.kill",
-    "os.putenv", "shutil.", "ctypes.", "urllib.", "http.", "ftplib.", "smtplib.", "webbrowser.", "pty.",
-)  # fmt: skip
-"""Beginnings of the audit events of what is not done here."""
 
-_WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
-
-_CODE = (".py", ".pyc", ".so", ".pyd")
-"""Files that Python itself may open."""
-
-
-class _Refusal(Exception):
-    """What is evaluated asks for more than to read."""
-
-
-class ChildWatch:
-    """Keeps which files are opened, and refuses all else, while it is on."""
-
-    def __init__(self) -> None:
-        self.opened: dict[str, None] = {}
-        self.on = False
-
-    def __call__(self, event: str, arguments: tuple[Any, ...]) -> None:
-        if not self.on:
-            return
-        if event == "open":
-            self._open(*arguments)
-        elif event.startswith(_REFUSED):
-            raise _Refusal(f"it asks for {event!r}, which is refused")
-
-    def _open(self, path: object, mode: str | None, flags: int) -> None:
-        if (mode and set(mode) & set("wax+")) or (flags or 0) & _WRITES:
-            raise _Refusal("it asks to write a file, which is refused")
-        if isinstance(path, str | bytes | os.PathLike):
-            name = os.fsdecode(path)
-            if not name.endswith(_CODE):
-                self.opened[os.path.abspath(name)] = None
+class _TooMuch(Exception):
+    """The URDF is longer than any robot's."""
 
 
 class _Arguments(dict[str, str]):
@@ -77,8 +42,8 @@ class _Arguments(dict[str, str]):
 class _Packages:
     """Stands in for ROS's index of packages, so that `$(find x)` follows our rules."""
 
-    def __init__(self, folder: Path, package_dirs: list[Path], watch: ChildWatch) -> None:
-        self._folder, self._dirs, self._watch = folder, package_dirs, watch
+    def __init__(self, folder: Path, package_dirs: list[Path]) -> None:
+        self._folder, self._dirs = folder, package_dirs
         self.by_variable: dict[str, dict[str, str]] = {}
         self.found: dict[str, str] = {}
 
@@ -86,11 +51,7 @@ class _Packages:
         """The folder of a package."""
         from clearance.formats.files.mesh_paths import package_folder
 
-        self._watch.on = False  # manifests that are looked into are no input
-        try:
-            found = package_folder(str(name), self._folder, self._dirs)
-        finally:
-            self._watch.on = True
+        found = package_folder(str(name), self._folder, self._dirs)
         if found.variable:
             self.by_variable.setdefault(found.variable, {})[str(name)] = str(found.path)
         self.found[str(name)] = os.path.abspath(found.path)
@@ -113,42 +74,31 @@ def _main() -> None:
 
 
 def _answer(asked: dict[str, Any]) -> dict[str, Any]:
-    sys.dont_write_bytecode = True  # of modules that are imported while writing is refused
-
-    import xacro
-    import xacro.substitution_args  # before anything is watched
-    import xacro.xmlutils  # noqa: F401
-
-    import clearance.formats.files.mesh_paths  # noqa: F401
-
-    watch, path = ChildWatch(), Path(asked["path"])
-    packages = _Packages(path.parent, [Path(folder) for folder in asked["package_dirs"]], watch)
+    path = Path(asked["path"])
+    packages = _Packages(path.parent, [Path(folder) for folder in asked["package_dirs"]])
     packages.install()
-    sys.addaudithook(watch)
     _limit_work(asked["seconds"], asked["bytes"])
-    made = evaluated(path, asked["args"], watch)
-    return (
-        made
-        | {"files": [*watch.opened], "variables": packages.by_variable}
-        | {"packages": packages.found}
-    )
+    made = evaluated(path, asked["args"])
+    return made | {"variables": packages.by_variable, "packages": packages.found}
 
 
-def evaluated(path: Path, given: dict[str, str], watch: ChildWatch) -> dict[str, Any]:
-    """The URDF, the values of all arguments, and which of them were asked for; or what went wrong, and where."""
+def evaluated(path: Path, given: dict[str, str]) -> dict[str, Any]:
+    """The URDF, the values of all arguments, and which of them were asked for; or what went wrong, and where. And
+    the files that were read.
+    """
     import xacro
 
     arguments = _Arguments(given)
-    watch.on = True
+    xacro.all_includes.clear()
     try:
         text = xacro.process_file(str(path), mappings=arguments).toxml()
         if len(text) > MOST_TEXT:
-            raise _Refusal(f"the URDF has more than {MOST_TEXT:,} characters")
+            raise _TooMuch(f"the URDF has more than {MOST_TEXT:,} characters")
+        made = {"urdf": text, "args": dict(arguments), "asked": sorted(arguments.asked)}
     except Exception as error:
-        return _fault(error, getattr(xacro, "filestack", None) or [])
-    finally:
-        watch.on = False
-    return {"urdf": text, "args": dict(arguments), "asked": sorted(arguments.asked)}
+        made = _fault(error, getattr(xacro, "filestack", None) or [])
+    read = [str(path), *(name for name in xacro.all_includes if os.path.isfile(name))]
+    return made | {"files": [*dict.fromkeys(map(os.path.abspath, read))]}
 
 
 def _fault(error: Exception, stack: list[str | None]) -> dict[str, Any]:
@@ -197,13 +147,14 @@ def _told(error: Exception) -> str:
 
 
 def _limit_work(seconds: int, n_bytes: int) -> None:
-    """Ends this process after so much work, and refuses it more memory; not on Windows."""
+    """Ends this process after so much work, refuses it more memory, and lets it write no file; not on Windows."""
     try:
         import resource
     except ImportError:
         return
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_DATA, (n_bytes, n_bytes))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
 
 if __name__ == "__main__":
