@@ -34,7 +34,7 @@ from .receipt.verifying import verify
 from .receipt.writing import write_receipt
 from .record.record import CrossCheck, Record
 from .record.workspace import Workspace
-from .run import Question, Resources, Run, answer, check
+from .run import CheckOptions, Question, Resources, Run, answer, check
 from .simulate.answers.workspace.workspace import shared_workspace
 from .simulate.measure.checker import Checker
 from .sketch import Sketch, SketchResult
@@ -55,6 +55,7 @@ __all__ = [
     "Body",
     "Carry",
     "Case",
+    "CheckOptions",
     "Checker",
     "ClearanceError",
     "Clock",

@@ -12,7 +12,7 @@ class GivenTrajectory:
     """A trajectory that a cell is given.
 
     Attributes:
-        path: absolute. reading: how it is read and followed, JSON of `formats.schema.manifest.TrajectoryOptions`.
+        path: absolute. reading: how it is read and followed, JSON of `manifest_file.TrajectoryOptions`.
         robot: which moves so; None for the only one.
     """
 

@@ -73,5 +73,5 @@ def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
     else:
         told = (item.name, given.reading, given.robot)
     read = sorted({one for one in files if not one[0].startswith(LOOKUP)})
-    asked = (program(), told, item.options, read)
+    asked = (program(), told, item.options.key, read)
     return hashlib.sha256(repr(asked).encode()).hexdigest()

@@ -7,18 +7,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
-from pathlib import Path
-
-from pydantic import TypeAdapter
+from dataclasses import asdict
 
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.store import Store
-from clearance.case.tolerance.tolerance_file import tolerance_digest
 from clearance.errors import BadInput, MissingFile, nearest_name
-
-_OPTIONS = TypeAdapter(CaseOptions)
 
 
 def write_list(store: Store, items: Sequence[Item]) -> None:
@@ -28,7 +22,7 @@ def write_list(store: Store, items: Sequence[Item]) -> None:
         Incomplete: there is no room.
     """
     number = {one: i for i, one in enumerate(dict.fromkeys(item.options for item in items))}
-    options = (json.dumps(asdict(one), default=str) for one in number)
+    options = (json.dumps(one.plain(), default=str) for one in number)
     store.write_list(options, _told(items, number))
 
 
@@ -54,7 +48,7 @@ def read_list(store: Store) -> list[Item]:
             valid="`clearance batch … --out` first",
         )
     try:
-        options = [_as_now(_OPTIONS.validate_python(json.loads(one))) for one in asked]
+        options = [CaseOptions.of_plain(json.loads(one)) for one in asked]
         return [_item(i, name, told, options[n]) for i, (name, told, n) in enumerate(rows)]
     except (ValueError, TypeError, IndexError, BadInput):
         raise BadInput(
@@ -80,13 +74,3 @@ def item_called(items: Sequence[Item], name: str) -> Item:
 def _item(number: int, name: str, told: str, options: CaseOptions) -> Item:
     file, given = json.loads(told)
     return Item(number, name, file, given and GivenTrajectory(**given), options)
-
-
-def _as_now(asked: CaseOptions) -> CaseOptions:
-    """The options with the key of their tolerances as the file is now."""
-    if not asked.tolerance:
-        return asked
-    try:
-        return replace(asked, tolerance_key=tolerance_digest(Path(asked.tolerance)))
-    except BadInput:
-        return replace(asked, tolerance_key="none")

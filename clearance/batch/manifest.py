@@ -8,73 +8,72 @@ from __future__ import annotations
 
 import glob
 import os
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from datetime import UTC, date, datetime
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from datetime import UTC, datetime
+from os import PathLike
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.options import CaseOptions
+from clearance.batch.manifest_file import TrajectoryOptions, is_manifest, load_manifest
+from clearance.batch.options import USUAL, CaseOptions
 from clearance.batch.shared_waivers import as_shared
-from clearance.case.tolerance.tolerance_file import tolerance_digest
+from clearance.case.waiver_file import load_waivers
 from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.schema.manifest import (
-    Manifest,
-    TrajectoryOptions,
-    is_manifest,
-    load_manifest,
-)
+from clearance.options import made
+from clearance.run import CheckOptions
 from clearance.world.names import checked_name
 from clearance.world.waiver import Waiver
 
 
-@dataclass(frozen=True)
-class Changes:
-    """What the command line says instead of the manifests; None where it says nothing. Lengths in metres; `today`
-    as in `run.Question`; `waivers` beside those of the cases; `tolerance` a file instead of the cases' tolerances.
-    """
+class Batch(NamedTuple):
+    """All cases of a batch, and the waivers that they share."""
 
-    need: str | None = None
-    certify: bool | None = None
-    certify_gap: float | None = None
-    fail: float | None = None
-    warn: float | None = None
-    accept: tuple[str, ...] = ()
-    today: date | None = None
-    waivers: tuple[Waiver, ...] = ()
-    tolerance: Path | None = None
+    items: tuple[Item, ...]
+    waivers: tuple[Waiver, ...]
 
 
-def items_of(arguments: Sequence[str], changes: Changes) -> tuple[Item, ...]:
+def items_of(arguments: Sequence[str], said: Mapping[str, Any] = {}) -> tuple[Item, ...]:
+    """The cases of `batch_of`."""
+    return batch_of(arguments, said).items
+
+
+def batch_of(arguments: Sequence[str], said: Mapping[str, Any] = {}) -> Batch:
     """All cases, in the order in which they are given, those of a pattern by name.
 
     Args:
         arguments: paths or patterns of manifests and of case files.
+        said: options that go before those of manifests; waivers, and kinds of input to accept, are added.
 
     Raises:
-        BadInput: a manifest that is none, a pattern that nothing matches, two cases of one name, or tolerances
-            that are none.
+        BadInput: a manifest that is none, a pattern that nothing matches, two cases of one name, options or files
+            that they name that are none.
     """
-    if changes.certify_gap == 0.0:
-        raise BadInput("certify: a gap of 0 m", valid="a length above 0")
-    items = _with_tolerance(_once(_given(arguments, changes)), changes.tolerance)
-    waived = _waived(items, changes.waivers) if changes.waivers else items
-    cases = tuple(replace(item, number=i) for i, item in enumerate(waived))
+    shared: dict[Waiver, None] = {}
+    items = _waived(_once(_given(arguments, said, shared)))
+    cases = tuple(replace(item, number=i) for i, item in enumerate(items))
     _require_own_names(cases)
-    return cases
+    return Batch(cases, tuple(shared))
 
 
-def _given(arguments: Sequence[str], changes: Changes) -> Iterator[Item]:
-    """The cases of all manifests, then those that are files of their own."""
+def _given(
+    arguments: Sequence[str], said: Mapping[str, Any], shared: dict[Waiver, None]
+) -> Iterator[Item]:
+    """The cases of all manifests, then those that are files of their own.
+
+    Args:
+        shared: takes the waivers that cases share.
+    """
     plain: list[str] = []
     for argument in arguments:
         for path in _matching(argument, Path()):
             if _is_manifest(Path(path)):
-                yield from _of_manifest(Path(path), changes)
+                yield from _of_manifest(Path(path), said, shared)
             else:
                 plain.append(path)
-    options = _options(Manifest.model_construct(), changes)
+    options = _options({}, said, shared)
     yield from _of_cases(plain, _common_folder(plain), "", options)
 
 
@@ -88,34 +87,18 @@ def _once(items: Iterable[Item]) -> Iterator[Item]:
             yield item
 
 
-def _with_tolerance(items: Iterable[Item], path: Path | None) -> Iterator[Item]:
-    """The items with the tolerances of a file, if one is given, in place of their cases'."""
-    if path is None:
-        yield from items
-        return
-    place, key = os.path.abspath(path), tolerance_digest(path)
-    known: dict[CaseOptions, CaseOptions] = {}
+def _waived(items: Iterable[Item]) -> Iterator[Item]:
+    """The items with those of their waivers that may be of them: a change of one is no change of what it is not
+    of.
+    """
+    known: dict[tuple[CaseOptions, tuple[Waiver, ...]], CaseOptions] = {}
     for item in items:
-        made = known.get(item.options)
-        if made is None:
-            made = replace(item.options, tolerance=place, tolerance_key=key)
-            known[item.options] = made
-        yield replace(item, options=made)
-
-
-def _waived(items: Iterable[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
-    """The items with the waivers that may be of them: a change of one is no change of what it is not of."""
-    shared = as_shared(waivers)
-    known: dict[tuple[CaseOptions, tuple[int, ...]], CaseOptions] = {}
-    for item in items:  # the name of a case that is a file of its own is not known yet
-        own = tuple(
-            i
-            for i, one in enumerate(shared)
-            if item.trajectory is None or one.is_of_case(item.name)
-        )
+        given: Any = item.options.asked.waivers
+        own = given  # the name of a case that is a file of its own is not known yet
+        if item.trajectory is not None:
+            own = tuple(one for one in given if one.is_of_case(item.name))
         if (item.options, own) not in known:
-            made = item.options.waived_by(tuple(shared[i] for i in own))
-            known[item.options, own] = made
+            known[item.options, own] = item.options.waived_by(own) if given else item.options
         yield replace(item, options=known[item.options, own])
 
 
@@ -127,10 +110,10 @@ def _is_manifest(path: Path) -> bool:
         return False
 
 
-def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
-    given = load_manifest(path)
+def _of_manifest(path: Path, said: Mapping[str, Any], shared: dict[Waiver, None]) -> Iterator[Item]:
+    given, own = load_manifest(path)
     with at(path.name):
-        options, folder = _options(given, changes), path.absolute().parent
+        options, folder = _options(own, said, shared), path.absolute().parent
         before = f"{given.name}/" if given.name else ""
         with at("cases"):
             yield from _of_cases(_all_matching(given.cases or [], folder), folder, before, options)
@@ -151,19 +134,29 @@ def _of_cases(
         yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
 
 
-def _options(given: Manifest, changes: Changes) -> CaseOptions:
-    """What is asked, of the manifest and the command line, which goes before."""
-    usual = CaseOptions()
-    certify = not given.samples_only if changes.certify is None else changes.certify
-    return CaseOptions(
-        need=changes.need or given.need or usual.need,
-        certify=certify,
-        certify_gap=changes.certify_gap or given.certify_gap or usual.certify_gap,
-        fail=given.limits.fail if changes.fail is None else changes.fail,
-        warn=given.limits.warn if changes.warn is None else changes.warn,
-        accept=tuple(dict.fromkeys([*given.accept, *changes.accept])),
-        today=(changes.today or datetime.now(UTC).date()).isoformat(),
-    )
+def _options(
+    own: Mapping[str, Any], said: Mapping[str, Any], shared: dict[Waiver, None]
+) -> CaseOptions:
+    """What is asked, of a manifest and of the command line, which goes before."""
+    added = {name: (*own.get(name, ()), *said.get(name, ())) for name in ("accept", "waivers")}
+    asked = made(CheckOptions, {"today": datetime.now(UTC).date(), **USUAL, **own, **said, **added})
+    asked = replace(asked, **{name: _absolute(getattr(asked, name)) for name in _FILES})
+    waivers = as_shared(_read(asked.waivers))
+    shared.update(dict.fromkeys(waivers))
+    return CaseOptions.of(replace(asked, waivers=waivers))
+
+
+_FILES = ("tolerance", "recorded")
+
+
+def _absolute(path: Any) -> Any:
+    return path.absolute() if isinstance(path, Path) else path
+
+
+def _read(waivers: Iterable[Waiver | str | PathLike[str]]) -> Iterator[Waiver]:
+    """Waivers, those of files among them."""
+    for one in waivers:
+        yield from [one] if isinstance(one, Waiver) else load_waivers(Path(one))
 
 
 def _reading(given: TrajectoryOptions | None) -> str:

@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 from clearance.batch.file_hashes import FileStamp, seen
 from clearance.batch.item import Item
 from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
+from clearance.batch.manifest_file import TrajectoryOptions
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.shared_waivers import as_shared
 from clearance.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.errors import ClearanceError, Incomplete
 from clearance.formats.files.mesh_paths import variables_of
 from clearance.formats.robot.urdf.xacro_file import variables_asked
-from clearance.formats.schema.manifest import TrajectoryOptions
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 
@@ -186,7 +186,7 @@ def conditions_of(item: Item, case: Case) -> tuple[Source, ...]:
     """What a row depends on beside the files of its case, as if each were one: the day, where it has waivers that
     may end on one, variables that name folders in which files of it lie, and those that its xacro files ask for.
     """
-    day = [Source(DAY, item.options.today, 0)] if case.waivers else []
+    day = [Source(DAY, item.options.day.isoformat(), 0)] if case.waivers else []
     named = variables_of([one.read_from for one in case.sources])
     named = list(dict.fromkeys([*named, *variables_asked(case.sources)]))
     return (*day, *(Source(variable_mark(name), value_digest(name), 0) for name in named))

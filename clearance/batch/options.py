@@ -1,90 +1,123 @@
-"""What is asked of every case of a batch. Not for: which cases there are (`manifest`)."""
+"""What is asked of every case of a batch, with the key of it. Not for: which cases there are (`manifest`)."""
 
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field, replace
-from datetime import UTC, date, datetime
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from datetime import date
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-from clearance.case.tolerance.tolerance_file import tolerance_digest, with_tolerance
+from pydantic import TypeAdapter
+
+from clearance.case.tolerance.tolerance_file import tolerance_digest
 from clearance.errors import BadInput
-from clearance.run import Question
-from clearance.run.question import with_levels
-from clearance.tolerance import CERTIFY_GAP
+from clearance.formats.files.input_files import read_bytes
+from clearance.formats.motion.trajectory_file import files_of
+from clearance.options import made, options_in
+from clearance.run import CheckOptions, Question
 from clearance.world.case import Case
 from clearance.world.waiver import Waiver
+
+USUAL = {"need": "limit"}
+"""Defaults that are others in a batch."""
+
+_WAIVERS = TypeAdapter(tuple[Waiver, ...])
+
+_KEYED_BY_CONTENT = ("tolerance", "recorded", "waivers", "today")
+"""Options of which the value says too little, or, of the day, too much: it decides only cases with waivers."""
 
 
 @dataclass(frozen=True)
 class CaseOptions:
-    """What is asked of a case; its `repr` distinguishes it in keys.
+    """What is asked of a case.
 
     Attributes:
-        need, certify, certify_gap: as in `run.Question`.
-        fail, warn: [m] limits instead of the case's, as `with_levels` takes them.
-        accept: kinds of suspect input that decide no verdict, beside the case's.
-        tolerance: absolute path of a file with tolerances instead of the cases'; empty for theirs. tolerance_key:
-            sha256 of what is in it; in the `repr` in place of it.
-        waivers: beside those of each case, `shared` by many. waivers_key: sha256 of what they are on that day; in
-            the `repr` in place of them.
-        today: the day that waivers are held against, as 2027-03-31; it decides only cases that have some, so it is
-            not in the `repr`. Empty for the day that it is.
+        asked: paths are absolute, waivers are read, and there is a day.
+        files_key: sha256 of what is in the files that it names.
     """
 
-    need: str = "limit"
-    certify: bool = True
-    certify_gap: float = CERTIFY_GAP
-    fail: float | None = None
-    warn: float | None = None
-    accept: tuple[str, ...] = ()
-    waivers_key: str = ""
-    tolerance_key: str = ""
-    tolerance: str = field(default="", repr=False, compare=False)
-    today: str = field(default="", repr=False)
-    waivers: tuple[Waiver, ...] = field(default=(), repr=False, compare=False)
+    asked: CheckOptions
+    files_key: str
+
+    @classmethod
+    def of(cls, asked: CheckOptions) -> CaseOptions:
+        """The same with the key of its files as they are now.
+
+        Raises:
+            BadInput: a file that cannot be read, or is none of its sort.
+        """
+        return cls(asked, _files_key(asked))
+
+    @cached_property
+    def key(self) -> str:
+        """sha256 of all that it says of a row."""
+        asked, names = self.asked, [*options_in(CheckOptions)]
+        told = [(name, getattr(asked, name)) for name in names if name not in _KEYED_BY_CONTENT]
+        given = [one for one in asked.waivers if isinstance(one, Waiver)]
+        waivers = [(one, one.is_expired(self.day)) for one in given]
+        return hashlib.sha256(repr((told, self.files_key, waivers)).encode()).hexdigest()
+
+    @property
+    def day(self) -> date:
+        """That which waivers are held against."""
+        assert self.asked.today is not None
+        return self.asked.today
 
     def question(self, case: Case) -> Question:
         """The question about a case.
 
         Raises:
-            BadInput: a warn limit below the fail limit; tolerances that are not of this case, or are others than
-                the key is of.
+            BadInput: as `Question.of`; files that are others than the key is of.
         """
-        case = self._with_tolerance(case)
-        limits = with_levels(case.limits, self.fail, self.warn)
-        accepted = tuple(dict.fromkeys([*case.accept, *self.accept]))
-        if limits is not case.limits or accepted != case.accept or self.waivers:
-            waivers = (*case.waivers, *self.waivers)
-            case = replace(case, limits=limits, accept=accepted, waivers=waivers)
-        return Question(
-            case,
-            need=self.need,
-            certify=self.certify,
-            certify_gap=self.certify_gap,
-            today=self.day,
-        )
-
-    def _with_tolerance(self, case: Case) -> Case:
-        if not self.tolerance:
-            return case
-        path = Path(self.tolerance)
-        if tolerance_digest(path) != self.tolerance_key:
-            raise BadInput("it was changed during the batch", where=path.name, valid="once more")
-        return with_tolerance(case, path)
-
-    @property
-    def day(self) -> date | None:
-        """That which waivers are held against; None for the day that it is."""
-        return date.fromisoformat(self.today) if self.today else None
+        if _files_key(self.asked) != self.files_key:
+            names = [path.name for paths in self.asked.files.values() for path in paths]
+            where = " or ".join(names)
+            raise BadInput("it was changed during the batch", where=where, valid="once more")
+        return Question.of(case, self.asked)
 
     def waived_by(self, waivers: tuple[Waiver, ...]) -> CaseOptions:
-        """The same with waivers."""
-        today = self.day or datetime.now(UTC).date()
-        told = [(waiver, waiver.is_expired(today)) for waiver in waivers]
-        key = hashlib.sha256(repr(told).encode()).hexdigest() if waivers else ""
-        return replace(self, waivers=waivers, waivers_key=key)
+        """The same with these waivers."""
+        return replace(self, asked=replace(self.asked, waivers=waivers))
 
     def of_report(self) -> CaseOptions:
         """The same for a full report, which shows every step."""
-        return replace(self, need="steps")
+        return replace(self, asked=replace(self.asked, need="steps"))
+
+    def plain(self) -> dict[str, Any]:
+        """The options as plain data, which `of_plain` reads."""
+        known = options_in(CheckOptions).items()
+        values = {name: getattr(self.asked, name) for name, _ in known}
+        told = {name: values[name] for name, one in known if values[name] != one.default}
+        return told | {"waivers": [asdict(one) for one in values["waivers"]]}
+
+    @classmethod
+    def of_plain(cls, told: Mapping[str, Any]) -> CaseOptions:
+        """The options that `plain` has told, with the key of their files as they are now.
+
+        Raises:
+            BadInput, ValueError: they are none.
+        """
+        waivers = _WAIVERS.validate_python(told.get("waivers", ()))
+        asked = made(CheckOptions, {**told, "waivers": waivers})
+        try:
+            return cls.of(asked)
+        except BadInput:
+            return cls(asked, "none")
+
+
+def _files_key(asked: CheckOptions) -> str:
+    named = [(name, path) for name, paths in asked.files.items() for path in paths]
+    found = [(name, _digest(name, path)) for name, path in named]
+    return hashlib.sha256(repr(found).encode()).hexdigest() if found else ""
+
+
+def _digest(name: str, path: Path) -> str:
+    """sha256 of what an option has from its file; a recording may be a folder."""
+    if name == "tolerance":
+        return tolerance_digest(path)
+    files = files_of(path) if path.is_dir() else [path]
+    told = [hashlib.sha256(read_bytes(one, one.name)).hexdigest() for one in files]
+    return hashlib.sha256(repr(told).encode()).hexdigest()

@@ -81,7 +81,7 @@ class _Look:
         if item.file not in self._inputs:
             self._inputs[item.file] = self.store.inputs(item.file)
         for inputs in self._inputs[item.file]:
-            shared = self._as_before(inputs, item.options.today)
+            shared = self._as_before(inputs, item.options.day.isoformat())
             if shared is not None:
                 key = key_of(item, (*shared, *own))
                 if self.store.has(key):

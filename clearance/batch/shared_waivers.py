@@ -87,8 +87,8 @@ def expired_waivers(items: Sequence[Item], given: Iterable[Waiver]) -> tuple[str
         with suppress(ClearanceError):
             day = _of_cell(items, file)[0].options.day
             told += [_expired(waiver, day) for waiver in waivers_of_cell(file)]
-    day = items[0].options.day if items else None
-    told += [_expired(waiver, day) for waiver in given]
+    last = items[0].options.day if items else None
+    told += [_expired(waiver, last) for waiver in given]
     return tuple(dict.fromkeys(line for line in told if line))
 
 

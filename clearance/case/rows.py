@@ -24,7 +24,6 @@ def limits_of(given: limits_schema.Limits) -> Limits:
     for i, row in enumerate(given.rules):
         with at(f"limits.rules[{i}]"):
             rules.append(_rule(row))
-            rules[-1].levels(given.fail)
     with at("limits"):
         return Limits(given.fail, given.warn, given.joints, tuple(rules))  # type: ignore[arg-type]
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from datetime import date
 from pathlib import Path
+from typing import Any
 
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.for_ci import DateParamType
-from clearance.cli.options import LengthParamType, OutputPath, accept_option
+from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.options import made
+from clearance.run.options import CheckOptions
+
+USUAL = {"need": "limit"}
+"""Defaults that are others in a batch."""
 
 _LEFT_OUT = "clearance.batch.command_left_out"
 
@@ -87,39 +91,7 @@ class _ShardParamType(click.ParamType):
 @click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
 @click.option("--rehash", is_flag=True, help="Read every input file, whatever its times say.")
 @click.option("--strict", is_flag=True, help="A case that cannot be read is exit code 2, not 1.")
-@click.option(
-    "--need",
-    type=click.Choice(["steps", "limit", "minimum"]),
-    help="As of check; the verdict is the same.  [default: limit]",
-)
-@click.option(
-    "--samples-only",
-    is_flag=True,
-    help="Look at the samples only: no proof for the motion between them.",
-)
-@click.option("--certify-mm", type=LengthParamType(), help="As of check.  [default: 0.1]")
-@click.option("--fail-mm", type=LengthParamType(), help="Fail limit instead of the cases'.")
-@click.option("--warn-mm", type=LengthParamType(), help="Warn limit instead of the cases'.")
-@click.option(
-    "--tolerance",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Tolerances instead of the cases', as of check.",
-)
-@accept_option("a verdict")
-@click.option(
-    "--waivers",
-    "waiver_files",
-    metavar="FILE",
-    multiple=True,
-    type=click.Path(path_type=Path),
-    help="Waivers that all cases share, beside those of each; each must be needed by one case at least.",
-)
-@click.option(
-    "--today",
-    type=DateParamType(),
-    help="The day that the cases' waivers are held against.  [default: today, in UTC]",
-)
+@asked_options(CheckOptions, USUAL)
 @click.option(
     "--baseline",
     metavar="STORE",
@@ -128,25 +100,7 @@ class _ShardParamType(click.ParamType):
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
-    arguments: tuple[str, ...],
-    place: Path,
-    jobs: int | None,
-    scheduler: str | None,
-    shard: tuple[int, int] | None,
-    fresh: bool,
-    rehash: bool,
-    strict: bool,
-    need: str | None,
-    samples_only: bool,
-    certify_mm: float | None,
-    fail_mm: float | None,
-    warn_mm: float | None,
-    tolerance: Path | None,
-    accept: tuple[str, ...],
-    waiver_files: tuple[Path, ...],
-    today: date | None,
-    baseline: Path | None,
-    quiet: bool,
+    arguments: tuple[str, ...], place: Path, shard: tuple[int, int] | None, **given: Any
 ) -> int:
     """Checks many cases: those of manifests, case files and patterns of them.
 
@@ -156,29 +110,22 @@ def check(
     --waivers that is expired or that no case needs; 4 where some are not measured, as on a full
     disk. A baseline does not change it; `clearance compare` has one of its own.
     """
-    from clearance.batch.manifest import Changes, items_of
+    from clearance.batch.manifest import batch_of
     from clearance.batch.output import ANSWER
     from clearance.batch.store_files import FILE
-    from clearance.case.waiver_file import load_waivers
     from clearance.cli.batch_run import BatchRequest, run_asked
     from clearance.cli.places import refuse_inputs
 
-    if samples_only and certify_mm is not None:
-        raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")
-    if jobs is not None and scheduler is not None:
+    own = said(CheckOptions, given)
+    options = made(CheckOptions, own, spelled_by(CheckOptions))
+    if given["jobs"] is not None and given["scheduler"] is not None:
         raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
-    if baseline is not None:
-        _require_baseline(baseline, place, shard)
-    certify = False if samples_only else None
-    waivers = tuple(waiver for path in waiver_files for waiver in load_waivers(path))
-    changes = Changes(
-        need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers, tolerance
-    )
-    items = items_of(arguments, changes)
-    own = waiver_files if tolerance is None else (*waiver_files, tolerance)
-    refuse_inputs([place / name for name in (*ANSWER, FILE)], own)
-    asked = BatchRequest(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers, baseline)
-    return run_asked(items, place, asked)
+    if given["baseline"] is not None:
+        _require_baseline(given["baseline"], place, shard)
+    batch = batch_of(arguments, own)
+    files = [path for paths in options.files.values() for path in paths]
+    refuse_inputs([place / name for name in (*ANSWER, FILE)], files)
+    return run_asked(batch.items, place, BatchRequest(**given, shard=shard, waivers=batch.waivers))
 
 
 def _require_baseline(baseline: Path, place: Path, shard: tuple[int, int] | None) -> None:

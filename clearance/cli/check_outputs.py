@@ -1,4 +1,4 @@
-"""What `clearance check` writes: the report, JUnit, what a build server is told, files on request.
+"""What `clearance check` writes: the report, JUnit, files for slides and CAD, and what a build server is told.
 
 Whatever can be refused is refused before anything is measured. Not for: what is in the files (room `report`).
 """
@@ -10,54 +10,111 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.cli.for_ci import CiOutputs
-from clearance.cli.more_files import MoreFiles
+import click
+
+from clearance.cli.options import OutputPath, in_order
+from clearance.errors import Unwritable
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
-    from clearance.run import Run
-    from clearance.world.case import Case
+    from clearance.formats.motion.trajectory_writer import WrittenTrajectory
+    from clearance.run import Question, Run
+
+SUMMARY_VARIABLE, ROOT_VARIABLE = "GITHUB_STEP_SUMMARY", "GITHUB_WORKSPACE"
+"""What GitHub Actions calls the file of a step's summary, and the folder of the repository."""
+
+_FILES = {
+    "junit": ("FILE", "Write JUnit XML."),
+    "png": ("FILE", "Write a picture of the worst moment."),
+    "glb": (
+        "FILE",
+        "Write the worst moment as GLB: robots, obstacles and the line, for slides and CAD.",
+    ),
+    "trajectory": (
+        "FILE",
+        "Write the motion that was measured: .yaml or .json (JointTrajectory), or .csv.",
+    ),
+    "summary": ("FILE.md", "Write verdict and findings as Markdown."),
+}
+"""Options that name a file."""
+
+_SUFFIXED = ("png", "glb")
+"""Options whose file must end in their name."""
+
+output_options = in_order(
+    click.option("--out", metavar="DIR", type=OutputPath(), help="Write the report here."),
+    *(
+        click.option(f"--{name}", metavar=metavar, type=OutputPath(), help=told)
+        for name, (metavar, told) in _FILES.items()
+    ),
+    click.option(
+        "--github",
+        is_flag=True,
+        help=f"Annotate the rows of the trajectory, and append the summary to ${SUMMARY_VARIABLE}.",
+    ),
+)
 
 
 @dataclass(frozen=True)
 class Outputs:
-    """Where everything goes that is wanted.
+    """Where everything goes that is wanted: the report's folder, and a file for each of the others."""
 
-    Attributes:
-        out: the report's folder. junit: a file. for_ci, more: what else.
-    """
-
-    out: Path | None
-    junit: Path | None
-    for_ci: CiOutputs
-    more: MoreFiles
+    out: Path | None = None
+    junit: Path | None = None
+    png: Path | None = None
+    glb: Path | None = None
+    trajectory: Path | None = None
+    summary: Path | None = None
+    github: bool = False
 
     def require_writable(self) -> None:
         """Refuses what could not be written in the end.
 
         Raises:
-            Unavailable: a library is missing. Unwritable: a place that cannot be written, or is taken twice.
+            Unavailable: a library is missing. Unwritable: a place that cannot be written or is taken twice, or
+                another suffix.
         """
         from clearance.cli.places import require_file_place, require_folder_place
         from clearance.extras import require
 
-        if self.out is not None:
-            require("report", "--out")
+        for name in ("out", "png"):
+            if getattr(self, name) is not None:
+                require("report", f"--{name}")
         require_folder_place(self.out)
-        require_file_place(self.junit)
-        require_file_place(self.for_ci.summary, "--summary")
-        self.more.require_writable()
+        for name, path in self._named.items():
+            require_file_place(path, f"--{name}")
+            if name in _SUFFIXED and path.suffix.lower() != f".{name}":
+                raise Unwritable(
+                    f"is no .{name} file", where=str(path), valid=f"--{name} needs one"
+                )
         _ = self.files
 
-    def refuse_inputs(self, case: Case) -> None:
-        """Refuses to write over a file that the case was read from.
+    @property
+    def _named(self) -> dict[str, Path]:
+        """The files that are wanted, by option."""
+        return {name: path for name in _FILES if (path := getattr(self, name)) is not None}
+
+    @property
+    def files(self) -> list[Path]:
+        """The files that may be written; no two are the same.
 
         Raises:
-            Unwritable: it would.
+            Unwritable: one would overwrite another.
         """
-        from clearance.cli.places import refuse_inputs_of_cases
+        report = self._report_files()
+        taken = {os.path.realpath(path): "is a file of the report" for path in report}
+        for name, path in self._named.items():
+            problem = taken.setdefault(os.path.realpath(path), f"is the file of --{name}")
+            if problem != f"is the file of --{name}":
+                raise Unwritable(problem, where=str(path), valid=f"--{name} needs another name")
+        return [*report, *self._named.values()]
 
-        refuse_inputs_of_cases([case], self.files)
+    def _report_files(self) -> list[Path]:
+        if self.out is None:
+            return []
+        from clearance.report.output import OWN
+
+        return [self.out / name for name in OWN]
 
     def withdraw_older(self) -> None:
         """Says in an older report and JUnit file that there is no answer yet; a run that is stopped leaves nothing
@@ -76,31 +133,29 @@ class Outputs:
             told = "this run has not come to an end; the same command goes on"
             write_unfinished("clearance", told, self.junit)
 
-    @property
-    def files(self) -> list[Path]:
-        """The files that may be written; no two are the same.
+    def trajectory_ahead(self, question: Question) -> WrittenTrajectory | None:
+        """The trajectory file, where the motion is known before it is measured.
 
         Raises:
-            Unwritable: one would overwrite another.
+            BadInput, BadTime: the motion cannot be written so.
         """
-        asked = {"--junit": self.junit, "--summary": self.for_ci.summary, **self.more.by_option}
-        named = {option: path for option, path in asked.items() if path is not None}
-        report = self._report_files()
-        taken = {os.path.realpath(path): "is a file of the report" for path in report}
-        for option, path in named.items():
-            _refuse_taken(path, option, taken)
-            taken[os.path.realpath(path)] = f"is the file of {option}"
-        return [*report, *named.values()]
+        if self.trajectory is None:
+            return None
+        from clearance.report.motion_file import motion_content, require_motion_file
+        from clearance.world.motion import kinematic_motion
+        from clearance.world.timeline import timeline_of
 
-    def _report_files(self) -> list[Path]:
-        if self.out is None:
-            return []
-        from clearance.report.output import OWN
+        case = question.case
+        require_motion_file(case.robots, self.trajectory.name)
+        if question.motion != "kinematic":
+            return None
+        own = [kinematic_motion(placed) for placed in case.robots]
+        return motion_content(timeline_of(case, own).motions, self.trajectory.name)
 
-        return [self.out / name for name in OWN]
-
-    def write(self, run: Run, comparison: Comparison | None) -> None:
-        """Writes the report and JUnit, each whole or not at all.
+    def write(
+        self, run: Run, comparison: Comparison | None, ahead: WrittenTrajectory | None
+    ) -> list[str]:
+        """Writes each file, whole or not at all; a line for each thing in the trajectory that is not as it was.
 
         Raises:
             Unwritable: it cannot be written.
@@ -111,11 +166,67 @@ class Outputs:
             from clearance.report.junit_cases import write_run_junit
 
             write_run_junit(run.report_data, self.junit)
+        self._write_still(run)
+        if self.trajectory is None:
+            return []
+        from clearance.files import write_file
+        from clearance.report.motion_file import motion_content
+
+        made = ahead or motion_content(run.record.motions, self.trajectory.name)
+        write_file(self.trajectory, made.content)
+        return [f"{self.trajectory.name}: {note}" for note in made.notes]
+
+    def _write_still(self, run: Run) -> None:
+        if self.png is None and self.glb is None:
+            return
+        from clearance.files import write_file
+
+        replay = run.session.replay(run.rows)
+        if self.glb is not None:
+            from clearance.report.glb import glb_of
+
+            write_file(self.glb, glb_of(run.record, replay))
+        if self.png is not None:
+            from clearance.report.picture import png_of
+
+            write_file(self.png, png_of(run.record, replay, run.verdict))
+
+    def print_written(self, notes: list[str]) -> None:
+        """Says in a terminal which files for people there are, and what is not as it was."""
+        files = [path for name, path in self._named.items() if name in (*_SUFFIXED, "trajectory")]
+        for word, lines in (("note", notes), ("written", files)):
+            for line in lines:
+                click.echo(f"  {word:<11} {line}")
+
+    def tell_builds(self, run: Run, comparison: Comparison | None, to_stderr: bool) -> None:
+        """Writes the summary, and tells GitHub Actions of it and of each finding, where that is wanted."""
+        if self.summary is None and not self.github:
+            return
+        from clearance.files import write_file
+        from clearance.report.markdown import markdown
+
+        text = markdown(run.record, run.verdict, run.findings, comparison)
+        if self.summary is not None:
+            write_file(self.summary, text.encode("utf-8"))
+        if self.github:
+            _append_to_summary(text)
+            _annotate(run, to_stderr)
 
 
-def _refuse_taken(path: Path, option: str, taken: dict[str, str]) -> None:
-    problem = taken.get(os.path.realpath(path))
-    if problem is not None:
-        from clearance.errors import Unwritable
+def _append_to_summary(text: str) -> None:
+    place = os.environ.get(SUMMARY_VARIABLE)
+    if not place:
+        click.echo(f"note: {SUMMARY_VARIABLE} is not set; no step summary is written", err=True)
+        return
+    from clearance.errors import unwritable
 
-        raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
+    with unwritable(Path(place)), open(place, "a", encoding="utf-8") as file:
+        file.write(text)
+
+
+def _annotate(run: Run, to_stderr: bool) -> None:
+    from clearance.report.annotations import annotation_lines
+
+    root = Path(os.environ.get(ROOT_VARIABLE) or os.curdir)
+    for line in annotation_lines(run.record, run.verdict, run.findings, root):
+        click.echo(line, err=to_stderr)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,93 +11,24 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.gain_options import (
-    PointParamType,
-    ShiftRangeParamType,
-    TimeWindowParamType,
-    ToolToleranceParamType,
-)
 from clearance.cli.notices import say_notices
-from clearance.cli.options import LengthParamType, OutputPath
-from clearance.errors import BadInput, shown
+from clearance.cli.options import OutputPath, asked_options, said, spelled_by
+from clearance.errors import shown
+from clearance.gains.request import KINDS, Request
+from clearance.options import made, require_needs
 
 if TYPE_CHECKING:
     from clearance.gains.answer import Gain
     from clearance.world.case import Case
 
-AXES = ("x", "y", "z")
-
-_KINDS = ("waypoints", "obstacle", "base", "timing", "all")
-
 
 @click.command()
 @click.argument("case", metavar="CASE", type=click.Path(path_type=Path))
-@click.option("--kind", type=click.Choice(_KINDS), required=True, help="What may be changed.")
+@click.option(
+    "--kind", type=click.Choice([*KINDS, "all"]), required=True, help="What may be changed."
+)
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Where the changed case goes.")
-@click.option(
-    "--margin-mm", "margin", type=LengthParamType(), default="0", help="Above the fail limits."
-)
-@click.option(
-    "--robot",
-    metavar="NAME",
-    multiple=True,
-    help="Which; needed where there are several. Of waypoints given again: paths that are changed together.",
-)
-@click.option("--obstacle", metavar="NAME", help="Which; needed where there are several.")
-@click.option(
-    "--keep",
-    metavar="START:END",
-    multiple=True,
-    type=TimeWindowParamType(),
-    help="[s of the run] In which a path stays as it is, with the samples next to it; may be given again.",
-)
-@click.option(
-    "--keep-ends/--free-ends", default=True, show_default=True, help="Whether a path's ends stay."
-)
-@click.option(
-    "--keep-tool",
-    metavar="TIME=MM,DEG",
-    multiple=True,
-    type=ToolToleranceParamType(),
-    help="How far the tool may move and turn at a time of the run, as 12.0=2mm,1deg; may be given again.",
-)
-@click.option(
-    "--tool", metavar="LINK", help="Which; else the first link that all joints of the path move."
-)
-@click.option(
-    "--most-delay",
-    metavar="S",
-    type=click.FloatRange(min=0.0),
-    default=60.0,
-    show_default=True,
-    help="[s] That is looked at.",
-)
-@click.option(
-    "--within-mm",
-    "within",
-    metavar="X,Y,Z",
-    type=ShiftRangeParamType(),
-    help="How far a shift may go, either way; as LOW:HIGH one way more than the other, as 50,0:100,0.",
-)
-@click.option(
-    "--turn", type=click.Choice(AXES), help="A turn beside the shift, about an axis of the world."
-)
-@click.option(
-    "--about-mm",
-    "about",
-    metavar="X,Y,Z",
-    type=PointParamType(),
-    help="A point of that axis in the world; else the origin of what is moved.",
-)
-@click.option(
-    "--most-turn-deg", metavar="DEG", type=float, help="Of the turn, either way; else 180."
-)
-@click.option(
-    "--tool-path",
-    type=click.Choice(("moved", "kept")),
-    help="Of a base: its joints as they are; or its tool where it was, by joints that make up for the base.",
-)
-@click.option("--slow-down", is_flag=True, help="Of timing: go slower in place of beginning later.")
+@asked_options(Request)
 @click.option("--force", is_flag=True, help="Overwrite an older gain in DIR.")
 def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -> int:
     """The least change found with which every rule of CASE holds, proven at every moment, and what none can beat.
@@ -114,52 +44,35 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
 
-    options = _with_turn(options) | {"robot": _robot(options["robot"])}
+    asked = said(Request, options)
+    spelled = spelled_by(Request)
+    if kind == "all":
+        require_needs(Request, asked, spelled)
+    else:
+        made(Request, asked, spelled, kind=kind)
     require_folder_place(out)
     read = load_case(case)
     if out is not None:
         sources = [one.read_from for one in read.sources if one.is_file]
-        folders = _folders(read, out, options["robot"]) if kind == "all" else [out]
+        folders = _folders(read, out, asked.get("robot", ())) if kind == "all" else [out]
         for folder in folders:
             refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)
             refuse_inputs([folder / name for name in (CASE, FIGURES, PAGE)], sources)
     say_notices(read)
     if kind == "all":
-        return _every_kind(read, case, out, options, force=force)
+        return _every_kind(read, case, out, asked, force=force)
     with _shown_search(kind):
-        found = _found(read, case, kind, options)
+        found = _found(read, case, kind, asked)
     _say(found)
     _save(found, out, force=force)
     return _code(found)
 
 
-def _robot(names: tuple[str, ...]) -> str | tuple[str, ...] | None:
-    """The one that is named, or several."""
-    return names if len(names) > 1 else next(iter(names), None)
-
-
-def _folders(read: Case, out: Path, robot: str | tuple[str, ...] | None) -> list[Path]:
+def _folders(read: Case, out: Path, robot: tuple[str, ...]) -> list[Path]:
     """Where each kind goes, of each robot where there are several."""
     from clearance.gains.every_kind import name_of, trials_of
 
     return [out / name_of(kind, who, read) for kind, who in trials_of(read, robot)]
-
-
-def _with_turn(options: dict[str, Any]) -> dict[str, Any]:
-    """The options with the turn that some of them say.
-
-    Raises:
-        BadInput: more is said of a turn that is not asked for.
-    """
-    from clearance.gains.turn import Turn
-
-    axis, about, most = (options.pop(name) for name in ("turn", "about", "most_turn_deg"))
-    if axis is None:
-        if about is not None or most is not None:
-            raise BadInput("a turn is spoken of that is not asked for", valid="--turn x, y or z")
-        return {**options, "turn": None}
-    most = math.pi if most is None else math.radians(most)
-    return {**options, "turn": Turn(axis, about, most)}
 
 
 def _code(found: Gain) -> int:

@@ -11,9 +11,10 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.notices import say_notices
-from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, ColumnsParamType, OutputPath
+from clearance.cli.options import INCLUDE_OPTION, XACRO_OPTIONS, OutputPath, SortParamType
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
+from clearance.run.options import COLUMNS
 
 if TYPE_CHECKING:
     from clearance.case.new_case.files import NewCase
@@ -71,7 +72,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
 )
 @click.option(
     "--columns",
-    type=ColumnsParamType(),
+    type=SortParamType(COLUMNS),
     metavar="A,B=C,…",
     help="Columns of the CSV to read, and no others: time, joint names, or joint=column.",
 )
@@ -116,7 +117,7 @@ def new(
     units: tuple[str, ...],
     period: float | None,
     joints: list[str] | None,
-    columns: dict[str, str] | None,
+    columns: tuple[tuple[str, str], ...] | None,
     states: list[str] | None,
     scene: str | None,
     includes: tuple[tuple[str, str], ...],
@@ -157,7 +158,7 @@ def new(
         "units": {_UNITS[unit]: unit for unit in units},
         "period": period,
         "joints": joints,
-        "columns": columns,
+        "columns": dict(columns or ()),
     }
     asked = _given(motion)
     if asked and (states or trajectory is None):

@@ -1,52 +1,32 @@
-"""What several commands take from the command line: lengths in millimetres, which motion is meant, xacro."""
+"""What several commands take from the command line: options that are declared once, places to write, xacro."""
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
-from clearance.world.notice import KINDS
+from clearance.errors import BadInput
+from clearance.options import SWITCH, Option, Sort, Spelling, flag_of, options_in
 
 
-class LengthParamType(click.ParamType):
-    """A length in millimetres, finite and not negative; handed on in metres."""
+class SortParamType(click.ParamType):
+    """A value of a sort of options."""
 
-    name = "mm"
+    def __init__(self, sort: Sort) -> None:
+        self.sort, self.name = sort, sort.form.lower()
 
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """The length [m]."""
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The value."""
+        if not isinstance(value, str):
+            return value
         try:
-            length = float(value)
-        except ValueError:
-            length = math.nan
-        if not (math.isfinite(length) and length >= 0.0):
-            self.fail(f"{value!r} is not a length; a number of millimetres, 0 or more", param, ctx)
-        return length / 1000.0
-
-
-class ColumnsParamType(click.ParamType):
-    """Columns of a table by what they are: `time,elbow=q3`; one name alone is both."""
-
-    name = "columns"
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, str]:
-        """The column of each joint, and of time."""
-        found = {}
-        for part in value.split(","):
-            name, separator, column = (one.strip() for one in part.partition("="))
-            if not name or (separator and not column):
-                self.fail(f"{value!r} is not a list of columns such as time,elbow=q3", param, ctx)
-            found[name] = column or name
-        return found
+            return self.sort.read(value)
+        except BadInput as error:
+            self.fail(str(error), param, ctx)
 
 
 class OutputPath(click.Path):
@@ -119,26 +99,68 @@ INCLUDE_OPTION = click.option(
 )
 
 
-def accept_option(which: str) -> Callable[..., Any]:
-    """The option that takes kinds of suspect input as they are; `which` verdict they then do not decide."""
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def asked_options(
+    kind: type, usual: Mapping[str, Any] = {}, arguments: Mapping[str, str] = {}
+) -> Callable[[Command], Command]:
+    """The decorator that adds the options of a dataclass to a command; `said` takes them from what it is given.
+
+    Args:
+        usual: defaults that are others here. arguments: options that are arguments, and what help calls them.
+    """
+    known = {name: one for name, one in options_in(kind).items() if one.said}
+    made = [
+        click.argument(
+            name, metavar=f"[{arguments[name]}]", required=False, type=SortParamType(one.sort)
+        )
+        if name in arguments
+        else _option(name, one, usual.get(name, one.default))
+        for name, one in known.items()
+    ]
+    return in_order(*made)
+
+
+def _option(name: str, known: Option, default: Any) -> Callable[..., Any]:
+    is_switch = known.sort is SWITCH
+    flag = f"--{flag_of(name, known)}"
+    told = {True: known.off and flag[2:], False: "", None: "", (): ""}.get(default)
+    told = known.sort.shown(default) if told is None else told
+    again = "  May be given again." if known.many else ""
+    more: dict[str, Any] = {} if is_switch or known.sort.choices else {"metavar": known.sort.form}
+    choices = known.sort.choices
     return click.option(
-        "--accept",
-        metavar="KIND",
-        multiple=True,
-        type=click.Choice(KINDS),
-        help=f"Let no suspect input of this kind decide {which} ({', '.join(KINDS)}).",
+        f"{flag}/--{known.off.replace('_', '-')}" if known.off else flag,
+        name,
+        default=None,
+        is_flag=is_switch,
+        multiple=known.many,
+        type=bool if is_switch else click.Choice(choices) if choices else SortParamType(known.sort),
+        help=f"{known.help}{again}{f'  [default: {told}]' if told else ''}",
+        **more,
     )
 
 
-def motion_option(*more: str, told: str = "") -> Callable[..., Any]:
-    """The option that says which motion is meant; `more` kinds of it, and what they are."""
-    return click.option(
-        "--motion",
-        type=click.Choice(["kinematic", "simulated", *more]),
-        default="kinematic",
-        show_default=True,
-        help=f"kinematic: the trajectory itself. simulated: what a controlled robot makes of it.{told}",
-    )
+def said(kind: type, given: dict[str, Any]) -> dict[str, Any]:
+    """Takes the options of a dataclass out of what a command is given; those that were said."""
+    taken = {name: given.pop(name) for name in options_in(kind) if name in given}
+    return {name: one for name, one in taken.items() if one is not None and one != ()}
+
+
+def spelled_by(kind: type, arguments: Mapping[str, str] = {}) -> Spelling:
+    """How the command line spells the options of a dataclass."""
+
+    def spelled(name: str, value: object) -> str:
+        if name in arguments:
+            return arguments[name]
+        known = options_in(kind)[name]
+        if value is False and known.off:
+            return f"--{known.off.replace('_', '-')}"
+        flag = f"--{flag_of(name, known)}"
+        return flag if value is None or value is True else f"{flag} {value}"
+
+    return spelled
 
 
 class XacroArgumentParamType(click.ParamType):

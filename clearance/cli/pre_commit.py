@@ -6,11 +6,14 @@ What the hook of `.pre-commit-hooks.yaml` calls with the files of a commit. Not 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.options import asked_options, said, spelled_by
+from clearance.options import made
+from clearance.run.options import CheckOptions
 
 if TYPE_CHECKING:
     from clearance.run import Run
@@ -18,34 +21,37 @@ if TYPE_CHECKING:
 MOST = 20
 """Findings that are told of one case."""
 
-_FILES = click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
+USUAL = {"need": "limit"}
 
 
 @click.command("pre-commit")
-@_FILES
-def pre_commit(files: tuple[Path, ...]) -> int:
+@click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
+@asked_options(CheckOptions, USUAL)
+def pre_commit(files: tuple[Path, ...], **given: Any) -> int:
     """Checks cases, and those that files list, as far as their limits; for a hook before a commit.
 
-    Says what is broken and nothing else. Exit code: the greatest of `clearance check --need
-    limit` on each.
+    Says what is broken and nothing else. Exit code: the greatest of `clearance check` on each.
     """
+    asked = USUAL | said(CheckOptions, given)
+    options = made(CheckOptions, asked, spelled_by(CheckOptions))
     from clearance.case.case_list import cases_in
     from clearance.errors import ClearanceError
 
     worst = ExitCode.CLEAR
     for file in files:
         try:
-            worst = max(worst, *(_checked(path) for path in cases_in(file)))
+            worst = max(worst, *(_checked(path, options) for path in cases_in(file)))
         except ClearanceError as error:
             click.echo(f"{file}: {error}", err=True)
             worst = max(worst, ExitCode.BAD_INPUT)
     return worst
 
 
-def _checked(path: Path) -> ExitCode:
-    from clearance.run import check
+def _checked(path: Path, options: CheckOptions) -> ExitCode:
+    from clearance.case.case_file import load_case
+    from clearance.run import Question, answer
 
-    run = check(path, need="limit")
+    run = answer(Question.of(load_case(path), options, spelled_by(CheckOptions)))
     if not run.passed:
         click.echo(f"{path}: {run.verdict.text(str.upper)}")
         for line in _why(run):

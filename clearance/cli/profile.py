@@ -6,9 +6,10 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import LengthParamType, OutputPath
+from clearance.cli.options import OutputPath, SortParamType
 from clearance.cli.profile_fit import fit
 from clearance.cli.profile_sweep import sweep
+from clearance.options import LENGTH
 
 _FILES = ("comparison.svg", "comparison.png", "comparison.json")
 
@@ -30,7 +31,7 @@ profile.add_command(sweep)
     "--field", is_flag=True, help="Colour the page by the nearest arc of B (the distance map)."
 )
 @click.option("--limit", type=float, help="Exit with 1 where the Hausdorff distance is above this.")
-@click.option("--limit-mm", type=LengthParamType(), help="The same in mm, for files in metres.")
+@click.option("--limit-mm", type=SortParamType(LENGTH), help="The same in mm, for files in metres.")
 def compare(
     a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
 ) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import LengthParamType, OutputPath
+from clearance.cli.options import OutputPath, SortParamType
+from clearance.options import LENGTH
 
 
 @click.command()
@@ -18,7 +19,7 @@ from clearance.cli.options import LengthParamType, OutputPath
 @click.option("--outside", "mode", flag_value="outside", help="Least area that contains it.")
 @click.option("--inside", "mode", flag_value="inside", help="Largest area that stays clear of it.")
 @click.option(
-    "--margin-mm", type=LengthParamType(), default="0", help="Least gap to keep.  [default: 0]"
+    "--margin-mm", type=SortParamType(LENGTH), default="0", help="Least gap to keep.  [default: 0]"
 )
 @click.option(
     "--free", help="Dimensions to change, separated by commas.  [default: the driven ones]"

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import LengthParamType, OutputPath, motion_option
+from clearance.cli.options import OutputPath, SortParamType
+from clearance.options import LENGTH
+from clearance.run.options import MOTIONS
 
 
 @click.command()
@@ -21,10 +23,16 @@ from clearance.cli.options import LengthParamType, OutputPath, motion_option
 @click.option("--obstacles", help="These obstacles as well, separated by commas.")
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
 @click.option(
-    "--tolerance", type=LengthParamType(), help="[mm] How far it may exceed.  [default: 0.5]"
+    "--tolerance", type=SortParamType(LENGTH), help="[mm] How far it may exceed.  [default: 0.5]"
 )
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
-@motion_option()
+@click.option(
+    "--motion",
+    type=click.Choice(MOTIONS[:2]),
+    default=MOTIONS[0],
+    show_default=True,
+    help="Motion to sweep: the trajectory itself, or a simulated robot that follows it.",
+)
 @click.option(
     "--out",
     required=True,

@@ -13,7 +13,7 @@ import click
 from clearance.cli import ExitCode
 
 if TYPE_CHECKING:
-    from clearance.run import Question, Run
+    from clearance.run import CheckOptions, Question, Run
 
 NOMINAL = "the receipt proves the bound without tolerances; what these leave is not proven again"
 
@@ -50,7 +50,7 @@ def write_receipt_of(
     receipt: str | None,
     out: Path | None,
     case_file: Path,
-    beside: tuple[Path | None, tuple[Path, ...]],
+    options: CheckOptions,
     *,
     quiet: bool,
 ) -> None:
@@ -59,18 +59,18 @@ def write_receipt_of(
     The report is written before: whoever does not wait for the receipt keeps the answer.
 
     Args:
-        beside: the file of tolerances and those of waivers that were given beside the case.
+        options: of the run, which may name files beside the case.
     """
     if receipt is None or out is None:
         return
-    tolerance, waivers = beside
     from clearance.cli.progress import shown_progress
     from clearance.receipt.receipt_file import read_receipt
     from clearance.receipt.writing import write_receipt
 
+    tolerance, waivers = next(iter(options.files["tolerance"]), ""), options.files["waivers"]
     try:
         with shown_progress(quiet, ["receipt"]) as progress:
-            path = write_receipt(run, out, case_file, receipt, tolerance or "", progress, waivers)
+            path = write_receipt(run, out, case_file, receipt, tolerance, progress, waivers)
     except KeyboardInterrupt:
         click.echo(NO_RECEIPT.format(out), err=True)
         raise

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import LengthParamType, OutputPath
+from clearance.cli.options import OutputPath, SortParamType
+from clearance.options import LENGTH
 
 if TYPE_CHECKING:
     from clearance.record.workspace import Workspace
@@ -28,7 +29,7 @@ MOST_LINKS = 8
 )
 @click.option(
     "--within-mm",
-    type=LengthParamType(),
+    type=SortParamType(LENGTH),
     help="How coarse the pieces of the sweep are; smaller is tighter, slower.  [default: 5]",
 )
 @click.option(

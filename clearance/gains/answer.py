@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
-from typing import Unpack
+from typing import Any
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from clearance.gains.obstruction import (
 from clearance.gains.offsets import JointOffsets, joint_offsets
 from clearance.gains.paths_together import PathsTogether
 from clearance.gains.programme import Box
-from clearance.gains.request import Options, Request, request_of
+from clearance.gains.request import Request
 from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
@@ -45,6 +45,7 @@ from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove
+from clearance.options import made
 from clearance.run import Question, Run, answer
 from clearance.world.case import Case
 
@@ -107,24 +108,21 @@ class Gain:
         return {"waypoints": "rad", "timing": "s"}.get(self.request.kind, "m")
 
 
-def gain(
-    case: Case | str | PathLike[str], kind: str = "waypoints", **options: Unpack[Options]
-) -> Gain:
+def gain(case: Case | str | PathLike[str], kind: str = "waypoints", **options: Any) -> Gain:
     """The least change of a kind that was found to make every rule of a case hold, proven.
 
     Args:
         case: or the path of a case file.
         kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
             joints as they are; "timing": a robot begins later.
-        options: by name, each as `request.Options` says: margin, robot, obstacle, keep, keep_ends, most_delay,
-            within, turn, keep_tool, tool, tool_path, slow_down.
+        options: any of `request.Request`, by name, as `margin=0.003`, `robot="left"`.
 
     Raises:
         BadInput: what cannot be changed. UnknownRobot, UnknownObstacle, UnknownLink: with the nearest name.
     """
     from clearance.case.case_file import load_case
 
-    request = request_of(kind, options)
+    request = made(Request, options, kind=kind)
     if isinstance(case, Case):
         return gained(case, request)
     if not isinstance(case, str | PathLike):
@@ -233,7 +231,7 @@ def _starts(far: float, shift: Shift | ToolPathKept) -> Iterator[np.ndarray]:
 
 
 def _by_path(case: Case, request: Request) -> Gain:
-    changed = [_robot(case, name) for name in request.robots or (None,)]
+    changed = [_robot(case, name) for name in request.robot or (None,)]
     for i_robot in changed:
         require_within_limits(case.robots[i_robot])
         require_in_path(case.robots[i_robot], request.keep_tool)

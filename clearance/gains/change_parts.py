@@ -67,7 +67,7 @@ def joint_parts(gain: Gain) -> list[ChangePart]:
 def changed_robots(gain: Gain) -> list[PlacedRobot]:
     """The robots of the changed case that are changed."""
     robots = gain.case.robots
-    return [robots[index_of_robot(robots, name)] for name in gain.request.robots or (gain.who,)]
+    return [robots[index_of_robot(robots, name)] for name in gain.request.robot or (gain.who,)]
 
 
 def _joints(placed: PlacedRobot, change: np.ndarray, named: bool = False) -> list[ChangePart]:

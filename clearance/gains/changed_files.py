@@ -100,7 +100,7 @@ class _Files:
     def paths(self) -> None:
         """The tables of all paths that are changed, each of several with its robot's name."""
         robots = self.gain.case.robots
-        names = self.gain.request.robots or (self.gain.who,)
+        names = self.gain.request.robot or (self.gain.who,)
         for name in names:
             self.path(index_of_robot(robots, name), f"_{name}" if len(names) > 1 else "")
 

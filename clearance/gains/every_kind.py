@@ -12,7 +12,7 @@ from typing import Any
 
 from clearance.errors import BadInput, UnknownObstacle, UnknownRobot
 from clearance.gains.answer import Gain, gain
-from clearance.gains.request import OWN
+from clearance.gains.request import kinds_of
 from clearance.gains.sentences import bound_text, size_text
 from clearance.run import Question, answer
 from clearance.world.case import Case, PlacedRobot
@@ -40,26 +40,26 @@ class Trial:
         return self.gain is not None and self.gain.kept
 
 
-Robot = str | tuple[str, ...] | None
-"""Which robot, or which together; None for the only one."""
+Robots = tuple[str, ...]
+"""Which robot, or which together; none for the only one."""
 
 
-def trials_of(case: Case, robot: Robot) -> list[tuple[str, Robot]]:
+def trials_of(case: Case, robot: Robots) -> list[tuple[str, Robots]]:
     """Kinds, in order, and the robot that each is to change: all that it may be of, where none is named."""
-    found: list[tuple[str, Robot]] = []
+    found: list[tuple[str, Robots]] = []
     for kind in SUB_FOLDERS:
-        if kind == "obstacle" or robot is not None or len(case.robots) == 1:
+        if kind == "obstacle" or robot or len(case.robots) == 1:
             found.append((kind, robot))
             continue
-        found += [(kind, placed.robot.name) for placed in case.robots if _is_of(kind, placed)]
+        found += [(kind, (placed.robot.name,)) for placed in case.robots if _is_of(kind, placed)]
     return found
 
 
-def name_of(kind: str, robot: Robot, case: Case) -> str:
+def name_of(kind: str, robot: Robots, case: Case) -> str:
     """Of a kind, with its robot where there are several; a path below the folder of all."""
-    if kind == "obstacle" or not isinstance(robot, str) or len(case.robots) == 1:
+    if kind == "obstacle" or len(robot) != 1 or len(case.robots) == 1:
         return kind
-    return f"{kind}/{robot}"
+    return f"{kind}/{robot[0]}"
 
 
 def every_kind(
@@ -73,9 +73,9 @@ def every_kind(
     Raises:
         UnknownRobot, UnknownObstacle: with the nearest name.
     """
-    for kind, robot in trials_of(case, options.get("robot")):
-        own = {key: one for key, one in options.items() if kind in OWN.get(key, SUB_FOLDERS)}
-        if robot is not None and kind != "obstacle":
+    for kind, robot in trials_of(case, options.get("robot", ())):
+        own = {key: one for key, one in options.items() if kind in kinds_of(key)}
+        if robot and kind != "obstacle":
             own["robot"] = robot
         if not own.get("keep_tool") and own.get("tool_path") != "kept":
             own.pop("tool", None)

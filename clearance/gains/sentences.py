@@ -57,7 +57,7 @@ def _too_fast(gain: Gain) -> str:
     if not gain.joint_names:
         return ""
     robots = gain.before.record.case.robots
-    names = gain.request.robots or (gain.who,)
+    names = gain.request.robot or (gain.who,)
     told = [too_fast(robots[index_of_robot(robots, name)]) for name in names]
     return ", ".join(line for line in told if line)
 

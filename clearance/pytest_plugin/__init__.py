@@ -6,14 +6,19 @@ Nothing that measures is imported before a case is. Not for: what a case comes t
 
 from __future__ import annotations
 
+from argparse import ArgumentTypeError
 from collections.abc import Callable
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from clearance.errors import BadInput
+from clearance.options import SWITCH, Option, flag_of, options_in
 from clearance.pytest_plugin.assertion import assert_clear
+from clearance.run.options import CheckOptions
 
 if TYPE_CHECKING:
     from clearance.pytest_plugin.collected import CaseListFile
@@ -23,23 +28,52 @@ __all__ = ["assert_clear", "clearance_case"]
 
 SUFFIXES = (".clearance.yaml", ".clearance.yml")
 
-NEEDS = ("steps", "pairs", "limit", "minimum")
+PREFIX = "clearance_"
+"""Of an option among all of pytest's."""
+
+USUAL = {"need": "limit"}
+"""Defaults that are others here."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Adds the options."""
     group = parser.getgroup("clearance", "how close robots come to anything")
-    group.addoption(
-        "--clearance-need",
-        choices=NEEDS,
-        default="limit",
-        help="What is asked of each case, as --need of `clearance check`; default: limit",
-    )
+    for name, one in options_in(CheckOptions).items():
+        if one.said:
+            _add(group, name, one, USUAL.get(name, one.default))
     group.addoption(
         "--clearance-out",
         metavar="DIR",
         help="Write the report of each case into a folder of its own here",
     )
+
+
+def _add(group: pytest.OptionGroup, name: str, known: Option, default: Any) -> None:
+    """Adds an option of a check: `--clearance-` and what the command line calls it."""
+    flag, place = f"--clearance-{flag_of(name, known)}", f"{PREFIX}{name}"
+    if known.sort is SWITCH:
+        told = known.help.replace("%", "%%")
+        group.addoption(flag, dest=place, action="store_const", const=True, help=told)
+        if known.off:
+            off = f"--clearance-{known.off.replace('_', '-')}"
+            group.addoption(off, dest=place, action="store_const", const=False, help=told)
+        return
+    usual = "" if default in (None, ()) else f"  [default: {known.sort.shown(default)}]"
+    group.addoption(
+        flag,
+        dest=place,
+        action="append" if known.many else "store",
+        type=partial(_read, known),
+        metavar=known.sort.form,
+        help=f"{known.help}{usual}".replace("%", "%%"),
+    )
+
+
+def _read(known: Option, text: str) -> Any:
+    try:
+        return known.sort.read(text)
+    except BadInput as error:
+        raise ArgumentTypeError(str(error)) from None
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> CaseListFile | None:

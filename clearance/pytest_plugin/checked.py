@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from clearance.run import Run, check
+from clearance.options import options_in
+from clearance.pytest_plugin import PREFIX, USUAL
+from clearance.run import CheckOptions, Run, check
 
 
 def check_case(path: Path, config: pytest.Config) -> Run:
@@ -16,7 +18,9 @@ def check_case(path: Path, config: pytest.Config) -> Run:
     Raises:
         BadInput: with the file and the field.
     """
-    run = check(path, need=config.getoption("--clearance-need"))
+    given = {name: config.getoption(f"{PREFIX}{name}", None) for name in options_in(CheckOptions)}
+    said = {name: one for name, one in given.items() if one is not None}
+    run = check(path, **USUAL | said)
     folder = report_folder(path, config)
     if folder is not None:
         run.save(folder)

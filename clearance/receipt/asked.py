@@ -7,14 +7,13 @@ judged. Not for: answering (`run`).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
-from datetime import date
+from dataclasses import fields
 from typing import Any
 
 from clearance.errors import BadInput, BadSyntax, shown
 from clearance.receipt.case_data import require_covered
 from clearance.receipt.receipt_file import DAMAGED, REMEDY
-from clearance.run.question import Question, with_levels
+from clearance.run import CheckOptions, Question
 from clearance.world.case import Case
 
 OF_THE_CASE = ("levels", "accept", "unproven_ok")
@@ -44,13 +43,8 @@ def question_of(case: Case, asked: dict[str, Any]) -> Question:
     options = {name: value for name, value in asked.items() if name not in OF_THE_CASE}
     try:
         fail, warn = asked["levels"]
-        accept, today = tuple(asked["accept"]), options["today"]
-        case = replace(case, limits=with_levels(case.limits, fail, warn), accept=accept)
-        if case.tolerance is not None:
-            lenient = replace(case.tolerance, unproven_ok=asked["unproven_ok"])
-            case = replace(case, tolerance=lenient)
-        options["today"] = None if today is None else date.fromisoformat(today)
-        question = Question(case, **options)
+        own = {"accept": asked["accept"], "unproven_ok": asked["unproven_ok"]}
+        question = Question.of(case, CheckOptions(fail=fail, warn=warn, **own, **options))
     except (KeyError, TypeError, ValueError, AttributeError):
         raise BadSyntax(DAMAGED, valid=REMEDY) from None
     refuse_uncovered(question)

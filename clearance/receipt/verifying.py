@@ -40,7 +40,7 @@ from clearance.receipt.verification import (
 )
 from clearance.receipt.writing import claims_of
 from clearance.record.status import Status
-from clearance.run import Run, answer
+from clearance.run import CheckOptions, Run, answer
 from clearance.world.case import Case
 
 PASSING = {Status.CLEAR: "warn", Status.NEAR: "fail"}
@@ -172,8 +172,6 @@ def _cases(
 ) -> tuple[Case, Case]:
     """The case as it is in its own file, and with the files that were given beside it."""
     from clearance.case.case_file import load_case
-    from clearance.case.tolerance.tolerance_file import with_tolerance
-    from clearance.case.waiver_file import with_waivers
 
     head = receipt.head
     if isinstance(case, Case):
@@ -187,11 +185,11 @@ def _cases(
         told = f"{len(beside)} files of waivers, and the run had {len(head['waivers'])}"
         raise BadInput(told, valid="--waivers FILE for each")
     pairs = zip(head["waivers"], beside, strict=True)
-    given = with_waivers(own, [_path(place, way, one, "--waivers FILE") for way, one in pairs])
-    if tolerance is None and not head["tolerance"]:
-        return own, given
-    path = _path(place, head["tolerance"], tolerance, "--tolerance FILE")
-    return own, with_tolerance(given, path)
+    files = tuple(_path(place, way, one, "--waivers FILE") for way, one in pairs)
+    path = None
+    if tolerance is not None or head["tolerance"]:
+        path = _path(place, head["tolerance"], tolerance, "--tolerance FILE")
+    return own, CheckOptions(waivers=files, tolerance=path).apply(own)
 
 
 def _path(place: Path, way: str, given: str | PathLike[str] | None, valid: str) -> Path:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from clearance.errors import (
-    BadDimension,
     BadInput,
     BadTime,
     NothingToMeasure,
@@ -37,7 +36,7 @@ from clearance.world.notice import Notice
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.recording import Recording
 from clearance.world.robot import Robot
-from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
+from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level, ordered_warn
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver
@@ -69,15 +68,10 @@ class Limits:
     rounding: float = field(default=0.0, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.warn is None:
-            object.__setattr__(self, "warn", self.fail)
-        for name in ("fail", "warn"):
-            object.__setattr__(self, name, checked_level(getattr(self, name), name))
-        if self.warn < self.fail:
-            raise BadDimension(
-                f"the warn limit {self.warn:g} m is below the fail limit {self.fail:g} m",
-                valid="warn at or above fail",
-            )
+        fail = checked_level(self.fail, "fail")
+        warn = None if self.warn is None else checked_level(self.warn, "warn")
+        object.__setattr__(self, "fail", fail)
+        object.__setattr__(self, "warn", ordered_warn(fail, warn))
         require_own_names("rule", [rule.name for rule in self.rules])
         for rule in self.rules:
             rule.levels(self.fail)

@@ -109,17 +109,27 @@ class Rule(PairPattern):
             BadDimension: `warn` below `fail`.
         """
         fail = fail if self.fail is None else self.fail
-        warn = fail if self.warn is None else self.warn
-        if warn < fail:
-            raise BadDimension(
-                f"the warn limit {warn:g} m of rule {self.name!r} is below its fail limit {fail:g} m",
-                valid="warn at or above fail",
-            )
-        return fail, warn
+        return fail, ordered_warn(fail, self.warn, f" of rule {self.name!r}")
 
 
 def _any(names: Collection[str], pattern: str) -> bool:
     return any(matches(name, pattern) for name in names)
+
+
+def ordered_warn(fail: float, warn: float | None, whose: str = "") -> float:
+    """The warn limit [m]: the fail limit where none is given.
+
+    Raises:
+        BadDimension: it is below the fail limit.
+    """
+    if warn is None:
+        return fail
+    if warn < fail:
+        raise BadDimension(
+            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm{whose}",
+            valid="warn at or above fail",
+        )
+    return warn
 
 
 def checked_level(given: float, name: str) -> float:

@@ -32,7 +32,7 @@ from clearance.batch.answer import answer_of
 from clearance.batch.engine import LocalEngine
 from clearance.batch.item import Item
 from clearance.batch.keys import program
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, measure
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
@@ -81,7 +81,7 @@ def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Cases a second in a cell of the scenes, in this process."""
     manifest = scene_batch(folder / "rates", asked.scene, asked.cases)
     for certify, basis in ((False, "samples"), (True, "motion")):
-        items = items_of([str(manifest)], Changes(certify=certify))
+        items = items_of([str(manifest)], dict(certify=certify))
         times = chunk_times(items)
         what = f"{asked.scene}: cases a second, 1 core, {basis}"
         yield what + " (median)", 1.0 / median(times), "1/s", ">= 200"
@@ -91,7 +91,7 @@ def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
 def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Store and engine, and two workers against one, in the same cell."""
     manifest = scene_batch(folder / "workers", asked.scene, asked.cases)
-    items = items_of([str(manifest)], Changes())
+    items = items_of([str(manifest)])
     yield "store and engine a case", 1000.0 * overhead(folder / "over", items), "ms", "<= 1"
     costs: dict[int, list[tuple[float, float]]] = {1: [], 2: []}
     for k in range(TURNS):
@@ -147,7 +147,7 @@ def _spent(process: int) -> float:
 
 def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Memory over many cases, and the second run of the same manifest."""
-    items = items_of([str(cart_batch(folder / "many", asked.many))], Changes())
+    items = items_of([str(cart_batch(folder / "many", asked.many))])
     with local_workers(2) as engine:
         resident = _Resident(engine, len(items))
         _run(folder / "kept", items, engine, resident)
@@ -158,7 +158,7 @@ def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     yield "store a case", n_bytes / len(items), "bytes", ""
     for k in range(2):
         begun = time.process_time()
-        items = items_of([str(folder / "many" / "batch.yaml")], Changes())
+        items = items_of([str(folder / "many" / "batch.yaml")])
         outcome = Outcome(items)
         with open_store(folder / "kept") as store:
             run_batch(outcome, store, _here, _Unseen())

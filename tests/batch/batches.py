@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 from clearance.batch.answer import BatchAnswer, answer_of
 from clearance.batch.engine import LocalEngine
 from clearance.batch.listed import write_list
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
@@ -67,7 +67,7 @@ def run_here(
     manifest: Path, place: Path, *, strict: bool = False, engine=None, changes=None, **options
 ):
     """Runs a batch in this process and writes its answer; what was measured, and the answer."""
-    items, told = items_of([str(manifest)], changes or Changes()), Told()
+    items, told = items_of([str(manifest)], changes or {}), Told()
     outcome = Outcome(items)
     with open_store(place) as store:
         write_list(store, items)

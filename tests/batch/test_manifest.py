@@ -2,7 +2,7 @@
 
 import pytest
 
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.errors import BadInput, DuplicateName, MissingFile, MissingKey, UnknownKey
 from tests.batch.batches import CELL, write_cell
 
@@ -20,11 +20,11 @@ def written(folder, text):
 
 
 def names(arguments):
-    return [item.name for item in items_of(arguments, Changes())]
+    return [item.name for item in items_of(arguments)]
 
 
 def test_a_cell_times_trajectories_in_order_of_their_names(folder):
-    items = items_of([str(folder / "batch.yaml")], Changes())
+    items = items_of([str(folder / "batch.yaml")])
     assert [item.name for item in items] == ["t000", "t001", "t002"]
     assert [item.number for item in items] == [0, 1, 2]
     assert {item.file for item in items} == {str(folder / "cell.yaml")}
@@ -55,15 +55,11 @@ def test_manifests_and_case_files_go_together(folder):
 
 def test_options_of_the_manifest_and_of_the_command_line(folder):
     text = 'cell: cell.yaml\ntrajectories: "t*.csv"\nneed: minimum\nlimits: {fail: 0.1}\n'
-    options = items_of(written(folder, text), Changes(warn=0.4, accept=("units",)))[0].options
-    assert (options.need, options.fail, options.warn, options.certify) == (
-        "minimum",
-        0.1,
-        0.4,
-        True,
-    )
-    assert options.accept == ("units",)
-    assert not items_of(written(folder, text), Changes(certify=False))[0].options.certify
+    options = items_of(written(folder, text), dict(warn=0.4, accept=("units",)))[0].options
+    asked = options.asked
+    assert (asked.need, asked.fail, asked.warn, asked.certify) == ("minimum", 0.1, 0.4, True)
+    assert asked.accept == ("units",)
+    assert not items_of(written(folder, text), dict(certify=False))[0].options.asked.certify
 
 
 @pytest.mark.parametrize(
@@ -73,13 +69,13 @@ def test_options_of_the_manifest_and_of_the_command_line(folder):
         ("trajectories: t0.csv\n", MissingKey, "'cell' is missing"),
         ("cases: []\n", BadInput, "1 values are needed"),
         ("cell: cell.yaml\ntrajectorys: t.csv\n", UnknownKey, "'trajectories'"),
-        ("cell: c.yaml\ntrajectories: t.csv\nneed: pairs\n", BadInput, "batch.yaml: need"),
+        ("cell: c.yaml\ntrajectories: t.csv\nneed: all\n", BadInput, "batch.yaml: need: 'all'"),
         ('cell: cell.yaml\ntrajectories: "x*.csv"\n', MissingFile, "no file matches 'x*.csv'"),
         ("cases: a.yaml\nrobot: left\n", BadInput, "there is no cell"),
         (
             "cell: c.yaml\ntrajectories: t.csv\nsamples_only: true\ncertify_gap: 0.1\n",
             BadInput,
-            "samples_only proves nothing",
+            "batch.yaml: certify_gap says nothing with samples_only: true",
         ),
         (
             "cell: c.yaml\ntrajectories: t.csv\nread_as: {file: t.csv}\n",
@@ -90,7 +86,7 @@ def test_options_of_the_manifest_and_of_the_command_line(folder):
 )
 def test_a_manifest_that_is_none_is_refused_in_one_line(folder, text, fault, told):
     with pytest.raises(fault) as caught:
-        items_of(written(folder, text), Changes())
+        items_of(written(folder, text))
     assert told in str(caught.value) and "\n" not in str(caught.value)
 
 
@@ -116,14 +112,14 @@ def test_the_same_files_asked_about_in_two_ways_are_two_cases(folder):
     for name, text in others.items():
         (folder / f"{name}.yaml").write_text(f"name: {name}\n{usual}{text}")
     given = [str(folder / f"{name}.yaml") for name in ("usual", *others)]
-    items = items_of(given, Changes())
+    items = items_of(given)
     assert [item.name for item in items][::3] == ["t000", "limits/t000", "reading/t000"]
-    assert items[3].options.fail == 0.6 and items[0].options.fail is None
+    assert items[3].options.asked.fail == 0.6 and items[0].options.asked.fail is None
     (folder / "limits.yaml").write_text(f"{usual}{others['limits']}")
     with pytest.raises(DuplicateName, match=r"'t000': .*t000.csv, asked in two ways"):
-        items_of(given[:2], Changes())
+        items_of(given[:2])
 
 
 def test_a_gap_of_nothing_is_refused_and_not_taken_for_the_usual_one(folder):
-    with pytest.raises(BadInput, match="a gap of 0 m; a length above 0"):
-        items_of([str(folder / "batch.yaml")], Changes(certify_gap=0.0))
+    with pytest.raises(BadInput, match=r"certify_gap: 0\.0 is given; a length above 0"):
+        items_of([str(folder / "batch.yaml")], dict(certify_gap=0.0))

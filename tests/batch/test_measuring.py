@@ -6,7 +6,7 @@ import pytest
 
 from clearance.batch import measuring
 from clearance.batch.keys import program
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, TaskResult, measure
 from tests.batch.batches import write_cell
 
@@ -17,7 +17,7 @@ NEAREST = [0.5, 0.02, 0.2, 0.4, 0.01, 0.3, 0.25, 0.6, 0.1]
 def items(tmp_path):
     manifest = write_cell(tmp_path, NEAREST)
     (tmp_path / "t004.csv").write_text("time,rail\n0,0\n1,nothing\n")
-    return tuple(items_of([str(manifest)], Changes()))
+    return tuple(items_of([str(manifest)]))
 
 
 def done(items, seconds: float = 1e9) -> TaskResult:

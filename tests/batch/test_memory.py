@@ -9,7 +9,7 @@ import pytest
 
 from clearance.batch.answer import answer_of
 from clearance.batch.keys import key_of, program
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, TaskResult, measure
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
@@ -44,7 +44,7 @@ def most_held(folder, n):
     gc.collect()
     tracemalloc.start()
     try:
-        items = items_of([str(manifest)], Changes(certify=False))
+        items = items_of([str(manifest)], dict(certify=False))
         outcome = Outcome(items)
         with open_store(folder / "out") as store:
             run_batch(outcome, store, lambda n: nullcontext(SameForAll()), SilentWatch())

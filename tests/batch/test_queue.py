@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from clearance.batch.engine import LEAST, MOST, Queue
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from tests.batch.batches import write_cell
 
 
 @pytest.fixture
 def items(tmp_path: Path):
-    return items_of([str(write_cell(tmp_path, [0.5] * 500))], Changes())
+    return items_of([str(write_cell(tmp_path, [0.5] * 500))])
 
 
 def cut(queue, n_hands):

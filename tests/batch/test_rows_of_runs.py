@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import read_item
 from clearance.batch.rows import curve_of, row_of
 from clearance.record.row_status import status_counts
@@ -15,7 +15,7 @@ from tests.batch.batches import write_cell
 
 @pytest.mark.parametrize("certify", [False, True])
 def test_the_row_of_a_case_is_made_without_the_table_of_its_steps(tmp_path, certify):
-    (item,) = items_of([str(write_cell(tmp_path, [0.02]))], Changes(certify=certify))
+    (item,) = items_of([str(write_cell(tmp_path, [0.02]))], dict(certify=certify))
     run = answer(item.options.question(read_item(item).case))
     row = row_of(run)
     assert "steps" not in vars(run.record)

@@ -12,7 +12,7 @@ from clearance.batch import engine, file_hashes, rows
 from clearance.batch.engine import LocalEngine
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, measure
 from clearance.case.case_file import load_cell, with_trajectory_file
 from clearance.formats.schema.pose import TrajectoryFile
@@ -129,18 +129,18 @@ def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
 
 
 def test_the_key_is_of_all_that_decides_a_row(manifest):
-    item = items_of([str(manifest)], Changes())[0]
+    item = items_of([str(manifest)])[0]
     files = [("cell.yaml", "a"), ("t000.csv", "b")]
     key = key_of(item, files)
     assert key == key_of(item, files[::-1])
     assert key != key_of(item, [("cell.yaml", "a"), ("t000.csv", "c")])
     others = [
-        Changes(need="steps"),
-        Changes(certify=False),
-        Changes(certify_gap=0.001),
-        Changes(fail=0.1),
-        Changes(warn=0.5),
-        Changes(accept=("units",)),
+        dict(need="steps"),
+        dict(certify=False),
+        dict(certify_gap=0.001),
+        dict(fail=0.1),
+        dict(warn=0.5),
+        dict(accept=("units",)),
     ]
     keys = {key_of(items_of([str(manifest)], one)[0], files) for one in others}
     assert len(keys | {key}) == 7
@@ -151,7 +151,7 @@ def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
 
     def run_with(xyz: float, tolerance=own):
         own.write_text(f"obstacles: {{wall: {{xyz: {xyz}}}}}\n")
-        return run_here(manifest, tmp_path / "out", changes=Changes(tolerance=tolerance))
+        return run_here(manifest, tmp_path / "out", changes=dict(tolerance=tolerance))
 
     told, found = run_with(0.001)
     assert len(told.measured) == 5
@@ -168,7 +168,7 @@ def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
 def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):
     own = tmp_path / "t.yaml"
     own.write_text("obstacles: {wall: {xyz: 0.001}}\n")
-    item = items_of([str(manifest)], Changes(tolerance=own))[0]
+    item = items_of([str(manifest)], dict(tolerance=own))[0]
     own.write_text("obstacles: {wall: {xyz: 0.002}}\n")
     done = measure(Task((item,), 60.0, program(), "a batch"))
     assert not done.measured and "t.yaml: it was changed" in done.faults[0].text
@@ -190,7 +190,7 @@ def test_where_a_case_has_waivers_the_day_decides(manifest, tmp_path):
     (manifest.parent / "cell.yaml").write_text(CELL + "waivers: [waivers.yaml]\n")
 
     def run_on(day):
-        return run_here(manifest, tmp_path / "out", changes=Changes(today=date.fromisoformat(day)))
+        return run_here(manifest, tmp_path / "out", changes=dict(today=date.fromisoformat(day)))
 
     told, found = run_on("2027-03-31")
     assert len(told.measured) == 5 and statuses(found)["t002"] in ("clear", "near")
@@ -205,7 +205,7 @@ def test_a_cell_that_is_edited_while_the_batch_runs_is_not_taken_for_what_was_re
     manifest, tmp_path, monkeypatch
 ):
     monkeypatch.setattr(file_hashes, "RACY", 0)
-    first, second, *_ = items_of([str(manifest)], Changes())
+    first, second, *_ = items_of([str(manifest)])
     measure(Task((first,), 60.0, program(), "a batch"))
     cell = manifest.parent / "cell.yaml"
     cell.write_text(CELL.replace("fail: 0.05", "fail: 0.29"))
@@ -281,7 +281,7 @@ def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypa
 def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
     _, found = run_here(manifest, tmp_path / "out")
     assert set(column(found, "incomplete")) == {""}
-    _, least = run_here(manifest, tmp_path / "least", changes=Changes(need="minimum"))
+    _, least = run_here(manifest, tmp_path / "least", changes=dict(need="minimum"))
     assert all("need 'minimum'" in why for why in column(least, "incomplete"))
     monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
     _, cut = run_here(manifest, tmp_path / "cut")
@@ -307,7 +307,7 @@ def test_one_of_a_thousand_that_cannot_be_read_costs_no_other(tmp_path):
     nearest[::7] = 0.01
     manifest = write_cell(tmp_path / "in", nearest)
     (tmp_path / "in" / "t500.csv").write_text("time,rail\n0,0\n1,oops\n")
-    asked = Changes(need="limit", certify=False)
+    asked = dict(need="limit", certify=False)
     _, answer = run_here(manifest, tmp_path / "out", changes=asked)
     expected = {
         f"t{i:03d}": "violated" if one < 0.05 else "near" if one < 0.3 else "clear"

@@ -6,7 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from clearance.batch.listed import read_list
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.store import open_store
 from clearance.case.waiver_file import load_waivers
 from clearance.cli import run
@@ -159,12 +159,11 @@ def test_the_list_keeps_them(folder):
     (folder / "waivers.yaml").write_text(waiver() + waiver(case="t001"))
     batch("--quiet")
     given = load_waivers(folder / "waivers.yaml")
-    items = items_of(["batch.yaml"], Changes(today=date.fromisoformat(DAY), waivers=given))
+    items = items_of(["batch.yaml"], dict(today=date.fromisoformat(DAY), waivers=given))
     with open_store(folder / "store") as store:
         found = read_list(store)
     assert list(found) == list(items)
-    assert [one.options.waivers for one in found] == [one.options.waivers for one in items]
-    assert [len(one.options.waivers) for one in found] == [1, 2, 1]
+    assert [len(one.options.asked.waivers) for one in found] == [1, 2, 1]
 
 
 def test_mistakes_are_one_line(folder, capsys):

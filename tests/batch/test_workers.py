@@ -6,7 +6,7 @@ import pytest
 
 from clearance.batch import workers
 from clearance.batch.engine import Queue
-from clearance.batch.manifest import Changes, items_of
+from clearance.batch.manifest import items_of
 from clearance.batch.measuring import measure
 from clearance.batch.workers import DEATHS, local_workers
 from clearance.errors import Incomplete
@@ -19,7 +19,7 @@ N_CASES = 20
 
 @pytest.fixture
 def items(tmp_path):
-    return items_of([str(write_cell(tmp_path, [0.5] * N_CASES))], Changes())
+    return items_of([str(write_cell(tmp_path, [0.5] * N_CASES))])
 
 
 def measure_or_die(task):

@@ -50,7 +50,11 @@ FAULTS = [
     ),
     (changed("robot: {urdf: arm.urdf}", "robot:"), BadInput, "robot: nothing is given"),
     (changed("file: path.csv", "file: 7"), BadInput, "trajectory.file: 7 is given"),
-    (changed("warn: 0.02", "warn: 0.002"), BadInput, "limits: warn 0.002 is below fail 0.005"),
+    (
+        changed("warn: 0.02", "warn: 0.002"),
+        BadDimension,
+        "limits: the warn limit 2 mm is below the fail limit 5 mm; warn at or above fail",
+    ),
     (changed("fail: 0.005", "fail: -0.005"), BadInput, "limits.fail: -0.005 is given"),
     (changed("fail: 0.005", "fail: .nan"), NotFinite, "limits.fail: nan is given"),
     (changed("fail: 0.005", "fail: .inf"), NotFinite, "limits.fail: inf is given"),

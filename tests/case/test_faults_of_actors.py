@@ -201,13 +201,13 @@ FAULTS = [
     (("fail: 0.001, from", "from"), BadInput, "limits.rules[0]: neither fail nor warn is given"),
     (
         ("fail: 0.001", "fail: 0.001, warn: 0.0001"),
-        BadInput,
-        "limits.rules[0]: warn 0.0001 is below fail 0.001",
+        BadDimension,
+        "limits.rules[0]: the warn limit 0.1 mm is below the fail limit 1 mm of rule 'at the fixture'",
     ),
     (
         ("warn: 0.03", "warn: 0.003"),
         BadDimension,
-        "limits.rules[1]: the warn limit 0.003 m of rule",
+        "limits: the warn limit 3 mm is below the fail limit 5 mm of rule 'workpiece - *'",
     ),
     (("fail: 0.001", "fail: -0.001"), BadInput, "limits.rules[0].fail: -0.001 is given"),
     (

@@ -215,9 +215,15 @@ def test_its_page_has_both_curves(tmp_path):
     assert '"name": "as asked"' in page and "<h2>As driven</h2>" in page
 
 
-@pytest.mark.parametrize("given", [{"motion": "recorded"}, {"recorded": "run.csv"}])
-def test_a_recording_and_the_motion_go_together(tmp_path, given):
-    with pytest.raises(BadInput, match="motion 'recorded' and recorded: the file"):
+@pytest.mark.parametrize(
+    "given, told",
+    [
+        ({"motion": "recorded"}, "recorded: nothing is given; motion 'recorded' needs the file"),
+        ({"recorded": "run.csv"}, "recorded says nothing without motion='recorded'"),
+    ],
+)
+def test_a_recording_and_the_motion_go_together(tmp_path, given, told):
+    with pytest.raises(BadInput, match=told):
         cl.check(case(tmp_path), **given)
 
 
@@ -229,7 +235,7 @@ def test_on_the_command_line(tmp_path, capsys):
     assert code == 0 and "recorded    as asked " in told
     assert "run.csv is off by at most (99 % of samples): shoulder 0.0393 rad (0.0393 rad)" in told
     for wrong, says in (
-        ([file, "--motion", "recorded"], "--motion recorded needs the run"),
+        ([file, "--motion", "recorded"], "RUN: nothing is given; motion 'recorded' needs the file"),
         ([file, own], "says nothing without --motion recorded"),
         ([file, "--recorded-offset", "1"], "--recorded-offset says nothing"),
         ([file, "--motion", "recorded", own, "--recorded-robot", "amr"], "there is no one robot 'amr'"),

@@ -150,8 +150,14 @@ def test_view_writes_the_page_of_one_case_and_links_it(folder, capsys):
         (["batch.yaml", "--out", "cell.yaml"], "cell.yaml: is a file"),
         (["batch.yaml", "--out", "."], "is a folder of something else"),
         (["batch.yaml", "--out", "store", "--shard", "3/2"], "'3/2' is no part"),
-        (["batch.yaml", "--out", "store", "--samples-only", "--certify-mm", "1"], "proves nothing"),
-        (["batch.yaml", "--out", "store", "--warn-mm", "-1"], "'-1' is not a length"),
+        (
+            ["batch.yaml", "--out", "store", "--samples-only", "--certify-mm", "1"],
+            "says nothing with --samples-only",
+        ),
+        (
+            ["batch.yaml", "--out", "store", "--warn-mm", "-1"],
+            "'-1' is given; a length, 0 or more [mm]",
+        ),
         (["batch.yaml", "--out", "store", "--scheduler", "x"], "leave it out with --scheduler"),
     ],
 )

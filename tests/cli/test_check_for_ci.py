@@ -59,7 +59,7 @@ def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, capsys
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--today", "1.4.2027"], "is no day, as 2027-03-31"),
+        (["--today", "1.4.2027"], "'1.4.2027' is given; a day, as 2027-03-31"),
         (["--waivers", "no.yaml"], "there is no file"),
         (["--baseline", "no"], "there is no file"),
         (["--baseline", "waivers.yaml"], "not JSON"),

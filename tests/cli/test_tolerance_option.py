@@ -63,7 +63,7 @@ def test_what_is_refused(case_file, tmp_path, capsys, text, told):
 
 def test_there_is_nothing_to_be_lenient_with(case_file, capsys):
     code, said = checked(capsys, case_file, "--unproven-ok")
-    assert code == 2 and "--unproven-ok says nothing without tolerances" in said.err
+    assert code == 2 and "--unproven-ok: the case has no tolerances" in said.err
 
 
 def test_the_file_is_not_written_over(case_file, tmp_path, capsys):

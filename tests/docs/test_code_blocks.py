@@ -15,10 +15,10 @@ import click
 import pytest
 from ruamel.yaml import YAML
 
+from clearance.batch.manifest_file import manifest_of
 from clearance.case.waiver_file import load_waivers
 from clearance.cli.commands import clearance
 from clearance.formats.schema.case import Case
-from clearance.formats.schema.manifest import Manifest
 from clearance.formats.schema.tolerance import Tolerance
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
@@ -138,7 +138,7 @@ def test_case_files_keep_to_the_schema(block: CodeBlock, tmp_path):
     elif {"robot", "robots"} & content.keys():
         Case.model_validate(content)
     elif {"cases", "cell"} & content.keys():
-        Manifest.model_validate(content)
+        manifest_of(content, tmp_path / "batch.yaml")
     else:
         assert set(content) <= {*Case.model_fields, "jobs", "cases", "repos"}
 

@@ -173,12 +173,12 @@ def test_what_is_refused(fault, kind, how):
 @pytest.mark.parametrize(
     "kind, how, told",
     [
-        ("waypoints", {"keep": [1]}, "is to be kept"),
-        ("waypoints", {"keep": [("a", "b")]}, "is to be kept"),
-        ("waypoints", {"keep_tool": 5}, "keep_tool"),
+        ("waypoints", {"keep": [1]}, "keep: 1 is given; start and end of a stretch"),
+        ("waypoints", {"keep": [("a", "b")]}, "start and end of a stretch"),
+        ("waypoints", {"keep_tool": 5}, "keep_tool: 5 is given; a list"),
         ("waypoints", {"keep_ends": "no"}, "True or False"),
-        ("base", {"margin": "a"}, "a number"),
-        ("base", {"margin": None}, "a number"),
+        ("base", {"margin": "a"}, "margin: 'a' is given; a length, 0 or more"),
+        ("base", {"margin": None}, "a length"),
         ("base", {"robot": 3}, "a name"),
         ("base", {"turn": 3}, "'x', 'y', 'z' or a Turn"),
         ("base", {"tool": 3, "tool_path": "kept"}, "a name"),

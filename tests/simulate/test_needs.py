@@ -200,7 +200,7 @@ def test_how_long_the_first_look_searches_changes_nothing(
 def test_needs_that_do_not_go_together_are_refused() -> None:
     case = cl.load_case(SCENES / "box_box" / "case.yaml")
     for asked, told in [
-        ({"need": "all"}, "unknown need 'all'"),
+        ({"need": "all"}, "need: 'all' is given; one of steps, pairs"),
         ({"need": "limit", "cross_check": True}, "cross-check needs every step"),
         ({"need": "pairs", "method": "paper"}, "method 'paper' measures every step"),
     ]:

@@ -54,7 +54,6 @@ class Rule(PairRow):
     def _says_something(self) -> Rule:
         if self.fail is None and self.warn is None:
             raise BadInput("neither fail nor warn is given", valid="one of them, or both")
-        _require_order(self.fail, self.warn)
         return self
 
 
@@ -67,13 +66,3 @@ class Limits(StrictModel):
     warn: Level | None = None
     joints: Literal["warn", "fail"] = "warn"
     rules: list[Rule] = []
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Limits:
-        _require_order(self.fail, self.warn)
-        return self
-
-
-def _require_order(fail: float | None, warn: float | None) -> None:
-    if fail is not None and warn is not None and warn < fail:
-        raise BadInput(f"warn {warn:g} is below fail {fail:g}", valid="warn is at least fail")

@@ -12,6 +12,9 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 import clearance
+from clearance.gains.request import Request
+from clearance.options import Option, flag_of, options_in
+from clearance.run import CheckOptions
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -44,6 +47,26 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
     config.nav.append({"Python reference": list(_reference_pages())})
     config.nav.append({"Design notes": [{_title(page): page} for page in _design_notes()]})
     return config
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """A page with the table of options in place of each mark `<!-- options of NAME -->`."""
+    for name, kind in (("check", CheckOptions), ("gain", Request)):
+        markdown = markdown.replace(f"<!-- options of {name} -->", option_table(kind))
+    return markdown
+
+
+def option_table(kind: type) -> str:
+    """The options of a dataclass: name, spelling on the command line, help and default."""
+    rows = (_option_row(name, one) for name, one in options_in(kind).items())
+    return "\n".join(["| option | command line | meaning |", "|---|---|---|", *rows])
+
+
+def _option_row(name: str, one: Option) -> str:
+    flags = [flag_of(name, one), *([one.off.replace("_", "-")] if one.off else [])]
+    spelled = ", ".join(f"`--{flag}`" for flag in flags) if one.said else "Python only"
+    usual = "" if one.default in (None, (), False) else f" Default: `{one.default!r}`."
+    return f"| `{name}` | {spelled} | {one.help}{usual} |"
 
 
 def _title(page: str) -> str:

@@ -164,17 +164,17 @@ def waivers(path: Path) -> object:
 
 
 def manifest(path: Path) -> object:
-    from clearance.formats.schema.manifest import load_manifest
+    from clearance.batch.manifest_file import load_manifest
 
     return load_manifest(path)
 
 
 def batch_items(path: Path) -> object:
-    from clearance.batch.manifest import Changes, items_of
+    from clearance.batch.manifest import items_of
 
     for name in ("case.yaml", "cell.yaml", "a.csv"):
         (path.parent / name).write_bytes(CASE)
-    return items_of([str(path)], Changes())
+    return items_of([str(path)])
 
 
 def case_list(path: Path) -> object:

@@ -319,4 +319,4 @@ def test_new_takes_columns_and_writes_what_they_are(tmp_path, monkeypatch, capsy
     assert made.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
     capsys.readouterr()
     assert run([*words, "time=,shoulder"]) == 2
-    assert "is not a list of columns such as time,elbow=q3" in capsys.readouterr().err
+    assert "'time=,shoulder' is given; columns such as time,elbow=q3" in capsys.readouterr().err
