@@ -13,7 +13,6 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from clearance.errors import BadInput, MissingKey, at
 from clearance.formats.files.input_files import read_bytes
-
 from clearance.formats.schema.pose import TrajectoryFile
 from clearance.formats.schema.strict_model import Name, StrictModel, validated
 from clearance.formats.text.yaml_file import parse_yaml
