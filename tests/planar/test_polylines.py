@@ -122,16 +122,6 @@ def test_outlines_of_108_594_vertices(noise):
     assert within(a, b, found.distance) and not within(a, b, 0.999 * found.distance)
 
 
-@pytest.mark.parametrize("turn", [1, -1])
-def test_long_polylines_that_coincide(turn):
-    many = outline(20_011, 2e-3)
-    a, b = Curve.polyline(many), Curve.polyline(many[::turn])
-    found = hausdorff(a, b)
-    assert found.distance <= 1e-15 * a.size and found.tally.intervals < 100
-    moved = hausdorff(a, Curve.polyline(many[::turn] + [1e-9, 0.0]))
-    assert 0.0 < moved.distance <= 1e-9 + moved.error_bound and moved.tally.given_up == 0
-
-
 def slot(n):
     """A rounded slot of lines and arcs, and the closed polyline of `n` vertices on it."""
     parts = [

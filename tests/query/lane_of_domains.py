@@ -1,4 +1,4 @@
-"""A small question to each domain of kernels, for processes with other compiler settings (`test_domain_lanes`).
+"""A small question to each domain of kernels, for processes with other compiler settings (`test_lanes`).
 
 `python tests/query/lane_of_domains.py DOMAIN …` prints the answers as JSON, every bit of them: floats are
 hexadecimal. The questions are as small as they can be and still come to the kernels: what takes time is to
@@ -14,7 +14,13 @@ import numpy as np
 
 import clearance as cl
 from tests.made_cases import arm, at, dented, flying
-from tests.query.lane import body_pairs, out_of_bounds_is_seen, reported
+from tests.query.lane import (
+    answers_without_rules,
+    body_answers,
+    body_pairs,
+    out_of_bounds_is_seen,
+    reported,
+)
 
 
 def search() -> list:
@@ -69,6 +75,11 @@ def hausdorff() -> list:
     return found
 
 
+def rules() -> dict:
+    """Answers about boxes, and those without each pruning rule."""
+    return {"all": body_answers(12), "without": answers_without_rules(12)}
+
+
 DOMAINS = {one.__name__: one for one in (search, sweep, certify, polytope, hausdorff)}
 
 
@@ -95,7 +106,8 @@ def _bits(value: object) -> object:
 def main(domains: list[str]) -> None:
     """Prints the answers of the domains that are named."""
     np.seterr(all="ignore")
-    found = {"bounds": out_of_bounds_is_seen()} | {name: DOMAINS[name]() for name in domains}
+    asked = DOMAINS | {"rules": rules}
+    found = {"bounds": out_of_bounds_is_seen()} | {name: asked[name]() for name in domains}
     print(json.dumps(found))
 
 

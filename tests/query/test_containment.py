@@ -92,10 +92,6 @@ def test_the_inside_of_a_cavity_is_outside():
     assert distance(hollow, cube(0.25), pose_b=at(1.5, 0.0, 0.0)).contact
 
 
-def test_an_open_box_holds_nothing():
-    assert not distance(Polyhedron(CUBE_CORNERS, BOX_FACES[1:]), cube(0.5)).contact
-
-
 def test_both_poses_are_taken_exactly():
     """Far from the origin the motion between the bodies is not a float; `contained` does not round it."""
     random = np.random.default_rng(31)

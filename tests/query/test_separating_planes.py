@@ -14,12 +14,6 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.search.front import (
-    forget_front,
-    is_worth_separating,
-    no_fronts,
-    note_separating_planes,
-)
 from clearance.kernels.search.scratch import new_scratch
 from clearance.kernels.search.separating_planes import separate
 from clearance.kernels.search.support import high_corner, top_of
@@ -169,25 +163,3 @@ def test_hulls_as_far_apart_as_their_bodies_are_separated(
     assert (
         out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)
     ) == are_separated
-
-
-def sought(founds, asked):
-    """Fills (n,) whether planes are sought, where each search that seeks them finds them as said."""
-    fronts = no_fronts(1, 0)
-    fronts.spans[0, 1] = 1000
-    for i in range(len(founds)):
-        asked[i] = is_worth_separating(fronts, 0)
-        if asked[i]:
-            note_separating_planes(fronts, 0, founds[i], 1)
-    forget_front(fronts, 0)
-    asked[-1] = is_worth_separating(fronts, 0)
-
-
-def test_what_was_not_found_is_sought_less_and_less_often() -> None:
-    founds, asked = np.zeros(40, dtype=np.bool_), np.zeros(40, dtype=np.bool_)
-    sought(founds, asked)
-    assert np.flatnonzero(asked).tolist() == [0, 2, 6, 14, 30]
-    founds[6:] = True
-    sought(founds, asked)
-    assert asked[6:-1].all()
-    assert not asked[-1]  # a short front is gone on from

@@ -191,7 +191,7 @@ def is_at_most(bound, distance_sq):
 
 
 @pytest.mark.slow
-@examples(60)
+@examples(25)
 @example(0, "far", "needles", 1e5, True)
 @example(1, "no area", "no area", 1.0, False)
 @given(
@@ -225,7 +225,7 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(
             assert is_at_most(found.faces[f, g], truth[f][g])
 
 
-@examples(120)
+@examples(50)
 @example(0, "far", "needles", 1e5, 0.0)
 @example(1, "tiny", "far", 1e-7, 4e-7)
 @given(
@@ -283,7 +283,7 @@ def test_edges_that_cross_are_told_apart_across_both():
     assert found.faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
-@examples(100)
+@examples(40)
 @given(
     st.integers(0, 2**32 - 1),
     st.sampled_from(KINDS),
@@ -304,7 +304,7 @@ def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
         assert moved_sq <= Fraction(bound) ** 2
 
 
-@examples(20)
+@examples(10)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS[:5]), st.sampled_from(KINDS[:5]),
     st.sampled_from([0.0, 1e-3, 0.1, 3.0]), st.sampled_from(["minimum", "limit"]),

@@ -54,7 +54,7 @@ def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
     return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))), world_from_base=base)
 
 
-@examples(150)
+@examples(60)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
 def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     rng = np.random.default_rng(seed)
@@ -111,7 +111,7 @@ def test_the_bound_is_not_idle():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("need", ["minimum", "limit"])
-@pytest.mark.parametrize("name", ["box_box", "box_pipe", "panda_shelf"])
+@pytest.mark.parametrize("name", ["box_pipe"])
 def test_a_finer_motion_takes_few_more_looks(name, need):
     """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one.
 

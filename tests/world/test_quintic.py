@@ -89,14 +89,6 @@ def test_accelerations_at_rest_bend_a_path_that_its_points_do_not_show():
     assert right.max() == pytest.approx(0.1, abs=1e-15)
 
 
-def test_a_cubic_needs_no_more_samples():
-    times = np.array([0.0, 0.5, 2.0])
-    cubic = np.polynomial.Polynomial([0.1, -0.3, 0.2, 0.4])
-    columns = [one(times)[:, None] for one in (cubic, cubic.deriv(), cubic.deriv(2))]
-    found = with_accelerations(Trajectory(times, ("j",), *columns[:2]), columns[2])
-    assert found.times.tolist() == times.tolist()
-
-
 @pytest.mark.parametrize(("size", "fault"), [(1e30, BadShape), (1e200, BadDimension)])
 def test_accelerations_that_no_joint_has_are_refused(size, fault):
     path = Trajectory(np.array([0.0, 1.0]), ("j",), np.zeros((2, 1)), np.zeros((2, 1)))

@@ -89,16 +89,6 @@ def test_a_part_that_changes_hands_does_not_jump():
                     assert np.allclose(*ends, rtol=0.0, atol=1e-9)
 
 
-def test_one_robot_alone_keeps_its_own_arrays():
-    case = cell(3)
-    alone = replace(case, robots=(case.robots[0],), obstacles=(case.obstacles[0],), carries=())
-    motion = kinematic_motion(alone.robots[0])
-    line = timeline_of(alone, [motion])
-    assert len(line.phases) == 1
-    assert line.motions[0] is motion
-    assert line.phases[0].case is alone
-
-
 def test_what_is_absent_and_all_on_it_is_gone_before_and_after():
     case = cell(5)
     door = case.obstacles[1]
