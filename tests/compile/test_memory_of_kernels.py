@@ -33,17 +33,6 @@ def test_a_result_outlives_the_next_call_and_nothing_is_left_taken():
     assert mark() == before
 
 
-def test_pieces_are_aligned_and_do_not_overlap():
-    sizes = [1, 63, 64, 65, 0, FIRST_CHUNK - 200, 1, 8 * FIRST_CHUNK, 7]
-    taken = [(take(size), size) for size in sizes]
-    for i, (place, size) in enumerate(taken):
-        assert place % 64 == 0
-        ctypes.memset(place, i, size)
-    for i, (place, size) in enumerate(taken):
-        assert ctypes.string_at(place, size) == bytes([i]) * size
-    free_memory()
-
-
 def test_what_was_taken_since_a_mark_is_given_back_over_several_chunks():
     free_memory()
     kept = take(100)

@@ -254,7 +254,7 @@ def curve_of(control):
         return Curve.polyline([[0, 0], [1, 0]])
 
 
-@examples(80)
+@examples(40)
 @given(points, points, points)
 def test_axioms_of_a_metric(one, two, three):
     a, b, c = curve_of(one), curve_of(two), curve_of(three)

@@ -60,7 +60,7 @@ def test_vertex_count_sweep_by_hand(n):
 vertices = st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=2, max_size=12)
 
 
-@examples(150)
+@examples(80)
 @given(vertices, vertices, st.booleans())
 def test_the_quick_way_agrees_with_the_general_one(one, two, near):
     if near:  # the same vertices almost: bisectors, overlap and ties

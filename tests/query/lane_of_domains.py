@@ -40,7 +40,7 @@ def certify() -> list:
     """The proof for the motion between the steps, of the arm and of a body that turns and flies."""
     found = []
     for case in (_two_links(), _flight()):
-        proof = cl.check(case, certify=True).record.certificate
+        proof = cl.answer(cl.Question(case, certify_gap=2e-2, contact="none")).record.certificate
         found.append([_bits(x) for x in (*proof.lower_bound, *proof.upper_bound, *proof.share)])
     return found
 
@@ -91,10 +91,13 @@ def _two_links() -> cl.Case:
 
 
 def _flight() -> cl.Case:
-    positions = np.linspace([-0.4, 0.0, 0.02, 0.0, 0.0, 0.0], [0.4, 0.05, 0.0, 0.5, 1.0, 0.3], 5)
+    positions = np.linspace([-0.1, 0.0, 0.02, 0.0, 0.0, 0.0], [0.1, 0.05, 0.0, 0.5, 1.0, 0.3], 5)
     bar = cl.box((0.3, 0.02, 0.02))
     return flying(
-        "flight", bar, [(cl.pipe(inner_radius=0.2, outer_radius=0.25, length=0.1), at())], positions
+        "flight",
+        bar,
+        [(cl.pipe(inner_radius=0.3, outer_radius=0.35, length=0.1, sections=12), at())],
+        positions,
     )
 
 

@@ -54,7 +54,7 @@ def posed(vertices, pose):
 
 
 @given(points(), RADII, boxes(), poses(), poses())
-@examples(100)
+@examples(60)
 def test_like_the_oracle(given_points, radius, solid, pose_a, pose_b):
     cloud = PointCloud(given_points, radius)
     near = distance(cloud, Polyhedron(*solid), pose_a=pose_a, pose_b=pose_b)

@@ -15,7 +15,7 @@ from clearance.kernels.search.containment import contained
 from clearance.kernels.search.scratch import new_scratch
 from tests import oracle
 from tests.examples import examples, first_fast
-from tests.made_cases import torus
+from tests.made_cases import at, torus
 from tests.strategies import BOX_FACES, CUBE_CORNERS, QUARTER_TURNS, poses, rotations
 
 OCTAHEDRON = np.array(
@@ -32,12 +32,6 @@ def is_contained(a, b, pose_a, pose_b):
 
 def cube(half):
     return Polyhedron(CUBE_CORNERS * half, BOX_FACES)
-
-
-def at(x, y, z):
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
 
 
 @pytest.mark.parametrize("turn", first_fast(QUARTER_TURNS, 6))

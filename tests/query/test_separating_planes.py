@@ -102,11 +102,11 @@ def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind_b", SHAPES)
-@pytest.mark.parametrize("kind_a", ["ball", "dented", "box", "pipe"])
+@pytest.mark.parametrize("kind_a", ["dented", "pipe"])
 def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> None:
     random = np.random.default_rng([*map(ord, kind_a + kind_b)])
     a, b = SHAPES[kind_a](random), SHAPES[kind_b](random)
-    n = 40
+    n = 25
     places = random.normal(size=(n, 3))
     places *= (
         random.choice([1.2, 1.8, 2.2, 2.5, 4.0], (n, 1)) / np.linalg.norm(places, axis=1)[:, None]
@@ -123,7 +123,7 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
     separate_all(surface_of(a), surface_of(b), poses, points, limits, out, waiting)
     for i, near in enumerate(truths):
         floor, beyond, margin = out[i]
-        if i < 4:
+        if i < 2:
             exact = oracle.polyhedron_distance_sq(
                 a.vertices, faces_of(a), b.vertices, faces_of(b), None, poses[i]
             )

@@ -153,18 +153,6 @@ def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, le
     assert (moved <= ways_in(surface_of(body), scene.world, positions)).all()
 
 
-def test_the_bound_by_columns_is_not_idle():
-    """About an axis across the farthest corner, all in one column, to first order."""
-    links = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, np.eye(4)))
-    speck = cl.box((1e-6, 1e-6, 1e-6)).transformed(at(1.0))
-    turn = 0.01
-    positions = np.array(
-        [[0, 0, 0, 0, 0, 0, 1.0], [0, 0, 0, 0, 0, np.sin(turn / 2), np.cos(turn / 2)]]
-    )
-    scene = Scene(links, [speck], [4], np.empty((0, 2), np.int64), positions)
-    assert ways_in(surface_of(speck), scene.world, positions)[1] == pytest.approx(turn, rel=0.01)
-
-
 def bound_about(surface, links, link, balls, middle):
     place_by_link(links, middle.positions, middle.poses)
     pose, box = rigid(middle.poses[link]), box_of(surface, 0)

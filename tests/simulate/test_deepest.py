@@ -7,13 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.world.rules import Rule
-from tests.made_cases import flying
-
-
-def at(x: float, y: float = 0.0) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:2, 3] = x, y
-    return pose
+from tests.made_cases import at, flying
 
 
 def block(name: str, pose: np.ndarray, **more) -> cl.Obstacle:

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-import clearance as cl
 from clearance.compile.declared import Floats, Floats2
 from clearance.compile.decorators import inline, kernel
 from clearance.geometry.polyhedron import Polyhedron
@@ -244,33 +243,6 @@ def test_no_bound_of_two_bodies_is_above_the_exact_distance(seed, kind_a, kind_b
     assert is_at_most(by_balls, truth)
     assert is_at_most(by_boxes, truth)
     assert by_boxes >= by_balls
-
-
-def test_balls_are_enough_over_a_board():
-    """A small body high over a large flat one: what its ball takes from the bound is its own size."""
-    board, small = cl.box((10.0, 10.0, 0.1)), cl.box((0.2, 0.2, 0.2))
-    over = np.eye(4)
-    over[:3, 3] = 4.0, -3.0, 2.15
-    poses = np.array([np.eye(4), over])
-    surface, world = (
-        join([board, small]),
-        standing_world(poses),
-    )
-    assert body_bound_of(surface, world, 1.8) == pytest.approx(2.1 - 0.1 * 3**0.5, abs=1e-4)
-    assert body_bound_of(surface, world, 1.95) == pytest.approx(2.0, abs=1e-4)
-
-
-def test_bounds_are_not_idle():
-    """Two lone triangles along the line of sight: the bounds come near the distance."""
-    random = np.random.default_rng(2)
-    a, b = triangles(random, 3, "flat"), triangles(random, 3, "flat")
-    above = np.eye(4)
-    above[2, 3] = 5.0
-    one, two = surface_of(a), surface_of(b)
-    found = new_bounds(one, two)
-    fill_bounds(one, two, np.eye(4), above, np.array([0.0, 0.0, 1.0]), np.inf, found)
-    for bounds in (found.boxes, found.in_sight, found.of_a, found.of_b, found.faces):
-        assert bounds.min() == pytest.approx(5.0, rel=1e-5)
 
 
 def test_edges_that_cross_are_told_apart_across_both():

@@ -96,19 +96,6 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
     assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
 
 
-def test_the_bound_is_not_idle():
-    """One joint that turns the body about an axis through it, seen to first order; and one that slides it."""
-    for kind, arm in (("revolute", np.hypot(0.15, 0.05)), ("prismatic", 1.0)):
-        joint = Joint("j", JointKind(kind), "a", "b", np.eye(4), np.array([0.0, 0.0, 1.0]))
-        placed = PlacedRobot(
-            Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0)))
-        )
-        bound = ways(
-            surface_of(SHAPE), np.array([1]), links_of([placed]), np.array([[0.0], [0.01]])
-        )
-        assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("need", ["minimum", "limit"])
 @pytest.mark.parametrize("name", ["box_pipe"])

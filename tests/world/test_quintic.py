@@ -48,7 +48,7 @@ def asked(seed, n_steps=4):
     return Trajectory(times, ("j",), positions, velocities), accelerations
 
 
-@examples(40)
+@examples(20)
 @given(st.integers(0, 2**32 - 1))
 def test_the_cubics_are_as_near_to_the_quintics_as_they_say(seed):
     given_path, accelerations = asked(seed)

@@ -23,7 +23,7 @@ def by_sines(p, q, s):
     return (np.sin((1 - s) * angle) * p + np.sin(s * angle) * q) / np.sin(angle)
 
 
-@examples(200)
+@examples(100)
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0))
 def test_equal_to_the_arc_of_sines(seed, share):
     random = np.random.default_rng(seed)
