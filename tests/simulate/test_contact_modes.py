@@ -8,8 +8,8 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
+from clearance.simulate.answers.contact import contacts as contact_work
 from clearance.simulate.answers.contact import events as contact_events
-from clearance.simulate.answers.contact import work as contact_work
 from clearance.simulate.answers.contact.events import events_of, rated_places
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
