@@ -1,15 +1,13 @@
 """Two batches held against each other, case by case: what is new, worse, better, gone or not comparable.
 
 Each case's findings are compared as those of two runs are (`findings.comparison`); beside them stand cases that
-only one of the batches has, and cases without an answer. Not for: how it is shown (`cli.batch_comparison`).
+only one of the batches has, and cases without an answer. Not for: how it is shown (`report.comparison`).
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -23,62 +21,10 @@ from clearance.batch.rows import ERROR
 from clearance.batch.store_files import FINDINGS, is_store, require_no_older
 from clearance.batch.tables import written_answer
 from clearance.errors import BadInput, Incomplete
-from clearance.findings.comparison import Comparison, FindingChange, compared
+from clearance.findings.comparison import BatchComparison, ComparedCase, compared
 from clearance.findings.doubts import Doubt
 from clearance.findings.finding import AppliedWaiver, Finding
 from clearance.findings.findings_file import FindingList, conditions_in
-
-
-@dataclass(frozen=True)
-class ComparedCase:
-    """A case of one or both of two batches.
-
-    Attributes:
-        comparison: of its findings; None where one of the two has no answer of it.
-        why: then, what became of it, one line.
-        alarms: then, whether it fails as it was not known to do, or is not known any more.
-    """
-
-    name: str
-    comparison: Comparison | None = None
-    why: str = ""
-    alarms: bool = False
-
-    @property
-    def passed(self) -> bool:
-        """True if nothing of it alarms."""
-        return self.comparison.passed if self.comparison is not None else not self.alarms
-
-
-@dataclass(frozen=True, eq=False)
-class BatchComparison:
-    """Two batches held against each other.
-
-    Attributes:
-        cases: in the order of now, then those that only before has.
-        stale: what is wrong now with waivers that cases share, and was not before, one line each.
-    """
-
-    cases: tuple[ComparedCase, ...]
-    stale: tuple[str, ...] = ()
-
-    @cached_property
-    def counts(self) -> dict[str, int]:
-        """How many findings there are of each change, of all cases."""
-        found: Counter[str] = Counter()
-        for one in self.cases:
-            found.update(one.comparison.counts if one.comparison is not None else {})
-        return {str(change): found[change] for change in FindingChange if found[change]}
-
-    @property
-    def failing(self) -> tuple[ComparedCase, ...]:
-        """The cases that alarm, or of which less is known."""
-        return tuple(one for one in self.cases if not one.passed)
-
-    @property
-    def passed(self) -> bool:
-        """True if nothing alarms, and as much is known as before."""
-        return not (self.failing or self.stale)
 
 
 def require_answer(place: Path) -> BatchAnswer:

@@ -6,20 +6,12 @@ Numbers go as columns, curves as one byte a number, and only the rows that are i
 
 from __future__ import annotations
 
-import json
-import re
 from pathlib import Path
-from string import Template
 
-from markupsafe import escape
-
-from clearance import __version__
 from clearance.batch.answer import BASES, BatchAnswer
 from clearance.batch.page_data import page_data
 from clearance.record.wording import count
-from clearance.report.head import head_of
-
-_HERE = Path(__file__).parent
+from clearance.report.rendering import render
 
 
 def page_of(answer: BatchAnswer, place: Path) -> str:
@@ -28,28 +20,20 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     Args:
         place: the store's folder; a case whose own page lies in it is linked.
     """
-    data = json.dumps(page_data(answer, place), allow_nan=False)
-    return Template(_own("page.html")).substitute(
-        head=head_of(
-            f"{place.name}: {_counted(answer)}",
-            _own("page.css"),
-        ),
-        name=escape(place.name),
-        verdict=escape(_counted(answer)),
+    return render(
+        "batch.html",
+        title=f"{place.name}: {_counted(answer)}",
+        name=place.name,
+        verdict=_counted(answer),
         worst=answer.status.split()[0],
-        basis=escape("; ".join([_basis(answer), *answer.stale])),
-        version=escape(__version__),
-        data=data.replace("<", "\\u003c"),
-        script=re.sub(r"</(?=script)", r"<\\/", _own("page.js"), flags=re.IGNORECASE),
+        basis="; ".join([_basis(answer), *answer.stale]),
+        data=page_data(answer, place),
     )
 
 
 def unfinished_page(name: str, text: str) -> str:
     """The page of a batch that has no answer yet."""
-    head = head_of(f"{name}: not finished")
-    return Template(_own("unfinished.html")).substitute(
-        head=head, name=escape(name), text=escape(text), version=escape(__version__)
-    )
+    return render("batch_unfinished.html", title=f"{name}: not finished", name=name, text=text)
 
 
 def _counted(answer: BatchAnswer) -> str:
@@ -63,7 +47,3 @@ def _basis(answer: BatchAnswer) -> str:
         if n:
             parts.append(f"{n:,} {what}")
     return ", ".join(parts)
-
-
-def _own(name: str) -> str:
-    return (_HERE / name).read_text(encoding="utf-8")

@@ -88,7 +88,7 @@ def _run(
 
 def _print_since(baseline: Path, store: Store) -> None:
     from clearance.batch.compared import compared_batches
-    from clearance.cli.batch_comparison import print_batch_comparison
+    from clearance.report.comparison import print_batch_comparison
 
     print_batch_comparison(compared_batches(baseline, store.place))
 

@@ -109,7 +109,7 @@ def _answer(
     if printed.has_words:
         outputs.print_written(notes)
         if comparison is not None:
-            from clearance.cli.comparison import print_comparison
+            from clearance.report.comparison import print_comparison
 
             print_comparison(comparison)
     outputs.tell_builds(run, comparison, to_stderr=printed.as_json)
@@ -162,7 +162,7 @@ def _passes(question: Question) -> list[str]:
 
 def _print(run: Run, out: Path | None, printed: PrintedOutput) -> None:
     if printed.as_json:
-        from clearance.report.output import json_text
+        from clearance.report.summary import json_text
 
         click.echo(json_text(run.summary), nl=False)
     elif not printed.quiet:

@@ -165,7 +165,7 @@ class Outputs:
         if self.junit is not None:
             from clearance.report.junit_cases import write_run_junit
 
-            write_run_junit(run.report_data, self.junit)
+            write_run_junit(run.report, self.junit)
         self._write_still(run)
         if self.trajectory is None:
             return []
@@ -205,7 +205,7 @@ class Outputs:
         from clearance.files import write_file
         from clearance.report.markdown import markdown
 
-        text = markdown(run.record, run.verdict, run.findings, comparison)
+        text = markdown(run.report, comparison)
         if self.summary is not None:
             write_file(self.summary, text.encode("utf-8"))
         if self.github:
@@ -228,5 +228,5 @@ def _annotate(run: Run, to_stderr: bool) -> None:
     from clearance.report.annotations import annotation_lines
 
     root = Path(os.environ.get(ROOT_VARIABLE) or os.curdir)
-    for line in annotation_lines(run.record, run.verdict, run.findings, root):
+    for line in annotation_lines(run.report, root):
         click.echo(line, err=to_stderr)

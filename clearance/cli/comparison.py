@@ -16,44 +16,6 @@ from clearance.cli.options import OutputPath
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
 
-MOST_ROWS = 20
-"""Most findings told in a terminal."""
-
-
-def print_comparison(comparison: Comparison) -> None:
-    """What became of the findings, on stdout."""
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    from clearance.report.comparison_text import (
-        HEADS,
-        comparison_cells,
-        comparison_text,
-        doubt_lines,
-    )
-
-    console = Console()
-    console = console if console.is_terminal else Console(width=160)
-    console.print(Text(f"  {comparison_text(comparison)}"), soft_wrap=True)
-    lines = doubt_lines(comparison)
-    for line in lines[:MOST_ROWS]:
-        console.print(Text(f"  {line}"), soft_wrap=True)
-    if len(lines) > MOST_ROWS:
-        console.print(Text(f"  and {len(lines) - MOST_ROWS} more lines"))
-    table = Table(box=None, pad_edge=False, padding=(0, 2))
-    for i, head in enumerate(HEADS):
-        shown = head if i else f"  {head}"
-        table.add_column(shown, justify="right" if head.endswith("mm") else "left")
-    rows = [row for row in comparison.rows if str(row.change) != "unchanged"]
-    for row in rows[:MOST_ROWS]:
-        change, *cells = comparison_cells(row)
-        table.add_row(Text(f"  {change}"), *(Text(cell) for cell in cells))
-    if rows:
-        console.print(table)
-    if len(rows) > MOST_ROWS:
-        console.print(Text(f"  and {len(rows) - MOST_ROWS} more"))
-
 
 @click.command()
 @click.argument("before", metavar="A", type=click.Path(path_type=Path))
@@ -81,6 +43,8 @@ def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     if out is not None:
         _write(comparison, before, now, out)
     if not quiet:
+        from clearance.report.comparison import print_comparison
+
         print_comparison(comparison)
     return ExitCode.CLEAR if comparison.passed else ExitCode.VIOLATED
 
@@ -101,7 +65,7 @@ def _are_stores(before: Path, now: Path) -> bool:
 
 def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     from clearance.batch.compared import compared_batches
-    from clearance.cli.batch_comparison import print_batch_comparison
+    from clearance.report.comparison import print_batch_comparison
 
     if out is not None:
         raise click.UsageError(
@@ -115,7 +79,7 @@ def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> 
 
 def _write(comparison: Comparison, before: Path, now: Path, out: Path) -> None:
     from clearance.cli.places import refuse_inputs, require_folder_place
-    from clearance.report.comparison_page import FILE_NAME, write_comparison
+    from clearance.report.comparison import FILE_NAME, write_comparison
     from clearance.report.output import OWN
 
     require_folder_place(out)

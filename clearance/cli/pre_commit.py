@@ -67,5 +67,7 @@ def _why(run: Run) -> list[str]:
 
     broken = [finding_line(finding) for finding in run.findings if finding.fails]
     more = [f"and {len(broken) - MOST} more"] if len(broken) > MOST else []
-    doubts = [doubt_text(doubt) for doubt in doubts_of(run.record, run.waived) if doubt.fails]
+    doubts = [
+        doubt_text(doubt) for doubt in doubts_of(run.record, run.report.waived) if doubt.fails
+    ]
     return [*broken[:MOST], *more, *doubts]

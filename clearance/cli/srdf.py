@@ -68,8 +68,8 @@ def audit(
     """
     from clearance.cli.progress import shown_progress
     from clearance.formats.robot.srdf import load_srdf
-    from clearance.report.output import json_text
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
+    from clearance.report.summary import json_text
     from clearance.simulate.answers.audit.srdf import audit as audited
 
     robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)

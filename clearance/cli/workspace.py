@@ -85,7 +85,7 @@ def workspace(
 
 def _print(found: Workspace, out: Path | None, as_json: bool) -> None:
     if as_json:
-        from clearance.report.output import json_text
+        from clearance.report.summary import json_text
         from clearance.report.workspace import workspace_summary
 
         click.echo(json_text(workspace_summary(found)), nl=False)

@@ -1,7 +1,8 @@
 """A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
-Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`compared_doubts`),
-files (`findings_file`), nor how it is shown (`report.findings`).
+Findings are matched by kind, rule, bodies and occurrence. A run that finds nothing has not passed by that: its
+input may be suspect, or less may have been looked at than before. So what stands beside findings is compared too.
+Not for: files (`findings_file`), nor how it is shown (`report.comparison`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from clearance.findings.compared_doubts import (
-    ComparedDoubt,
-    doubts_compared,
-    known_less,
-    slack_text,
-)
+from clearance.findings.doubts import NOT_CHECKED, WARNING, Doubt
 from clearance.findings.finding import OF_TOLERANCES, ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measurement_conditions import MeasurementConditions
@@ -25,6 +21,9 @@ from clearance.record.status import Status
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
+
+MOST_NAMED = 3
+"""Pairs that are named of those that are not measured any more."""
 
 _ALIKE = frozenset({"steps", "pairs", "limit"})
 """What can be asked for without a change of what is found."""
@@ -70,6 +69,25 @@ class ComparedFinding:
 
 
 @dataclass(frozen=True)
+class ComparedDoubt:
+    """A doubt of one or both of two runs.
+
+    Attributes:
+        before, now: whether each has it.
+    """
+
+    doubt: Doubt
+    before: bool
+    now: bool
+
+    @property
+    def alarms(self) -> bool:
+        """True if it is new and no mere note: nobody has accepted it, and it was not known before."""
+        alarming = self.doubt.fails or self.doubt.kind in (NOT_CHECKED, WARNING)
+        return self.now and not self.before and alarming
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Two runs held against each other.
 
@@ -98,6 +116,58 @@ class Comparison:
         """True if nothing alarms, and as much is known as before."""
         alarms = any(row.alarms for row in self.rows) or any(one.alarms for one in self.doubts)
         return not (alarms or self.less)
+
+
+@dataclass(frozen=True)
+class ComparedCase:
+    """A case of one or both of two batches.
+
+    Attributes:
+        comparison: of its findings; None where one of the two has no answer of it.
+        why: then, what became of it, one line.
+        alarms: then, whether it fails as it was not known to do, or is not known any more.
+    """
+
+    name: str
+    comparison: Comparison | None = None
+    why: str = ""
+    alarms: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing of it alarms."""
+        return self.comparison.passed if self.comparison is not None else not self.alarms
+
+
+@dataclass(frozen=True, eq=False)
+class BatchComparison:
+    """Two batches held against each other.
+
+    Attributes:
+        cases: in the order of now, then those that only before has.
+        stale: what is wrong now with waivers that cases share, and was not before, one line each.
+    """
+
+    cases: tuple[ComparedCase, ...]
+    stale: tuple[str, ...] = ()
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """How many findings there are of each change, of all cases."""
+        found: Counter[str] = Counter()
+        for one in self.cases:
+            found.update(one.comparison.counts if one.comparison is not None else {})
+        return {str(change): found[change] for change in FindingChange if found[change]}
+
+    @property
+    def failing(self) -> tuple[ComparedCase, ...]:
+        """The cases that alarm, or of which less is known."""
+        return tuple(one for one in self.cases if not one.passed)
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing alarms, and as much is known as before."""
+        return not (self.failing or self.stale)
 
 
 def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:
@@ -252,3 +322,63 @@ def _key(finding: Finding) -> _Key:
     if finding.kind in (PROFILE, TOLERANCES):
         bodies = ()
     return finding.kind, finding.rule, bodies, finding.occurrence
+
+
+def doubts_compared(before: FindingList, now: FindingList) -> tuple[ComparedDoubt, ...]:
+    """The doubts of both, compared by their words: those that alarm first, then those of now, then the others."""
+    known = {one: None for one in (*now.doubts, *before.doubts)}
+    rows = [ComparedDoubt(one, one in before.doubts, one in now.doubts) for one in known]
+    return tuple(sorted(rows, key=lambda row: (not row.alarms, not row.now)))
+
+
+def known_less(before: FindingList, now: FindingList) -> tuple[str, ...]:
+    """What is not known of now as it was before, one line each: the proof, its method, clocks, pairs, findings."""
+    old, new = before.measured, now.measured
+    return tuple([*_proven_less(old, new), *_measured_less(old, new), *_listed_less(before, now)])
+
+
+def _proven_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    if (old.basis, new.basis) == ("motion", "samples"):
+        yield "the motion was proven, and only the samples are looked at"
+    if old.basis != "pose" == new.basis:
+        yield "a motion was checked, and now only a single pose is"
+    if (old.method, new.method) == ("exact", "paper"):
+        yield "the method was exact, and is paper, without guarantee"
+    if _slack(new) < _slack(old):
+        yield f"clock slack was {slack_text(old)}, and is {slack_text(new)}: other clocks are not covered"
+
+
+def _measured_less(old: MeasurementConditions, new: MeasurementConditions) -> Iterator[str]:
+    """Pairs that were measured and are left out, for some time at least."""
+    known = {tuple(sorted(pair)) for block in old.unmeasured for pair in block}
+    lost = [
+        f"{a} - {b}"
+        for block in new.unmeasured
+        for a, b in block
+        if tuple(sorted((a, b))) not in known
+        and (old.has_body(a) if b == "*" else old.has_pair(a, b))
+    ]
+    if lost:
+        more = f" and {len(lost) - MOST_NAMED} more" if len(lost) > MOST_NAMED else ""
+        yield f"not measured as before: {', '.join(lost[:MOST_NAMED])}{more}"
+
+
+def _listed_less(before: FindingList, now: FindingList) -> Iterator[str]:
+    """That findings may be missing, where they were not; a run that passes is missing none that fails it."""
+    if not any(finding.fails for finding in now.findings):
+        return
+    if now.incomplete and not before.incomplete:
+        yield f"findings may be missing: {now.incomplete}"
+    if now.not_listed > before.not_listed:
+        yield f"{now.not_listed:,} findings are not listed"
+
+
+def _slack(conditions: MeasurementConditions) -> float:
+    """[s]"""
+    return float("inf") if conditions.clock_slack == "not tied" else float(conditions.clock_slack)
+
+
+def slack_text(conditions: MeasurementConditions) -> str:
+    """How far clocks may be apart."""
+    slack = conditions.clock_slack
+    return slack if isinstance(slack, str) else f"{slack:g} s"

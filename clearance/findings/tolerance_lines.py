@@ -1,4 +1,4 @@
-"""What tolerances leave, a sentence a rule. Not for: which errors take most (`report.tolerances`)."""
+"""What tolerances leave, a sentence a rule. Not for: which errors take most (`report.topics.tolerances`)."""
 
 from __future__ import annotations
 

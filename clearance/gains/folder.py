@@ -19,7 +19,7 @@ from clearance.gains.changed_files import case_files
 from clearance.gains.page import page_of
 from clearance.record.moment import Moment
 from clearance.report.output import OWN as OF_REPORT
-from clearance.report.output import json_text
+from clearance.report.summary import json_text
 from clearance.run import Run
 
 FIGURES, PAGE = "gain.json", "gain.html"

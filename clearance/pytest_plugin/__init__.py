@@ -1,7 +1,7 @@
 """Cases as tests of pytest: `*.clearance.yaml` is collected, one test a rule, and a fixture checks a case by path.
 
 Nothing that measures is imported before a case is. Not for: what a case comes to (`run`), nor JUnit of a check
-(`report.junit`).
+(`report.junit_cases`).
 """
 
 from __future__ import annotations

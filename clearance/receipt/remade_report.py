@@ -15,7 +15,7 @@ from clearance.errors import BadInput, BadSyntax, MissingFile, shown
 from clearance.package_digest import package_digest
 from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
 from clearance.report.output import CONTENT
-from clearance.report.provenance import versions
+from clearance.report.topics.provenance import versions
 from clearance.report.withdrawn import OLDER_SUMMARY
 from clearance.run import Run
 

@@ -1,6 +1,6 @@
 """What decides every row of a run, as one fingerprint: two runs that agree in it give the same bytes.
 
-Not for: provenance that people read (`report.provenance`).
+Not for: provenance that people read (`report.topics.provenance`).
 """
 
 from __future__ import annotations

@@ -8,32 +8,35 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import finding_line
 from clearance.findings.verdict import ACCEPTED, POSE, SAMPLES, Verdict
+from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.record.record import Record
-from clearance.report.trajectory_row import row_of
+from clearance.report.model import ReportModel
+from clearance.world.case import PlacedRobot
 
 MOST = 10
 """Annotations of a step that GitHub shows."""
 
 
-def annotation_lines(
-    record: Record, verdict: Verdict, findings: tuple[Finding, ...], root: Path
-) -> Iterator[str]:
+def annotation_lines(model: ReportModel, root: Path) -> Iterator[str]:
     """At most `MOST` lines, the worst first: what no pair does, findings that fail, then what limits a verdict
     that passes: warnings, waivers, and that only the samples were looked at.
 
     Args:
         root: the folder that paths are told from, that of the repository.
     """
-    title = {"title": f"clearance: {record.case.name}"}
+    title = {"title": f"clearance: {model.record.case.name}"}
     lines = [
-        *(command("error", title, text) for text in _of_verdict(verdict)),
-        *_of_findings(record, findings, root),
-        *(command("warning", title, text) for text in _beside(verdict)),
+        *(command("error", title, text) for text in _of_verdict(model.verdict)),
+        *_of_findings(model.record, model.findings, root),
+        *(command("warning", title, text) for text in _beside(model.verdict)),
     ]
     yield from lines[:MOST]
 
@@ -85,3 +88,39 @@ def _in_message(text: str) -> str:
 
 def _in_property(text: str) -> str:
     return _in_message(text).replace(":", "%3A").replace(",", "%2C")
+
+
+@dataclass(frozen=True)
+class TrajectoryRow:
+    """A row of a trajectory file; `line` counts from 1, and is None where the file is no table."""
+
+    path: str
+    line: int | None
+
+
+def row_of(record: Record, finding: Finding) -> TrajectoryRow | None:
+    """The row at or before the moment of a finding, in the file of the robot that it is of, or of the first one
+    that has one; None where no trajectory is from a file."""
+    own = [placed for placed in record.case.robots if placed.trajectory_path]
+    if not own or finding.time is None:
+        return None
+    placed = next((one for one in own if _is_of(record, one, finding)), own[0])
+    sample = sample_at(placed, finding.time)
+    return TrajectoryRow(placed.trajectory_path, line_of_sample(placed.trajectory_path, sample))
+
+
+def _is_of(record: Record, placed: PlacedRobot, finding: Finding) -> bool:
+    before = record.case.prefix_of(placed)
+    links = {before + link for link in placed.robot.link_names}
+    return bool(links & {finding.body_a, finding.body_b})
+
+
+def sample_at(placed: PlacedRobot, time: float) -> int:
+    """The last sample of a robot's table at or before a time of the run [s]; the first before all of them."""
+    times, timing = placed.given_trajectory.times, placed.timing
+    own = (time - timing.start) * timing.rate
+    span = float(times[-1] - times[0])
+    if timing.after == "loop" and span > 0.0 and own > times[-1]:
+        own = float(times[0]) + (own - float(times[0])) % span
+    rounding = 1e-9 * max(1.0, abs(own))
+    return max(0, int(np.searchsorted(times, own + rounding, side="right")) - 1)

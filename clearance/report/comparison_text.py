@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from clearance.findings.compared_doubts import ComparedDoubt
-from clearance.findings.comparison import ComparedFinding, Comparison
+from clearance.findings.comparison import ComparedDoubt, ComparedFinding, Comparison
 from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import bodies_text
 from clearance.record.wording import mm
-from clearance.report.rules import name_shown
+from clearance.report.moment import name_shown
 
 HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", "why")
 """What `comparison_cells` are."""

@@ -69,7 +69,7 @@ def write_junit(
     """
     kept = _that_fit(results)
     n_left_out = len(results) - len(kept)
-    told = properties | ({LEFT_OUT: str(n_left_out)} if n_left_out else {})
+    told = dict(properties) | ({LEFT_OUT: str(n_left_out)} if n_left_out else {})
     with written_file(path) as file:
         for part in _parts(suite, kept, told):
             file.write(part.encode())

@@ -35,10 +35,10 @@ from clearance.record.wording import (
     step_text,
 )
 from clearance.report.junit import TestResult, write_junit
-from clearance.report.pair_judge import PairJudge
-from clearance.report.report_data import ReportData
-from clearance.report.rules import name_shown
-from clearance.report.summary import certified_of
+from clearance.report.model import ReportModel
+from clearance.report.moment import name_shown
+from clearance.report.topics.certainty import certified_of
+from clearance.report.topics.pairs import PairJudge
 from clearance.world.notice import Severity
 from clearance.world.rules import DEFAULT
 
@@ -48,7 +48,7 @@ LIMIT = "LimitViolated"
 """The kind of failure that a clearance below its fail limit is."""
 
 
-def write_run_junit(data: ReportData, path: Path) -> None:
+def write_run_junit(model: ReportModel, path: Path) -> None:
     """Writes one test case for the verdict, and one for each thing that can fail by itself.
 
     What is waived is skipped, with who waives it and why.
@@ -56,7 +56,7 @@ def write_run_junit(data: ReportData, path: Path) -> None:
     Raises:
         Unwritable: the file cannot be written; an older one is left as it was.
     """
-    write_junit(data.record.case.name, [*results_of(data)], path, _properties(data.verdict))
+    write_junit(model.record.case.name, [*results_of(model)], path, _properties(model.verdict))
 
 
 def _properties(verdict: Verdict) -> dict[str, str]:
@@ -70,14 +70,14 @@ def _properties(verdict: Verdict) -> dict[str, str]:
     return told | ({"clocks": verdict.clocks} if verdict.clocks else {})
 
 
-def results_of(data: ReportData) -> Iterator[TestResult]:
+def results_of(model: ReportModel) -> Iterator[TestResult]:
     """All cases; that of the verdict, which comes first, fails exactly where the run is not passed."""
-    record, judgement = data.record, data.judgement
-    yield _of_verdict(record, data.verdict)
+    record, judgement = model.record, model.judgement
+    yield _of_verdict(record, model.verdict)
     yield from _of_waivers(judgement)
-    yield from _of_rules(data)
-    yield from _of_pairs(data)
-    yield from _of_budget(data)
+    yield from _of_rules(model)
+    yield from _of_pairs(model)
+    yield from _of_budget(model)
     for pair in record.unmeasured:
         yield TestResult(pair.link, f"{pair.link} - {pair.obstacle}", pair.reason, skipped=True)
     yield _of_certificate(record, judgement)
@@ -104,10 +104,10 @@ def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
         yield TestResult("waiver", str(use.waiver), use.fault or use.waiver.reason, fault)
 
 
-def _of_rules(data: ReportData) -> Iterator[TestResult]:
+def _of_rules(model: ReportModel) -> Iterator[TestResult]:
     """One case for each rule where there are any: it fails by its worst moment, or if its limit is not proven."""
-    record, judgement = data.record, data.judgement
-    limits, worst_of = record.case.limits, judgement.worst_of or data.details.worst
+    record, judgement = model.record, model.judgement
+    limits, worst_of = record.case.limits, judgement.worst_of or model.details.worst
     if not limits.rules:
         return
     for i, name in enumerate(limits.rule_names):
@@ -125,15 +125,15 @@ def _is_violated(answer: RuleAnswer) -> bool:
     return code_of(answer) >= VIOLATED
 
 
-def _of_pairs(data: ReportData) -> Iterator[TestResult]:
+def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
     """One case for each finding that is not clear, and for each pair without one, by each rule that judges it."""
     told = set()
-    for finding in data.judgement.findings:
+    for finding in model.judgement.findings:
         if finding.status != Status.CLEAR:
             told.add((finding.body_a, finding.body_b, finding.rule))
             yield _of_finding(finding)
-    judge = PairJudge.of(data.record)
-    for minimum in data.details.minima:
+    judge = PairJudge.of(model.record)
+    for minimum in model.details.minima:
         if (minimum.link, minimum.obstacle, minimum.rule) not in told:
             yield _of_minimum(judge, minimum)
 
@@ -153,9 +153,9 @@ def _of_finding(finding: Finding) -> TestResult:
     return TestResult(group, name, f"{near}{least}{text}", LIMIT if finding.broken else "")
 
 
-def _of_budget(data: ReportData) -> Iterator[TestResult]:
+def _of_budget(model: ReportModel) -> Iterator[TestResult]:
     """One case for each rule that is kept without tolerances: whether it is proven to be with them."""
-    record, judgement, found = data.record, data.judgement, data.of_tolerances
+    record, judgement, found = model.record, model.judgement, model.of_tolerances
     yield from map(_of_finding, found)
     broken = {answer.name for answer in judgement.judging if _is_violated(answer)}
     told = broken | {finding.rule for finding in found}

@@ -13,10 +13,11 @@ from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
 from clearance.findings.finding_text import bodies_text, finding_line, waived_text, when_text
 from clearance.findings.verdict import Verdict
-from clearance.record.record import Record
-from clearance.record.wording import count, limit_mm, mm
+from clearance.record.wording import count
 from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
-from clearance.report.rules import name_shown
+from clearance.report.model import ReportModel
+from clearance.report.moment import name_shown
+from clearance.report.topics.findings import figures, rows_of_now
 
 MOST_ROWS = 50
 """Most findings in the table."""
@@ -33,28 +34,26 @@ def plain(text: str) -> str:
     return _LINK_OR_LIST.sub(lambda sign: f"&#{ord(sign[0])};", shown.translate(_SIGNS))
 
 
-def markdown(
-    record: Record,
-    verdict: Verdict,
-    findings: Sequence[Finding],
-    comparison: Comparison | None = None,
-) -> str:
+def markdown(model: ReportModel, comparison: Comparison | None = None) -> str:
     """The verdict, why, and the findings that are not clear; with what became of them since a baseline."""
-    lines = [f"### {plain(record.case.name)}: {plain(verdict.text(str.upper))}", ""]
-    lines += [f"- {plain(text)}" for text in _told(verdict)]
+    verdict, findings = model.verdict, model.findings
+    told = [*_told(verdict)]
     if comparison is not None:
-        lines += [f"- {plain(comparison_text(comparison))}"]
-        lines += [f"- {plain(text)}" for text in doubt_lines(comparison)[:MOST_ROWS]]
-        lines += [f"- {plain(gone_text(row))}" for row in comparison.rows if row.now is None][
-            :MOST_ROWS
+        gone = [gone_text(row) for row in comparison.rows if row.now is None]
+        told += [
+            comparison_text(comparison),
+            *doubt_lines(comparison)[:MOST_ROWS],
+            *gone[:MOST_ROWS],
         ]
     shown = [finding for finding in findings if finding.status != "clear"]
+    if not shown:
+        told += [f"kept: {finding_line(finding)}" for finding in findings[:MOST_ROWS]]
+    lines = [f"### {plain(model.record.case.name)}: {plain(verdict.text(str.upper))}", ""]
+    lines += [f"- {plain(text)}" for text in told]
     if shown:
         lines += ["", *_table(shown[:MOST_ROWS], comparison)]
     if len(shown) > MOST_ROWS:
         lines += ["", f"{count(len(shown) - MOST_ROWS, 'more finding')}."]
-    if not shown:
-        lines += [f"- kept: {plain(finding_line(finding))}" for finding in findings[:MOST_ROWS]]
     return "\n".join([*lines, ""]) + "\n"
 
 
@@ -68,37 +67,24 @@ def _told(verdict: Verdict) -> list[str]:
     return [*told, *verdict.scope]
 
 
+HEADS = (
+    "status", "rule", "between", "least, mm", "fail, mm", "certified, mm", "when", "waived"
+)  # fmt: skip
+
+
 def _table(findings: Sequence[Finding], comparison: Comparison | None) -> list[str]:
-    since = (
-        {} if comparison is None else {row.finding.id: row for row in comparison.rows if row.now}
-    )
-    heads = [
-        "status",
-        "rule",
-        "between",
-        "least, mm",
-        "fail, mm",
-        "certified, mm",
-        "when",
-        "waived",
-    ]
-    heads += ["since baseline"] if comparison else []
+    since = rows_of_now(comparison)
+    heads = [*HEADS, *(["since baseline"] if comparison else [])]
     rows = [heads, ["---"] * len(heads)]
     for one in findings:
         cells = [
             f"{one.status}, waived" if one.waived else one.status,
             name_shown(one.rule),
             bodies_text(one) or one.text or one.kind,
-            _mm(one.clearance),
-            limit_mm(one.fail),
-            _mm(one.proven),
+            *figures(one),
             when_text(one),
             waived_text(one),
+            *([since_text(since.get(one.id))] if comparison else []),
         ]
-        cells += [since_text(since.get(one.id))] if comparison else []
         rows.append([plain(cell) for cell in cells])
     return [f"| {' | '.join(row)} |" for row in rows]
-
-
-def _mm(value: float | None) -> str:
-    return "" if value is None else mm(value)

@@ -8,8 +8,8 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from clearance.report.model import ReportModel
 from clearance.report.moveit_moments import moments_of
-from clearance.report.report_data import ReportData
 
 FILE_NAME = "worst_moments.yaml"
 
@@ -20,9 +20,9 @@ _HEAD = """\
 """
 
 
-def moments_text(data: ReportData) -> str:
+def moments_text(model: ReportModel) -> str:
     """The file's text; the same data give the same."""
-    return _HEAD + "\n".join(_lines(moments_of(data))) + "\n"
+    return _HEAD + "\n".join(_lines(moments_of(model))) + "\n"
 
 
 def _lines(given: dict[str, Any]) -> Iterator[str]:

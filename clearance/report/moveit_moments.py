@@ -19,9 +19,9 @@ from clearance.formats.message.times import split_time
 from clearance.record.moment import Moment
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status
-from clearance.report.actors import paddings_of
-from clearance.report.pair_judge import PairJudge
-from clearance.report.report_data import ReportData
+from clearance.report.model import ReportModel
+from clearance.report.topics.cell import paddings_of
+from clearance.report.topics.pairs import PairJudge
 from clearance.world.case import Case
 
 FORMAT = "clearance-moments-1"
@@ -54,14 +54,14 @@ class _Entry:
         return self.rule, *self.bodies
 
 
-def moments_of(data: ReportData) -> dict[str, Any]:
+def moments_of(model: ReportModel) -> dict[str, Any]:
     """The file's content."""
-    record = data.record
-    entries, names = _entries(record, data.details.minima), _Names(record.case)
+    record = model.record
+    entries, names = _entries(record, model.details.minima), _Names(record.case)
     return {
         "format": FORMAT,
         "name": record.case.name,
-        "verdict": data.verdict.status,
+        "verdict": model.verdict.status,
         "need": record.need,
         "header": {"frame_id": "world"},
         "n_left_out": max(0, len(entries) - MOST),

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from clearance.files import LAST, fill_folder
 from clearance.findings import findings_file
@@ -14,14 +13,12 @@ from clearance.record.replay import FILE_NAME, EarlierBody, Replay
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.report.budget_table import FILE_NAME as BUDGET
 from clearance.report.budget_table import budget_table
-from clearance.report.findings import findings
+from clearance.report.curves import more_curves, pair_curves
+from clearance.report.model import PageContent, ReportModel
 from clearance.report.moments_file import FILE_NAME as MOMENTS
 from clearance.report.moments_file import moments_text
-from clearance.report.more_curves import more_curves
-from clearance.report.page import page_of
-from clearance.report.pair_curves import pair_curves
-from clearance.report.report_data import ReportData
-from clearance.report.summary import summary_of
+from clearance.report.page import PageCurves, page_of
+from clearance.report.summary import json_text, summary_of
 from clearance.report.tables import (
     contact_batches,
     pair_batches,
@@ -62,7 +59,7 @@ class Drawings(NamedTuple):
 
 
 def write(
-    data: ReportData,
+    model: ReportModel,
     drawn: Drawings,
     folder: str | Path,
     kept: MeasuredRows = IN_MEMORY,
@@ -83,11 +80,15 @@ def write(
     Raises:
         Unwritable: `folder` cannot be written.
     """
-    record, summary, moments = data.record, summary_of(data), moments_text(data)
-    told = findings(data.findings.findings, comparison)
-    curves = pair_curves(record, data.details.minima, kept)
-    more = more_curves(record)
-    page = page_of(summary, drawn.replay, drawn.pictures, curves, told, more, drawn.earlier)
+    record, summary = model.record, summary_of(model)
+    content = PageContent(summary, drawn.pictures, model.finding_list.findings, comparison)
+    curves = PageCurves(pair_curves(record, model.details.minima, kept), [*more_curves(record)])
+    texts = {
+        MOMENTS: moments_text(model),
+        findings_file.FILE_NAME: findings_file.findings_text(model.finding_list),
+        "report.html": page_of(content, drawn.replay, curves, drawn.earlier),
+        LAST: json_text(summary),
+    }
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")
@@ -96,18 +97,9 @@ def write(
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         if record.budget is not None:
-            write_csv(lambda: [budget_table(record, data.details.left)], place / BUDGET)
-        (place / MOMENTS).write_text(moments, encoding="utf-8")
+            write_csv(lambda: [budget_table(record, model.details.left)], place / BUDGET)
         drawn.replay.save(place / FILE_NAME)
-        findings_text = findings_file.findings_text(data.findings)
-        (place / findings_file.FILE_NAME).write_text(findings_text, encoding="utf-8")
-        (place / "report.html").write_text(page, encoding="utf-8")
-        (place / LAST).write_text(json_text(summary), encoding="utf-8")
+        for name, text in texts.items():
+            (place / name).write_text(text, encoding="utf-8")
 
     fill_folder(Path(folder), fill, OWN, kept.folder)
-
-
-def json_text(summary: dict[str, Any]) -> str:
-    """The summary as `summary.json` holds it: sorted keys, floats that read back the same, no
-    NaN."""
-    return json.dumps(summary, indent=2, sort_keys=True, allow_nan=False, ensure_ascii=False) + "\n"

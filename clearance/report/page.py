@@ -1,18 +1,16 @@
 """The page: one HTML file that needs no network, with meshcat's viewer inside.
 
-This file only puts the parts together; the words are in `sections`, the behaviour in `page.js`, `chart.js` and
-`replay.js`, the look in `page.css`. Geometry and poses go as base64 of float32, what is shown as a
-figure as float64.
+This file only puts the parts together; the words are in `topics`, look and behaviour in `templates`. Geometry and
+poses go as base64 of float32, what is shown as a figure as float64.
 """
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from string import Template
 from typing import Any
 
 import numpy as np
@@ -23,58 +21,67 @@ from clearance.extras import install
 from clearance.record.replay import LINK, EarlierBody, Replay
 from clearance.record.status import STATUSES, Status
 from clearance.record.wording import contact_text, count
-from clearance.report.embedded import inside_script, json_inside_script, script
-from clearance.report.head import head_of
-from clearance.report.markup import element
-from clearance.report.more_curves import PageCurve
-from clearance.report.pair_curves import PairCurves
-from clearance.report.sections import NOTHING, badge_text, header, sections
+from clearance.report.blocks import Section
+from clearance.report.curves import MoreCurve, PairCurves
+from clearance.report.model import PageContent
+from clearance.report.rendering import inside_script, render
+from clearance.report.topic import Topic
+from clearance.report.topics import BELOW, FIRST
+from clearance.report.topics.verdict import badge_text, header
 from clearance.world.rules import DEFAULT
-
-_HERE = Path(__file__).parent
 
 FINEST = 2000
 """Parts of the time axis that a screen can resolve."""
 
 
+@dataclass(frozen=True, eq=False)
+class PageCurves:
+    """What the chart shows beside the least clearance.
+
+    Attributes:
+        pairs: each pair's own, if every pair was measured at every step. more: of tolerances, or a recorded run.
+    """
+
+    pairs: PairCurves | None = None
+    more: Sequence[MoreCurve] = ()
+
+
 def page_of(
-    summary: dict[str, Any],
+    content: PageContent,
     replay: Replay,
-    pictures: dict[str, str] | None = None,
-    curves: PairCurves | None = None,
-    findings: Markup = NOTHING,
-    more: Sequence[PageCurve] = (),
+    curves: PageCurves = PageCurves(),
     earlier: Sequence[EarlierBody] = (),
 ) -> str:
     """The whole page.
 
     Args:
-        pictures: SVG of each profile by its name.
-        curves: each pair's own, if every pair was measured at every step.
-        findings: the section of what each rule comes to.
-        more: curves beside that of the clearance. earlier: where bodies were before a change.
+        earlier: where bodies were before a change.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
     """
-    template = Template(_own("page.html"))
-    return template.substitute(
-        head=head_of(f"{summary['name']}: {badge_text(summary)}"),
+    summary = content.summary
+    data = _data(summary, replay) | _pairs(summary, replay, curves.pairs)
+    data |= _more(curves.more) | _earlier(earlier)
+    return render(
+        "report.html",
+        title=f"{summary['name']}: {badge_text(summary)}",
         header=header(summary),
-        stage_note=_stage_note(replay),
-        sections=sections(summary, pictures or {}, findings),
-        footer=element("p", f"clearance {summary['versions']['clearance']}"),
-        data=json_inside_script(
-            _data(summary, replay)
-            | _pairs(summary, replay, curves)
-            | _more(more)
-            | _earlier(earlier)
-        ),
-        meshcat=inside_script(_meshcat()),
-        chart_script=script("chart.js"),
-        replay_script=script("replay.js"),
-        page_script=script("page.js"),
+        thinned=_thinned(replay),
+        columns=[_sections(column, content) for column in FIRST],
+        sections=_sections(BELOW, content),
+        data=data,
+        meshcat=_meshcat(),
     )
+
+
+def _sections(topics: Iterable[Topic], content: PageContent) -> list[Section]:
+    return [
+        section
+        for topic in topics
+        if topic.sections is not None
+        for section in topic.sections(content)
+    ]
 
 
 def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
@@ -154,14 +161,14 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
     return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
 
 
-def _more(curves: Sequence[PageCurve]) -> dict[str, Any]:
+def _more(curves: Sequence[MoreCurve]) -> dict[str, Any]:
     """Curves beside that of the clearance; nothing where there are none."""
     told = [
         {
             "name": one.name,
             "times": _floats(one.times, "<f8"),
             "values": _floats(one.values, "<f8"),
-            "kind": one.dash,
+            "kind": one.kind,
             "filled": one.filled,
         }
         for one in curves
@@ -189,15 +196,14 @@ def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
     return bands
 
 
-def _stage_note(replay: Replay) -> str:
+def _thinned(replay: Replay) -> str:
+    """How many of the steps are drawn, where that is not all; else nothing."""
     n_drawn = int((replay.between == 0).sum())
     if n_drawn == replay.n_steps:
         return ""
-    return element(
-        "p",
+    return (
         f"Drawn are {n_drawn:,} of {count(replay.n_steps, 'step')}, chosen so that the "
-        "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet.",
-        class_="faint",
+        "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet."
     )
 
 
@@ -210,11 +216,7 @@ def _floats(array: np.ndarray, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
 
-def _own(name: str) -> str:
-    return (_HERE / name).read_text(encoding="utf-8")
-
-
-def _meshcat() -> str:
+def _meshcat() -> Markup:
     """The script of meshcat's viewer, read as a file: driving meshcat is the business of room
     `view`."""
     found = find_spec("meshcat")
@@ -225,4 +227,4 @@ def _meshcat() -> str:
     )
     if bundle is None or not bundle.is_file():
         raise Unavailable("meshcat's viewer is not installed", valid=install("report"))
-    return bundle.read_text(encoding="utf-8")
+    return inside_script(bundle.read_text(encoding="utf-8"))

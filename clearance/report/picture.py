@@ -257,7 +257,7 @@ def _draw_line(image: np.ndarray, screen: Screen, still: Still) -> None:
     for end in ends:
         _stroke(image, end, end, FINER * DOT_PIXELS, still.colour)
     if len(ends) == 2:
-        _stroke(image, *ends, FINER * LINE_PIXELS / 2, still.colour)
+        _stroke(image, ends[0], ends[1], FINER * LINE_PIXELS / 2, still.colour)
 
 
 def _stroke(

@@ -60,7 +60,7 @@ def surface(screen: Screen, corners: np.ndarray) -> Surface:
         slopes = -slopes[:, :2] / slopes[:, 2:]  # of the depth, by x and by y
     depths = np.zeros(screen.width * screen.height)
     shown = np.full(len(depths), -1)
-    for of, row, columns in _pixels(flat, np.isfinite(slopes).all(axis=1), screen):
+    for of, row, columns in _pixels(flat, np.all(np.isfinite(slopes), axis=1), screen):
         x, y = columns + 0.5 - flat[of, 0, 0], row + 0.5 - flat[of, 0, 1]
         depth = flat[of, 0, 2] + slopes[of, 0] * x + slopes[of, 1] * y
         pixels = row * screen.width + columns

@@ -9,7 +9,7 @@ from typing import Any
 from clearance.files import fill_folder
 from clearance.formats.mesh.mesh_file import mesh_file
 from clearance.record.workspace import Workspace
-from clearance.report.output import json_text
+from clearance.report.summary import json_text
 from clearance.report.workspace_picture import picture_of
 
 MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
     from clearance.findings.verdict import Verdict
     from clearance.record.levels import Event
-    from clearance.report.report_data import ReportData
+    from clearance.report.model import ReportModel
     from clearance.run.question import Question
     from clearance.run.session import RunSession
 
@@ -116,32 +116,26 @@ class Run:
         return self.session.pair_minima()
 
     @cached_property
-    def judgement(self) -> Judgement:
-        """The rules of the run with its waivers."""
-        from clearance.findings.judgement import judgement_of
+    def report(self) -> ReportModel:
+        """What the run comes to, for whoever tells it; each part is worked out when it is asked for."""
+        from clearance.report.model import ReportModel
 
-        return judgement_of(self.session)
+        return ReportModel(self.session)
 
     @property
-    def waived(self) -> Judgement | None:
-        """The same; None where the case has no waivers, and nothing is worked out then."""
-        return self.judgement if self.record.case.waivers else None
+    def judgement(self) -> Judgement:
+        """The rules of the run with its waivers."""
+        return self.report.judgement
 
-    @cached_property
+    @property
     def of_tolerances(self) -> tuple[Finding, ...]:
         """The limits that are not proven with the case's tolerances."""
-        if self.record.case.tolerance is None:
-            return ()
-        from clearance.findings.of_budget import of_budget
+        return self.report.of_tolerances
 
-        return of_budget(self.session, self.waived)
-
-    @cached_property
+    @property
     def verdict(self) -> Verdict:
         """What the run comes to, why, and what that rests on."""
-        from clearance.findings.verdict import verdict_of
-
-        return verdict_of(self.record, self.waived, self.of_tolerances)
+        return self.report.verdict
 
     @property
     def passed(self) -> bool:
@@ -165,21 +159,7 @@ class Run:
         """What `summary.json` holds, as plain data."""
         from clearance.report.summary import summary_of
 
-        return summary_of(self.report_data)
-
-    @cached_property
-    def report_data(self) -> ReportData:
-        """All that a report is made of, worked out now."""
-        from clearance.report.report_data import ReportData
-
-        return ReportData(
-            self.record,
-            self.session.details,
-            self.judgement,
-            self.of_tolerances,
-            self.finding_list,
-            self.verdict,
-        )
+        return summary_of(self.report)
 
     @property
     def certificate(self) -> Certificate | None:
@@ -194,27 +174,23 @@ class Run:
     def __repr__(self) -> str:
         from clearance.report.notebook import run_text
 
-        return f"<Run {run_text(self.record, self.verdict)}>"
+        return f"<Run {run_text(self.report)}>"
 
     def _repr_html_(self) -> str:
         """The verdict and the closest pairs, for a notebook."""
-        from clearance.report.notebook import MOST_PAIRS, run_html
+        from clearance.report.notebook import run_html
 
-        return run_html(self.record, self.verdict, self.session.motion_minima(MOST_PAIRS))
+        return run_html(self.report)
 
-    @cached_property
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """What each rule comes to between which bodies, the worst first; what is waived is among it."""
-        from clearance.findings.of_record import findings_of
+        return self.report.findings
 
-        return findings_of(self.record, self.judgement, self.of_tolerances)
-
-    @cached_property
+    @property
     def finding_list(self) -> FindingList:
         """What `findings.json` holds: the findings, and what is needed to compare them with another run's."""
-        from clearance.findings.findings_file import finding_list_of
-
-        return finding_list_of(self.session, self.findings, self.judgement)
+        return self.report.finding_list
 
     def save(
         self,
@@ -239,7 +215,7 @@ class Run:
         replay = self.session.replay(self.rows)
         before = [] if earlier is None else earlier.session.earlier_motion(replay)
         drawn = Drawings(replay, self.session.pictures, before)
-        write(self.report_data, drawn, folder, self.rows, comparison)
+        write(self.report, drawn, folder, self.rows, comparison)
         return Path(folder)
 
 

@@ -1,4 +1,4 @@
-"""What makes our robot and our scenes, and what tests and benchmarks both draw: hostile shapes, cells, sketches.
+"""What the scripts that make our robot and our scenes share.
 
 Not part of the package: nothing imports it at run time.
 """

@@ -15,7 +15,7 @@ from clearance.findings.findings_file import (
     read_findings,
 )
 from clearance.record.record import CrossCheck, Disagreement
-from clearance.report.comparison_page import page_of
+from clearance.report.comparison import comparison_page
 from clearance.report.comparison_text import comparison_text, doubt_lines
 from clearance.report.markdown import markdown
 from clearance.run import Question, Run, answer
@@ -106,9 +106,9 @@ def test_what_stands_beside_the_findings_of_two_runs(what, tmp_path):
 
 
 def _is_told_everywhere(comparison: Comparison, run: Run) -> None:
-    page = page_of(comparison, [], ("a", "b"))
+    page = comparison_page(comparison, [], ("a", "b"))
     assert ("nothing is new or worse" in page) is comparison.passed
-    summary = markdown(run.record, run.verdict, run.findings, comparison)
+    summary = markdown(run.report, comparison)
     for line in doubt_lines(comparison):
         assert line.split(":")[1].strip().split(" ")[0] in page
         assert line.split(":")[0] in summary

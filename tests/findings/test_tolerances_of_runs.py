@@ -47,7 +47,7 @@ def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
     assert "not proven to keep the level of its waiver with the tolerances" in " ".join(
         run.verdict.reasons
     )
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     assert 'classname="tolerances"' in (tmp_path / "junit.xml").read_text()
 
 

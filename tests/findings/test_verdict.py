@@ -13,11 +13,10 @@ from rich.console import Console
 import clearance as cl
 from clearance.cli.verdict import print_verdict
 from clearance.record.record import ProfileAnswer, Record
-from clearance.report.page import page_of
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
-from tests.report.made import replay_of, run_of, summary_of, verdict_of, write_junit
+from tests.report.made import page_of, replay_of, run_of, summary_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record, with_steps
 
 NO_LIMITS = Limits()
@@ -149,7 +148,7 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
         fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail)
     )
     assert run.save(str(tmp_path / "out")) == tmp_path / "out"
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     failed = {
         case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None

@@ -11,8 +11,9 @@ from clearance.record.budget import BudgetMoment, RuleBudget
 from clearance.record.names import pair_names
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer
+from clearance.report import page
 from clearance.report.junit_cases import write_run_junit
-from clearance.report.report_data import ReportData
+from clearance.report.model import PageContent, ReportModel
 from clearance.run import Run
 from clearance.simulate.answers.contact.rows import FoundContacts
 from clearance.simulate.answers.rule_pairs import MeasuredRule, SampleMoments
@@ -101,9 +102,15 @@ def finding_list_of(made: Record | Run):
     return run_of(made).finding_list
 
 
-def data_of(made: Record | Run | ReportData) -> ReportData:
-    """All that a report of it is made of."""
-    return made if isinstance(made, ReportData) else run_of(made).report_data
+def model_of(made: Record | Run) -> ReportModel:
+    """What is told of it."""
+    return run_of(made).report
+
+
+def page_of(made: Record | Run | dict[str, Any], replay: Any = None, **content: Any) -> str:
+    """Its page; of a summary, with the replay of another."""
+    summary = made if isinstance(made, dict) else summary_of(made)
+    return page.page_of(PageContent(summary, **content), replay or replay_of(made))
 
 
 def replay_of(made: Record | Run | MeasuringSession, *args: Any, **options: Any):
@@ -119,4 +126,4 @@ def write(made: Record | Run, folder, *args: Any, **options: Any) -> None:
 
 def write_junit(made: Record | Run, path) -> None:
     """Writes it as JUnit."""
-    write_run_junit(data_of(made), path)
+    write_run_junit(model_of(made), path)

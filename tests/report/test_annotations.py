@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance.findings.comparison import compared
 from clearance.formats.motion.trajectory_file import line_of_sample
-from clearance.report.annotations import MOST, annotation_lines, command
+from clearance.report.annotations import MOST, annotation_lines, command, row_of, sample_at
 from clearance.report.markdown import MOST_ROWS, markdown, plain
-from clearance.report.trajectory_row import row_of, sample_at
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
@@ -40,7 +39,7 @@ def run(folder) -> Run:
 
 
 def lines_of(run: Run, root: Path) -> list[str]:
-    return [*annotation_lines(run.record, run.verdict, run.findings, root)]
+    return [*annotation_lines(run.report, root)]
 
 
 def test_a_finding_is_annotated_on_the_row_of_its_moment(run, folder):
@@ -134,13 +133,13 @@ def test_plain_text_stays_text_in_markdown(text):
 
 
 def test_markdown_of_a_run(run, folder):
-    text = markdown(run.record, run.verdict, run.findings)
+    text = markdown(run.report)
     assert text.startswith("### gates: VIOLATED\n") and "self-collision not checked" in text
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == 4 and len({row.count("|") for row in rows}) == 1
     assert "| violated | default limits | box - gate&#95;a | 3.000 | 5 | 2.9" in rows[2]
     same = compared(run.finding_list, run.finding_list)
-    told = markdown(run.record, run.verdict, run.findings, same)
+    told = markdown(run.report, same)
     assert "since the baseline: 2 unchanged" in told and "unchanged, was 3.000 mm" in told
 
 
@@ -148,7 +147,9 @@ def test_names_from_files_do_not_break_out_of_the_table(run):
     finding = dataclasses.replace(
         run.findings[0], body_a="a|b\n| x |", body_b="<script>", rule="`r`"
     )
-    text = markdown(run.record, run.verdict, [finding] * (MOST_ROWS + 7))
+    model = dataclasses.replace(run.report)
+    vars(model)["findings"] = (finding,) * (MOST_ROWS + 7)
+    text = markdown(model)
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == MOST_ROWS + 2 and len({row.count("|") for row in rows}) == 1
     assert "<script>" not in text and "`r`" not in text and "7 more findings." in text
@@ -156,7 +157,7 @@ def test_names_from_files_do_not_break_out_of_the_table(run):
 
 def test_a_clear_run_says_what_is_nearest(tmp_path):
     one = cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)}))
-    text = markdown(one.record, one.verdict, one.findings)
+    text = markdown(one.report)
     assert "### gates: CLEAR" in text and "100.0 mm: box - gate" in text
     assert write_gates(tmp_path, {"gate": (0.0, 0.1)}).is_file()
 
@@ -176,5 +177,5 @@ def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):
     lines = lines_of(waived, tmp_path)
     assert waived.passed and len(lines) == 2
     assert lines[0].startswith("::warning title=clearance%3A gates::waived: 3.000 mm, below")
-    table = markdown(waived.record, waived.verdict, waived.findings)
+    table = markdown(waived.report)
     assert "| violated, waived |" in table and "with 2 waivers" in table

@@ -8,11 +8,10 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.record.record import Record
-from clearance.report.body_gaps import WIDTHS, body_gaps_of, gap_lines
-from clearance.report.page import page_of
+from clearance.report.topics.body_gaps import WIDTHS, body_gaps_of, gap_lines
 from tests.findings.test_verdict import made
 from tests.formats.making import CASE, write_case
-from tests.report.made import replay_of, run_of, summary_of, verdict_of
+from tests.report.made import page_of, replay_of, run_of, summary_of, verdict_of
 
 
 @functools.cache

@@ -15,17 +15,15 @@ from rich.console import Console
 
 import clearance as cl
 from clearance.cli.verdict import print_verdict
-from clearance.report.output import json_text
-from clearance.report.page import page_of
-from clearance.report.pair_curves import pair_curves
-from clearance.report.pair_judge import PairJudge
+from clearance.report.summary import json_text
+from clearance.report.topics.pairs import PairJudge
 from clearance.world.carry import Carry
 from clearance.world.case import Clock, Limits, SelfClearance
 from clearance.world.rules import Allowance, Rule
 from clearance.world.timing import Window
 from tests.made_cases import at
 from tests.report.cells import RULES, box, cell, sliding
-from tests.report.made import replay_of, summary_of, write_junit
+from tests.report.made import page_of, replay_of, summary_of, write_junit
 from tests.report.records import record as plain_record
 
 FENCE = (
@@ -45,12 +43,7 @@ def summary(run):
 
 @pytest.fixture(scope="module")
 def page(run) -> str:
-    found = page_of(
-        run.summary,
-        replay_of(run.session),
-        {},
-        pair_curves(run.record, run.session.motion_minima()),
-    )
+    found = page_of(run.summary, replay_of(run.session))
     return re.sub(r"<script.*?</script>", "", found, flags=re.DOTALL)
 
 
@@ -172,7 +165,7 @@ def test_each_event_names_the_rule(run, summary):
 
 
 def test_junit_has_a_case_for_each_rule_and_for_each_pair_by_each_rule(run, tmp_path):
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     cases = {case.get("name"): case for case in suite.findall("testcase")}
     failed = {name for name, case in cases.items() if case.find("failure") is not None}
@@ -236,7 +229,7 @@ def test_one_robot_among_what_stands_keeps_its_names_first_and_has_the_others_to
 def test_every_need_has_its_report(need, tmp_path):
     run = cl.check(cell(), need=need)
     run.save(tmp_path / "out")
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     assert run.status == "violated" and FENCE in printed(run)
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["need"] == need
 
@@ -333,5 +326,5 @@ def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_pa
         "Infinity"
         not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]
     )
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     assert printed(run)

@@ -10,7 +10,7 @@ import pytest
 
 import clearance as cl
 from clearance.findings.comparison import compared
-from clearance.report.comparison_page import write_comparison
+from clearance.report.comparison import write_comparison
 from clearance.run import Question, answer
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates

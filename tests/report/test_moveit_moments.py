@@ -7,7 +7,7 @@ import clearance as cl
 from clearance.report import moments_file, moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
-from tests.report.made import data_of, run_of, write
+from tests.report.made import model_of, run_of, write
 from tests.report.records import record, with_contacts
 
 WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
@@ -15,7 +15,7 @@ LIMITS = cl.Limits(fail=0.01, warn=0.3)
 
 
 def moments_text(made) -> str:
-    return moments_file.moments_text(data_of(made))
+    return moments_file.moments_text(model_of(made))
 
 
 def read(text: str):

@@ -12,7 +12,7 @@ import clearance as cl
 from clearance.cli.verdict import print_verdict
 from clearance.report.markdown import markdown
 from clearance.report.notebook import run_html
-from clearance.report.sections import header
+from clearance.report.topics.verdict import header
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.robot import Joint, JointKind
 from clearance.world.rules import Allowance
@@ -70,14 +70,14 @@ def test_every_answer_says_how_many_pairs_are_measured_and_why_not_the_others(tm
         "robot": "snake", "n_pairs": 10, "n_measured": 6, "n_not_always": 0,
         "left_out": {"neighbours": 4}, "text": line,
     }  # fmt: skip
-    write_junit(run.report_data, tmp_path / "junit.xml")
+    write_junit(run, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     properties = {one.get("name"): one.get("value") for one in suite.iter("property")}
     assert properties["self_clearance"] == line
     assert line in suite.find("testcase[@classname='verdict']").findtext("system-out")
-    assert f"S{line[1:]}" in header(run.summary)
-    assert line in run_html(run.record, run.verdict, ())
-    assert "6 of 10 pairs measured, 4 neighbours" in markdown(run.record, run.verdict, ())
+    assert f"S{line[1:]}" in repr(header(run.summary))
+    assert line in run_html(run.report)
+    assert "6 of 10 pairs measured, 4 neighbours" in markdown(run.report)
 
 
 @pytest.mark.parametrize(

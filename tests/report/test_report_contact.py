@@ -12,11 +12,11 @@ import pytest
 from clearance.record.record import Record
 from clearance.record.replay import load_replay
 from clearance.record.wording import contact_text, depth_mm, least_cm3, volume_cm3
-from clearance.report.contact import contacts
-from clearance.report.page import page_of
-from clearance.simulate.replay import replay as replay_contact
+from clearance.report.model import PageContent
+from clearance.report.topics.contact import sections
+from clearance.simulate.replay import contact as replay_contact
 from tests.report.browser import chromium, executable
-from tests.report.made import replay_of, summary_of, write
+from tests.report.made import page_of, replay_of, summary_of, write
 from tests.report.records import record, with_contacts
 
 
@@ -40,13 +40,14 @@ def test_the_summary_tells_the_deepest_contact_and_each_pair():
 def test_without_contact_there_is_no_section():
     summary = summary_of(record())
     summary["status_counts"]["contact"] = 0
-    assert summary["contact"] is None and contacts(summary) == ""
+    assert summary["contact"] is None and not [*sections(PageContent(summary))]
 
 
 def test_contact_that_was_not_worked_out_is_said():
     summary = summary_of(record())
     assert summary["contact"] is None and summary["status_counts"]["contact"]
-    assert "were not worked out" in contacts(summary)
+    (section,) = sections(PageContent(summary))
+    assert "were not worked out" in section.blocks[0].content
 
 
 def test_the_page_says_the_deepest_contact():

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.report.background import loaded
-from clearance.report.output import json_text
-from clearance.report.provenance import public_path
+from clearance.report.model import PageContent
+from clearance.report.summary import json_text
+from clearance.report.topics.loaded import sections
+from clearance.report.topics.provenance import public_path
 from clearance.world.robot import Joint, JointKind
 from tests.made_cases import with_copies
 from tests.report.made import summary_of, write
@@ -128,8 +129,8 @@ def test_the_page_tells_what_kind_of_surface_was_loaded(closed, oriented, two_si
     summary = summary_of(record())
     kind = {"closed": closed, "oriented": oriented, "two_sided": two_sided}
     bodies = [{**body, **kind} for body in summary["obstacles"]]
-    rows = str(loaded({**summary, "robots": [], "obstacles": bodies}))
-    assert rows.count(f"<td>{told}</td>") == len(bodies)
+    (section,) = sections(PageContent({**summary, "robots": [], "obstacles": bodies}))
+    assert [row.cells[-2] for row in section.blocks[0].rows] == [told] * len(bodies)
 
 
 def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():

@@ -1,13 +1,13 @@
 """The table of what a clearance changes by: what it says, and what it says where there is none."""
 
 import clearance as cl
-from clearance.report.sensitivity import sensitivity_data, sensitivity_table
+from clearance.report.topics.worst import sensitivity_blocks, sensitivity_data
 from tests.gains.gantries import along_x, gantry, slot, standing
 
 
 def table_of(case):
     data = sensitivity_data(cl.check(case).session.sensitivity)
-    return data, str(sensitivity_table(data, several_robots=False))
+    return data, repr(sensitivity_blocks(data, several_robots=False))
 
 
 def test_one_number_says_both_ways():

@@ -15,9 +15,9 @@ from clearance.findings.finding import NOT_PROVEN, TOLERANCES
 from clearance.findings.findings_file import findings_text, read_findings
 from clearance.record.budget import ErrorSource
 from clearance.report.annotations import annotation_lines
-from clearance.report.comparison_page import page_of as comparison_page
+from clearance.report.comparison import comparison_page
 from clearance.report.markdown import markdown
-from clearance.report.tolerances import largest_text
+from clearance.report.topics.tolerances import largest_text
 from clearance.world.budget import Budget, ObstacleTolerance
 from clearance.world.case import Limits
 from tests.findings.test_verdict import UNITS, made, printed
@@ -25,6 +25,7 @@ from tests.report.budgets import with_budget
 from tests.report.made import (
     finding_list_of,
     findings_of,
+    model_of,
     run_of,
     summary_of,
     verdict_of,
@@ -81,7 +82,7 @@ def test_what_is_left_is_told_in_words_that_can_be_signed():
     )
     (line,) = verdict_of(OPEN).with_tolerances
     assert "contact is not ruled out; proven for the samples only" in line
-    for told in (printed(OPEN), markdown(OPEN, verdict_of(OPEN), findings_of(OPEN)).splitlines()):
+    for told in (printed(OPEN), markdown(model_of(OPEN)).splitlines()):
         assert any("contact is not ruled out" in row for row in told)
 
 
@@ -134,11 +135,11 @@ def test_accepted_it_does_not_fail_and_is_still_told(tmp_path):
     write_junit(ACCEPTED, tmp_path / "junit.xml")
     text = (tmp_path / "junit.xml").read_text()
     assert "accepted: what is not proven with the tolerances may pass" in text
-    told = annotation_lines(ACCEPTED, verdict_of(ACCEPTED), findings_of(ACCEPTED), tmp_path)
+    told = annotation_lines(model_of(ACCEPTED), tmp_path)
     first, *others = told
     assert first.startswith("::warning ") and "not proven, which is accepted: With every" in first
     assert not any(line.startswith("::error") for line in others)
-    lines = annotation_lines(OPEN, verdict_of(OPEN), findings_of(OPEN), tmp_path)
+    lines = annotation_lines(model_of(OPEN), tmp_path)
     lines = [line for line in lines if line.startswith("::error")]
     assert (
         len(lines) == 1

@@ -9,7 +9,7 @@ import pyarrow.csv
 import pytest
 
 import clearance as cl
-from clearance.report.tolerances import source_lines
+from clearance.report.topics.tolerances import source_lines
 from tests.budget.part_cases import passing
 
 

@@ -49,7 +49,7 @@ def test_a_gap_that_is_as_wide_as_its_limit_keeps_it(made, limit, status):
     assert 0.0 < limits.rounding < 2e-11
     told = f"equal to the {limit} limit but for rounding"
     assert told in run.verdict.at_level and run.summary["at_level"] == run.verdict.at_level
-    first = next(results_of(run.report_data))
+    first = next(results_of(run.report))
     assert told in first.text and not first.fault
 
 

@@ -5,7 +5,7 @@ import trimesh
 from clearance.case.case_file import load_case
 from clearance.formats.files.found_files import MODEL, OPTIONAL, PACKAGE, leads_to, note_lookup
 from clearance.formats.files.input_files import InputFiles
-from clearance.report.provenance import inputs
+from clearance.report.topics.provenance import inputs
 
 URDF = """<robot name="cart"><link name="ground"/>
   <link name="slider"><collision><geometry><mesh filename="package://pk/m.stl"/></geometry></collision></link>

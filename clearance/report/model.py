@@ -1,0 +1,120 @@
+"""What a run comes to, for whoever tells it: made once from record and session, each part when it is asked for.
+
+Terminal, page, summary, JUnit, Markdown, annotations and notebook are made from this alone. Not for: how anything
+is told (`topics`), nor measuring, which the session does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Protocol
+
+from clearance.findings.comparison import Comparison
+from clearance.findings.finding import Finding
+from clearance.findings.findings_file import FindingList, finding_list_of
+from clearance.findings.judgement import Judgement, judgement_of
+from clearance.findings.of_budget import of_budget
+from clearance.findings.of_record import findings_of
+from clearance.findings.verdict import Verdict, verdict_of
+from clearance.record.budget import BudgetMoment, RuleBudget
+from clearance.record.details import RunDetails
+from clearance.record.levels import Interval
+from clearance.record.record import PairMinimum, Record
+from clearance.record.session import Session
+
+
+class ReportSession(Session, Protocol):
+    """What a report asks beside a record, and findings do not."""
+
+    @property
+    def details(self) -> RunDetails:
+        """All that the summary shows beside the record."""
+
+    @property
+    def intervals(self) -> Mapping[str, Sequence[Interval]]:
+        """The times below each level."""
+
+    @property
+    def hints(self) -> tuple[str, ...]:
+        """On pairs that touch all the time."""
+
+    @property
+    def standing_bodies(self) -> frozenset[str]:
+        """The names of measured bodies that never move."""
+
+    def motion_minima(self, most: int | None = None) -> Sequence[PairMinimum]:
+        """The least clearance of each pair, least first; of the first `most`."""
+
+    def extent(self, level: str) -> tuple[int, int]:
+        """The number of intervals below a level, and of steps in them."""
+
+    def error_sources(
+        self, budget: RuleBudget, i_moment: int = 0, most: int | None = None
+    ) -> BudgetMoment:
+        """A moment at which tolerances leave least, with what each error takes; the greatest size of `most`."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReportModel:
+    """A run, to be told."""
+
+    session: ReportSession
+
+    @property
+    def record(self) -> Record:
+        """The record of the run."""
+        return self.session.record
+
+    @cached_property
+    def judgement(self) -> Judgement:
+        """The rules of the run with its waivers."""
+        return judgement_of(self.session)
+
+    @property
+    def waived(self) -> Judgement | None:
+        """The same; None where the case has no waivers, and nothing is worked out then."""
+        return self.judgement if self.record.case.waivers else None
+
+    @cached_property
+    def of_tolerances(self) -> tuple[Finding, ...]:
+        """The limits that are not proven with the case's tolerances."""
+        if self.record.case.tolerance is None:
+            return ()
+        return of_budget(self.session, self.waived)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What the run comes to, why, and what that rests on."""
+        return verdict_of(self.record, self.waived, self.of_tolerances)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What each rule comes to between which bodies, the worst first; what is waived is among it."""
+        return findings_of(self.record, self.judgement, self.of_tolerances)
+
+    @cached_property
+    def finding_list(self) -> FindingList:
+        """What `findings.json` holds: the findings, and what is needed to compare them with another run's."""
+        return finding_list_of(self.session, self.findings, self.judgement)
+
+    @cached_property
+    def details(self) -> RunDetails:
+        """All that the summary shows beside the record."""
+        return self.session.details
+
+
+@dataclass(frozen=True, eq=False)
+class PageContent:
+    """What the sections of a page are made from.
+
+    Attributes:
+        summary: as `summary.json` has it. pictures: of each profile as SVG, by its name.
+        findings, comparison: those of the run, and what became of them since a baseline, if there is one.
+    """
+
+    summary: dict[str, Any]
+    pictures: Mapping[str, str] = field(default_factory=dict)
+    findings: Sequence[Finding] = ()
+    comparison: Comparison | None = None

@@ -1,0 +1,136 @@
+"""Overlaps: the deepest of the run, and the deepest of every pair.
+
+Not for: finding them (`simulate.answers.contact.contacts`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from clearance.record.contact import StepContact
+from clearance.record.names import LINK_AND_OBSTACLE
+from clearance.record.record import Record
+from clearance.record.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
+from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint, number
+from clearance.report.model import PageContent, ReportModel
+from clearance.report.moment import BODIES, step_link
+from clearance.report.topic import Line, Topic
+
+
+def data(model: ReportModel) -> dict[str, Any]:
+    """The deepest overlaps that are worked out."""
+    return {"contact": contact_of(model.record)}
+
+
+def contact_of(record: Record) -> dict[str, Any] | None:
+    """The deepest overlap worked out of the run and of every pair, deepest first; None if there is none."""
+    if record.deepest is None:
+        return None
+    by_pair: dict[tuple[str, str], StepContact] = {}
+    n_steps = Counter((row.link, row.obstacle) for row in record.contacts)
+    for row in record.worked_out:
+        pair = (row.link, row.obstacle)
+        if pair not in by_pair or row.penetration > by_pair[pair].penetration:
+            by_pair[pair] = row
+    deepest = sorted(by_pair.values(), key=lambda row: -row.penetration)
+    pairs = [_told(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
+    return {"deepest": _told(record.deepest), "pairs": pairs}
+
+
+def _told(row: StepContact) -> dict[str, Any]:
+    found = row.known
+    assert found is not None, "only overlaps that are worked out are told"
+    return {
+        "step": row.step,
+        "time": row.time,
+        "link": row.link,
+        "obstacle": row.obstacle,
+        "penetration": found.penetration,
+        "penetration_at_least": found.penetration_at_least,
+        "exact": bool(found.exact[0]),
+        "direction": found.direction.tolist(),
+        "volume": found.volume,
+        "volume_at_least": found.volume_at_least,
+        "volume_exact": bool(found.exact[1]),
+        "centroid": found.centroid.tolist(),
+        "notes": list(found.notes),
+    }
+
+
+def lines(model: ReportModel) -> Iterator[Line]:
+    """The deepest overlap: where, how deep, which way out of the link."""
+    found = contact_of(model.record)
+    if found is None:
+        return
+    told = found["deepest"]
+    text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
+    of_link = model.record.sides[:2] == LINK_AND_OBSTACLE
+    yield "deepest", f"{text}; way out of {'the link' if of_link else told['link']} ({_way(told)})"
+
+
+def _way(contact: dict[str, Any]) -> str:
+    return ", ".join(f"{value:.4f}" for value in contact["direction"])
+
+
+def sections(content: PageContent) -> Iterator[Section]:
+    """The deepest of every pair; nothing where there is no contact, one line where none was worked out."""
+    summary = content.summary
+    found = summary["contact"]
+    if found is None:
+        if summary["status_counts"]["contact"]:
+            yield Section("Contact", [Paragraph(_NOT_WORKED_OUT)])
+        return
+    deepest = found["deepest"]
+    moved = "the link" if summary["sides"][0] == "link" else deepest["link"]
+    told = (
+        f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest way out "
+        f"found moves {moved} by {depth_mm(deepest['penetration'])} mm along ({_way(deepest)})."
+    )
+    at = f"Deepest at {seconds(deepest['time'])}, "
+    first = Paragraph([at, step_link(deepest["step"]), told])
+    heads = (
+        *BODIES[summary["sides"][0]], ">Steps", ">Deep, mm", ">At least", ">Shared, cm³", ">At least", ">Time",
+    )  # fmt: skip
+    rows = [_row(pair) for pair in found["pairs"]]
+    yield Section(
+        "Contact", [first, Table(heads, rows, "clickable"), faint(_meaning(found["pairs"]))]
+    )
+
+
+_NOT_WORKED_OUT = (
+    "Depth, volume and way out were not worked out: the run did not ask for them (--contact none), or bodies "
+    "meet between the samples only."
+)
+
+
+def _row(pair: dict[str, Any]) -> Row:
+    depth, volume = pair["penetration_at_least"], pair["volume_at_least"]
+    figures = (
+        str(pair["n_steps"]),
+        depth_mm(pair["penetration"]),
+        "exact" if pair["exact"] else mm(depth),
+        volume_cm3(pair["volume"]),
+        "exact" if pair["volume_exact"] else least_cm3(volume),
+        seconds(pair["time"]),
+    )
+    return Row([pair["link"], pair["obstacle"], *map(number, figures)], At(pair["step"]))
+
+
+def _meaning(pairs: Sequence[dict[str, Any]]) -> str:
+    told = (
+        "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
+        "hulls or shared volumes tell, unless more was asked for. At these the replay shows the common region in "
+        "red and the way out of the first body as an arrow of fixed length. "
+    )
+    if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
+        return f"{told}Depth and volume are exact to the rounding of float64."
+    return (
+        f"{told}Depth and volume that are not exact are upper bounds, with the lower bound beside them: "
+        "what stands for bodies that are not convex is told in How sure, and a way out of closed bodies is "
+        "confirmed by their own distance after it."
+    )
+
+
+TOPIC: Topic = Topic(data, lines, sections)

@@ -1,0 +1,102 @@
+"""The findings of a run as tables, each row a way to its moment, with what became of each since a baseline.
+
+Not for: finding them (room `findings`), nor the file that holds all (`findings.findings_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from clearance.findings.comparison import ComparedFinding, Comparison
+from clearance.findings.finding import Finding
+from clearance.findings.finding_text import bodies_text, stretch_text, waived_text, when_text
+from clearance.record.wording import count, limit_mm, mm
+from clearance.report.blocks import (
+    At,
+    Bullets,
+    Cell,
+    Content,
+    Inline,
+    Paragraph,
+    Row,
+    Section,
+    Table,
+    capital,
+    faint,
+    number,
+)
+from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
+from clearance.report.model import PageContent
+from clearance.report.moment import name_shown
+from clearance.report.topic import Topic
+
+MOST_ROWS = 200
+"""Most findings printed on the page; findings.json has all."""
+
+HEADS = (
+    "Status", "Rule", "Between", ">Least, mm", ">Fail, mm", ">Certified, mm", "When", "From - until",
+)  # fmt: skip
+
+
+def sections(content: PageContent) -> Iterator[Section]:
+    """The findings; with a column of what became of each since a baseline, if there is one."""
+    found, comparison = content.findings, content.comparison
+    if not found:
+        return
+    since = rows_of_now(comparison)
+    compared = ["Since baseline"] if comparison else []
+    rows = [_row(one, since.get(one.id), bool(compared)) for one in found[:MOST_ROWS]]
+    table = Table((*HEADS, *compared, "Waived", "Name"), rows, "clickable findings", tall=True)
+    told = [] if comparison is None else [*_since(comparison)]
+    yield Section("Findings", [*told, table, *map(faint, _notes(found))])
+
+
+def rows_of_now(comparison: Comparison | None) -> dict[str, ComparedFinding]:
+    """What became of each finding of now, by its name; nothing without a comparison."""
+    rows = () if comparison is None else comparison.rows
+    return {row.finding.id: row for row in rows if row.now}
+
+
+def _notes(found: Sequence[Finding]) -> Iterator[str]:
+    yield (
+        "Of each pair that breaks a rule, every time it does; of a rule that is kept, its nearest pair."
+    )
+    if len(found) > MOST_ROWS:
+        yield f"{count(len(found) - MOST_ROWS, 'more finding')} in findings.json."
+
+
+def _since(comparison: Comparison) -> Iterator[Paragraph | Bullets]:
+    """What became of the findings of the baseline; those that this run has not, as a list."""
+    yield Paragraph(f"{capital(comparison_text(comparison))}.")
+    lines = doubt_lines(comparison)
+    lines += [gone_text(row) for row in comparison.rows if row.now is None]
+    if lines:
+        yield Bullets(lines[:MOST_ROWS], "beside")
+
+
+def _row(finding: Finding, since: ComparedFinding | None, compared: bool) -> Row:
+    rule = f"profile {finding.rule}" if finding.kind == "profile" else name_shown(finding.rule)
+    who = bodies_text(finding) or finding.text or "no pair is near"
+    cells: list[Content | Cell] = [
+        Inline(finding.status, f"tag {finding.status}"),
+        rule,
+        f"not proven {who}" if finding.kind == "unproven" else who,
+        *map(number, figures(finding)),
+        when_text(finding),
+        stretch_text(finding),
+        *([since_text(since)] if compared else []),
+        Cell(waived_text(finding), "wide" if finding.waived else ""),
+        Inline(finding.id, element="code"),
+    ]
+    if finding.step is None:
+        return Row(cells)
+    return Row(cells, At(finding.step, finding.time if finding.between else None))
+
+
+def figures(finding: Finding) -> list[str]:
+    """The clearance, the fail limit and what is proven, in millimetres."""
+    shown = ["" if value is None else mm(value) for value in (finding.clearance, finding.proven)]
+    return [shown[0], limit_mm(finding.fail), shown[1]]
+
+
+TOPIC: Topic = Topic(sections=sections)

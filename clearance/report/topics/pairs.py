@@ -1,0 +1,238 @@
+"""The least clearance of every pair, grouped by what is carried, moves or stands; and the pairs left out.
+
+A cell is coloured by the rule that judges its pair; of a pair that several judge it shows how it stands worst.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar, NamedTuple
+
+from clearance.findings.self_clearance import self_clearance_of
+from clearance.record.record import PairMinimum, Record
+from clearance.record.status import STATUSES, Status, status_of
+from clearance.record.wording import mm, seconds, step_text
+from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint
+from clearance.report.model import PageContent, ReportModel
+from clearance.report.moment import BODIES, at_moment
+from clearance.report.topic import TerminalTable, Topic
+from clearance.report.topics.cell import paddings_of
+from clearance.world.case import Limits
+from clearance.world.rules import DEFAULT
+
+_PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}
+
+_FAR = (0.05, 0.1, 0.2, 0.4, 0.8)
+"""[m] Clearances at which the shade of a cell that is clear changes."""
+
+MOST_SHOWN_AT_ONCE, MOST_LINES = 24, 5
+"""Most rows of what was not measured that do not scroll, and pairs in a terminal or a notebook."""
+
+
+@dataclass(frozen=True)
+class PairJudge:
+    """How the least clearance of a pair stands: the limits of each rule, the paddings [m] of the bodies that have
+    one, by name, and what paths are off [m]. Moments know by themselves whether bodies touch."""
+
+    limits: dict[str, Limits]
+    paddings: dict[str, float]
+    path_error: float
+
+    @staticmethod
+    def of(record: Record) -> PairJudge:
+        """That of a record."""
+        limits = {answer.name: answer.limits for answer in record.rules}
+        return PairJudge(limits, paddings_of(record), record.timeline.path_error)
+
+    def status_of(self, minimum: PairMinimum) -> str:
+        """The status; what padding alone brings to 0 or below is violated, no contact."""
+        padding = sum(self.paddings.get(name, 0.0) for name in (minimum.link, minimum.obstacle))
+        lessened = (
+            padding + self.path_error
+        )  # one sum, as it was taken off: a distance of 0 stays 0
+        touches = minimum.clearance <= -lessened
+        return status_of(minimum.clearance, self.limits[minimum.rule], touches)
+
+
+def data(model: ReportModel) -> dict[str, Any]:
+    """The least clearance of each pair by each rule that judges it, with its status; pairs left out."""
+    record = model.record
+    judge = PairJudge.of(record)
+    return {
+        "sides": list(record.sides[:2]),
+        "pairs": [asdict(one) | {"status": judge.status_of(one)} for one in model.details.minima],
+        "unmeasured": [asdict(pair) for pair in record.unmeasured],
+        "self_clearance": self_clearance_of(record),
+    }
+
+
+def lines(model: ReportModel) -> Iterator[TerminalTable]:
+    """The closest pairs, as a table; nothing where pairs are not known."""
+    record, nearest = model.record, model.session.motion_minima(MOST_LINES)
+    if not nearest:
+        return
+    first, second = BODIES[record.sides[0]]
+    at_samples = "" if all(pair.proven is not None for pair in nearest) else " at the samples"
+    several = bool(record.case.limits.rules)
+    heads = [f"closest{at_samples}: {first.lower()}", second.lower()]
+    heads += [">clearance mm", ">step", ">time s", *(["rule"] * several)]
+    rows = [
+        [pair.link, pair.obstacle, *pair_figures(pair), *([pair.rule] * several)]
+        for pair in nearest
+    ]
+    yield TerminalTable(heads, rows)
+
+
+def pair_figures(pair: PairMinimum) -> list[str]:
+    """The least clearance of a pair [mm], its step, and its time [s]."""
+    return [mm(pair.clearance), step_text(pair), f"{pair.time:.3f}"]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Bodies of one actor, or of one kind: its name and theirs."""
+
+    name: str
+    bodies: tuple[str, ...]
+
+    def short(self, body: str) -> str:
+        """A body's name without that of its group."""
+        return body.removeprefix(f"{self.name}/")
+
+
+class PairCell(NamedTuple):
+    """A pair: its clearance, its look, the moment, its place among the pairs, and what it says when pointed at."""
+
+    text: str
+    shade: str
+    at: At
+    place: int
+    title: str
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """The cells of pairs, by name."""
+
+    template: ClassVar[str] = "matrix"
+    rows: Sequence[Group]
+    columns: Sequence[Group]
+    cells: Mapping[tuple[str, str], PairCell]
+
+    def cells_of(self, name: str) -> list[PairCell | None]:
+        """A row; None for pairs that are not measured."""
+        return [self.cells.get((name, other)) for column in self.columns for other in column.bodies]
+
+
+def sections(content: PageContent) -> Iterator[Section]:
+    """The matrix, if the pairs were asked for, and what was not measured."""
+    if content.summary["pairs"]:
+        told = [_matrix(content.summary), faint(_meaning(content.summary))]
+        yield Section("Least clearance of every pair, mm", told)
+    yield Section("Not measured", [*_unmeasured(content.summary)])
+
+
+def _matrix(summary: dict[str, Any]) -> Matrix:
+    found: dict[tuple[str, str], list[tuple[int, dict[str, Any]]]] = {}
+    for i, pair in enumerate(summary["pairs"]):
+        found.setdefault((pair["link"], pair["obstacle"]), []).append((i, pair))
+    fail = {rule["name"]: rule["fail"] for rule in summary["rules"]}
+    groups, n_robots = groups_of(summary), len(summary["robots"])
+    rows = _used(groups, (first for first, _ in found))
+    columns = _used([*groups[n_robots:], *groups[:n_robots]], (second for _, second in found))
+    return Matrix(rows, columns, {names: _cell(of, fail) for names, of in found.items()})
+
+
+def groups_of(summary: dict[str, Any]) -> list[Group]:
+    """All bodies: robots one by one, carried parts, obstacles that move, obstacles that stand."""
+    kinds = {actor["name"]: actor["kind"] for actor in summary["actors"]}
+    robots = [
+        Group(robot["name"], tuple(body["name"] for body in robot["links"]))
+        for robot in summary["robots"]
+    ]
+    obstacles = [body["name"] for body in summary["obstacles"]]
+    titles = {"part": "carried", "obstacle": "moving", "": "standing"}
+    others = [
+        Group(title, tuple(name for name in obstacles if kinds.get(name, "") == kind))
+        for kind, title in titles.items()
+    ]
+    return [*robots, *others]
+
+
+def _used(groups: Sequence[Group], names: Iterable[str]) -> list[Group]:
+    """The groups with those of their bodies that are named; each body once, in the first group that has it."""
+    left = set(names)
+    found = []
+    for group in groups:
+        own = tuple(name for name in group.bodies if name in left)
+        left -= set(own)
+        if own:
+            found.append(Group(group.name, own))
+    return found
+
+
+def _cell(found: list[tuple[int, dict[str, Any]]], fail: Mapping[str, float]) -> PairCell:
+    place, pair = min(found, key=lambda row: _standing(row[1], fail))
+    title = "\n".join(_title(one) for _, one in found)
+    return PairCell(mm(pair["clearance"]), _shade(pair), at_moment(pair), place, title)
+
+
+def _standing(pair: dict[str, Any], fail: Mapping[str, float]) -> tuple[int, float]:
+    """The worst first: by status, then by how far it is above the fail limit of its rule."""
+    code = STATUSES.index(Status(pair["status"]))
+    return -code, pair["clearance"] - fail[pair["rule"]]
+
+
+def _title(pair: dict[str, Any]) -> str:
+    by = "" if pair["rule"] == DEFAULT else f", rule {pair['rule']}: {pair['status']}"
+    return (
+        f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, "
+        f"step {pair['step']}{'+' * pair['between']}, {seconds(pair['time'])}{by}"
+    )
+
+
+def _shade(pair: dict[str, Any]) -> str:
+    if pair["status"] != "clear":
+        return str(pair["status"])
+    return next((f"far{i}" for i, bound in enumerate(_FAR) if pair["clearance"] < bound), "far5")
+
+
+def _meaning(summary: dict[str, Any]) -> str:
+    shown = _PAIR_SHOWN[summary["need"] == "pairs"]
+    proven = [pair["proven"] is not None for pair in summary["pairs"]]
+    when = "Over the motion" if any(proven) else "At the steps"
+    when += " (at the steps for pairs that stay far)" if any(proven) > all(proven) else ""
+    told = (
+        f"{when}, rounded down. A click moves the replay to where that pair comes closest, with its "
+        f"line and {shown}; \N{EN DASH} marks a pair that was not measured."
+    )
+    told += " Less padding." if summary["paddings"] else ""
+    return told + (
+        " Colours go by the rule that judges a pair." if len(summary["rules"]) > 1 else ""
+    )
+
+
+def _unmeasured(summary: dict[str, Any]) -> Iterator[Paragraph | Table]:
+    """Which links and pairs were left out, and why; how many for each reason, where there are many."""
+    left_out, of_links = summary["unmeasured"], summary["sides"][0] == "link"
+    if not left_out:
+        yield Paragraph(
+            "Nothing was left out: every link with a shape was measured against every obstacle."
+        )
+        return
+    many = len(left_out) > MOST_SHOWN_AT_ONCE
+    if many:
+        reasons = Counter(pair["reason"] for pair in left_out)
+        told = ", ".join(f"{reason}: {number:,}" for reason, number in reasons.most_common())
+        yield Paragraph(f"{told}.")
+    every = "every obstacle" if of_links else "everything"
+    rows = [
+        Row([one["link"], every if one["obstacle"] == "*" else one["obstacle"], one["reason"]])
+        for one in left_out
+    ]
+    yield Table((*BODIES[summary["sides"][0]], "Why"), rows, "bodies", tall=many)
+
+
+TOPIC: Topic = Topic(data, lines, sections)

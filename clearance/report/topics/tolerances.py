@@ -1,0 +1,323 @@
+"""What tolerances leave: proven, expected, who takes most, what may still grow, what to tighten first.
+
+Lengths are rounded down, angles too. Not for: working it out (`clearance.budget`), nor the curves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from decimal import ROUND_FLOOR, Decimal
+from typing import Any, ClassVar, NamedTuple
+
+from clearance.findings.of_budget import NOT_WORKED_OUT
+from clearance.findings.tolerance_lines import least_expected, tolerance_lines
+from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
+from clearance.record.record import Record
+from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule, seconds
+from clearance.report.blocks import (
+    Cell,
+    Content,
+    Inline,
+    Paragraph,
+    Row,
+    Section,
+    Table,
+    capital,
+    faint,
+    number,
+)
+from clearance.report.model import PageContent, ReportModel
+from clearance.report.moment import moment_link, name_shown
+from clearance.report.topic import Line, Topic, labelled
+
+MOST_SOURCES = 3
+"""Sources of errors that a line names."""
+
+_KINDS = {
+    "position": "position of joint {}",
+    "tracking": "tracking of joint {}",
+    "frame": "frame of joint {}",
+    "base": "base",
+    "place": "place",
+    "surface": "surface of {}",
+    "timing": "clock",
+    "facets": "facets",
+}
+
+
+def source_text(record: Record, source: ErrorSource) -> str:
+    """What an error is of, and when, if not now: `base of left`, `tracking of joint left/j at the grasp (2 s)`."""
+    told = _name(record, source)
+    return f"{told} at the {source.moment}" if source.moment else told
+
+
+def _name(record: Record, source: ErrorSource) -> str:
+    part = source.part
+    if len(record.case.robots) > 1 and part:
+        part = f"{source.owner}/{part}"
+    told = _KINDS[source.kind]
+    if source.kind == "facets":
+        return told
+    if "{}" in told:
+        return told.format(part or source.owner)
+    return f"{told} of {source.owner}"
+
+
+def value_text(value: float, unit: str) -> str:
+    """A tolerance with its unit: `0.5 mm`, `0.001 rad`, `0.02 s`."""
+    return f"{limit_mm(value)} mm" if unit == "m" else f"{value:.6g} {unit}"
+
+
+def given_text(source: ErrorSource) -> str:
+    """What the budget gives: `2 mm, 0.001 rad`; of a frame that only one is given of, that."""
+    given = [pair for pair in source.tolerances if pair[0] > 0.0] or source.tolerances[:1]
+    return ", ".join(value_text(value, unit) for value, unit in given)
+
+
+def largest_text(source: ErrorSource) -> str:
+    """What it may be at most, all others as given: `2.31 mm, 0.02 rad or more`; empty where 0 is not enough."""
+    told = []
+    for value, (given, unit) in zip(source.largest, source.tolerances, strict=False):
+        if value is not None:
+            more = " or more" if math.inf > value >= most_looked_for(unit, given) else ""
+            told.append(_rounded_down(value, unit) + more)
+    return ", ".join(told)
+
+
+def _rounded_down(value: float, unit: str) -> str:
+    """Three digits, never more than the value."""
+    if not math.isfinite(value):
+        return "any"
+    exact = Decimal(repr(float(value))) * (1000 if unit == "m" else 1)
+    if exact <= 0:
+        return f"0 {'mm' if unit == 'm' else unit}"
+    last = Decimal(1).scaleb(exact.adjusted() - 2)
+    shown = exact.quantize(last, rounding=ROUND_FLOOR).normalize()
+    return f"{shown:f} {'mm' if unit == 'm' else unit}"
+
+
+def lines(model: ReportModel) -> Iterator[Line]:
+    """Where the tolerances leave least, what takes most of it, and where their numbers come from."""
+    yield from labelled("tolerances", _lines(model))
+
+
+def _lines(model: ReportModel) -> Iterator[str]:
+    record, session = model.record, model.session
+    if record.budget is None:
+        return
+    found = [(one, session.least_left(one)) for one in record.budget]
+    known = [(one, left[0].proven - one.limits.fail) for one, left in found if left]
+    if known:
+        worst = min(known, key=lambda pair: pair[1])[0]
+        yield from source_lines(record, worst, session.error_sources(worst, 0, MOST_SOURCES))
+    assert record.case.tolerance is not None
+    yield from record.case.tolerance.sources
+
+
+def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterator[str]:
+    """What takes most at a moment of a rule, and what of it may be how great at most."""
+    moment = worst.moment
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+    yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
+    taken = [
+        f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
+        for source in worst.sources[:MOST_SOURCES]
+        if source.proven > 0.0
+    ]
+    if taken:
+        yield f"most is taken by {', '.join(taken)}"
+    yield from _largest_lines(record, one, worst.sources[:MOST_SOURCES])
+
+
+def _largest_lines(
+    record: Record, one: RuleBudget, sources: Sequence[ErrorSource]
+) -> Iterator[str]:
+    """What of some errors would keep the limit, and which alone are not enough."""
+    limit = f"the fail limit of {limit_mm(one.limits.fail)} mm{of_rule(one.rule)}"
+    told = [(source_text(record, source), largest_text(source)) for source in sources]
+    enough = [f"{name} {largest}" for name, largest in told if largest]
+    others = [name for name, largest in told if not largest]
+    if enough:
+        yield f"greatest that keeps {limit}, others as given: {', '.join(enough)}"
+    if others:
+        yield f"not enough to keep {limit}, even at 0, alone: {', '.join(others)}"
+
+
+def data(model: ReportModel) -> dict[str, Any]:
+    """What tolerances leave of each rule; nothing without any."""
+    record, budget = model.record, model.record.case.tolerance
+    if budget is None:
+        return {}
+    left = model.details.left
+    told = {
+        "coverage": budget.coverage,
+        "distributions": "normal" if budget.is_normal else "uniform",
+        "unproven_ok": budget.unproven_ok,
+        "sources": list(budget.sources),
+        "lines": list(tolerance_lines(record)),
+        "rules": [_told(record, one, left[one.rule]) for one in record.budget or ()],
+        "verdict": model.verdict.tolerances,
+    }
+    return {"tolerances": told}
+
+
+def _told(record: Record, one: RuleBudget, worst: Sequence[BudgetMoment]) -> dict[str, Any]:
+    return {
+        "rule": one.rule,
+        "fail": one.limits.fail,
+        "warn": one.limits.warn,
+        "keeps": one.keeps,
+        "proven": one.least,
+        "expected": least_expected(one),
+        "basis": "samples" if one.between is None else "motion",
+        "worst": [_moment(record, each) for each in worst],
+    }
+
+
+def _moment(record: Record, worst: BudgetMoment) -> dict[str, Any]:
+    moment = worst.moment
+    return {
+        "step": moment.step,
+        "time": moment.time,
+        "time_b": moment.time_b,
+        "between": moment.between,
+        "body_a": moment.link,
+        "body_b": moment.obstacle,
+        "point_a": list(moment.point_link),
+        "point_b": list(moment.point_obstacle),
+        "clearance": moment.clearance,
+        "proven": worst.proven,
+        "expected": max(worst.expected, worst.proven) if math.isfinite(worst.expected) else None,
+        "sources": [_source(record, source) for source in worst.sources],
+    }
+
+
+def _source(record: Record, source: ErrorSource) -> dict[str, Any]:
+    return asdict(source) | _shown(record, source)
+
+
+def _shown(record: Record, source: ErrorSource) -> dict[str, str]:
+    return {
+        "name": source_text(record, source),
+        "given": given_text(source),
+        "at_most": largest_text(source),
+    }
+
+
+HUES = 6
+"""Colours of a bar; further sources begin again."""
+
+METHOD = (
+    "Proven: every error takes its worst value, in its worst direction, at once with all others; nothing is "
+    "linearised, and the pair that errors bring nearest is looked for among all. Expected: an estimate at the "
+    "nearest points, no proof; errors are taken as independent."
+)
+
+
+class BarPart(NamedTuple):
+    """A piece of a bar, or a mark on it: what it is, its share or place from 0 to 1, and its look."""
+
+    text: str
+    share: float
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class BudgetBar:
+    """The nominal clearance as a bar: what is proven to be left, then what each error takes."""
+
+    template: ClassVar[str] = "budget_bar"
+    narrow: ClassVar[float] = 0.05  # share of a bar that has no room for words
+    label: str
+    pieces: Sequence[BarPart]
+    marks: Sequence[BarPart]
+
+
+def sections(content: PageContent) -> Iterator[Section]:
+    """What is left, what takes it, what to tighten first; nothing where the case has no tolerances."""
+    told = content.summary.get("tolerances")
+    if told is None:
+        return
+    lines = told["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
+    parts: list[object] = [Paragraph(Inline(line, element="strong")) for line in lines]
+    rules = [rule for rule in told["rules"] if rule["worst"]]
+    if rules:
+        worst = min(rules, key=lambda rule: rule["worst"][0]["proven"] - rule["fail"])
+        parts += _worst(worst, worst["worst"][0])
+    if len(told["rules"]) > 1:
+        heads = ("Rule", ">Fail, mm", ">Proven, mm", ">Expected, mm", "With tolerances")
+        parts.append(Table(heads, [*map(_rule, told["rules"])], "budget"))
+    yield Section("Tolerances", [*parts, *map(faint, _notes(told))])
+
+
+def _worst(rule: dict[str, Any], moment: dict[str, Any]) -> Iterator[object]:
+    """The moment at which the errors leave least: a line, the bar, the table."""
+    step = moment["step"]
+    where = (
+        f"between the steps {step:,} and {step + 1:,}" if moment["between"] else f"step {step:,}"
+    )
+    told = f"Where the errors leave least: {moment['body_a']} and {moment['body_b']} at "
+    at = moment_link(moment, f"{seconds(moment['time'])}, {where}")
+    yield Paragraph([told, at, f", {mm(moment['clearance'])} mm nominal."])
+    yield _bar(moment, rule["fail"])
+    heads = ("Error", "Given", ">Takes, mm", ">Std. deviation, mm", "At most, others as given")
+    rows = [_source_row(i, one) for i, one in enumerate(moment["sources"])]
+    yield Table(heads, rows, "budget", tall=len(rows) > 24)
+
+
+def _bar(moment: dict[str, Any], fail: float) -> BudgetBar:
+    left, nominal = max(0.0, moment["proven"]), moment["clearance"]
+    taken = [(one["name"], one["proven"]) for one in moment["sources"] if one["proven"] > 0.0]
+    whole = max(left + sum(value for _, value in taken), nominal, fail) or 1.0
+    state = "kept" if moment["proven"] >= fail and left > 0.0 else "open"
+    pieces = [BarPart(f"left {mm(left)} mm", left / whole, state)] if left > 0.0 else []
+    pieces += [
+        BarPart(f"{name} {depth_mm(value)} mm", value / whole, f"hue{i % HUES}")
+        for i, (name, value) in enumerate(taken)
+    ]
+    marks = [BarPart(f"fail limit {limit_mm(fail)} mm", fail / whole)] if fail > 0.0 else []
+    if 0.0 < nominal < 0.999 * whole:
+        marks.append(BarPart(f"nominal {mm(nominal)} mm", nominal / whole, "nominal"))
+    label = f"of {mm(nominal)} mm nominal, {mm(moment['proven'])} mm are proven to be left"
+    return BudgetBar(label, pieces, marks)
+
+
+def _source_row(i: int, source: dict[str, Any]) -> Row:
+    name: list[str | Inline] = [source["name"]]
+    if i == 0 and source["proven"] > 0.0:
+        first = Inline("tighten first", "tag near")
+        name = [Inline(source["name"], element="strong"), " ", first]
+    at_most, expected = source["at_most"], source["expected"]
+    cells: list[Content | Cell] = [
+        [Inline("", f"swatch hue{i % HUES}"), *name],
+        source["given"],
+        number(depth_mm(source["proven"])),
+        number("" if expected is None else depth_mm(expected)),
+        Cell(at_most or "not enough alone", "" if at_most else "text-violated"),
+    ]
+    return Row(cells)
+
+
+def _rule(rule: dict[str, Any]) -> Row:
+    cells: list[Content | Cell] = [
+        name_shown(rule["rule"]),
+        number(limit_mm(rule["fail"])),
+        number(mm(rule["proven"])),
+        number("" if rule["expected"] is None else mm(rule["expected"])),
+        "kept" if rule["keeps"] else Cell("not proven", "text-violated"),
+    ]
+    return Row(cells)
+
+
+def _notes(told: dict[str, Any]) -> Iterator[str]:
+    normal = told["distributions"] == "normal"
+    spread = (
+        "normal, their magnitude at three deviations" if normal else "uniform up to their magnitude"
+    )
+    yield f"{METHOD} {told['coverage']:g} deviations are taken off; errors are {spread}."
+    yield from (f"Numbers: {source}." for source in told["sources"])
+
+
+TOPIC: Topic = Topic(data, lines, sections)

@@ -1,0 +1,196 @@
+"""The verdict: what stands on top of every answer, and what puts it in doubt right below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from clearance.findings.finding import NOT_PROVEN
+from clearance.findings.of_budget import NOT_WORKED_OUT
+from clearance.findings.verdict import ACCEPTED, STALE, verdict_text
+from clearance.record.wording import count, least_proven, limits_text, mm
+from clearance.report.blocks import Bullets, Cell, Content, Header, Inline, capital
+from clearance.report.model import ReportModel
+from clearance.report.moment import depth_of, name_shown, when_of
+from clearance.report.topic import Line, Topic
+from clearance.world.notice import KINDS, Notice
+
+_TITLES = {
+    "clear": "clear",
+    "near": "near miss",
+    "violated": "limit violated",
+    "contact": "contact",
+    "suspect": "suspect input",
+    STALE: STALE,
+    NOT_PROVEN: NOT_PROVEN,
+}
+
+_EXTENTS = {
+    "steps": "",
+    "pairs": ", each pair at each step",
+    "limit": ", exactly below the warn limit, elsewhere a proven bound",
+    "minimum": ", for their minimum only",
+}
+
+
+def data(model: ReportModel) -> dict[str, Any]:
+    """The verdict: its status, whether it is passed, what it rests on, and why."""
+    verdict = model.verdict
+    return {
+        "verdict": verdict.status,
+        "verdict_text": verdict.text(),
+        "measured": verdict.measured,
+        "passed": verdict.passed,
+        "exit_code": verdict.exit_code,
+        "basis": verdict.basis,
+        "reasons": list(verdict.reasons),
+        "unproven": verdict.unproven,
+        "broken": list(verdict.broken),
+        "warnings": list(verdict.warnings),
+        "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
+        "disputed_by": verdict.disputed_by,
+        "not_checked": list(verdict.not_checked),
+        "nearer": verdict.nearest,
+        "clocks": verdict.clocks,
+        "waived": list(verdict.waived),
+        "n_waivers": verdict.n_waivers,
+        "stale": list(verdict.stale),
+        "at_level": verdict.at_level,
+    }
+
+
+def lines(model: ReportModel) -> Iterator[Line]:
+    """What a reader must know beside the clearance: right below the headline."""
+    verdict = model.verdict
+    if verdict.scope:
+        yield "", "; ".join(verdict.scope)
+    if verdict.nearest:
+        yield "nearest", verdict.nearest
+    yield from (("waived", text) for text in verdict.waived)
+    yield from (("waivers", text) for text in verdict.stale)
+    yield from (("violated", text) for text in verdict.broken)
+    yield from (("tolerances", text) for text in verdict.with_tolerances)
+    if verdict.unproven:
+        yield "unproven", verdict.unproven
+    yield from (("suspect", _suspect(one)) for one in verdict.suspects)
+    yield from (("warning", text) for text in verdict.warnings)
+
+
+def _suspect(notice: Notice) -> str:
+    return f"{notice.text} (--accept {notice.kind})" if notice.kind in KINDS else notice.text
+
+
+def header(summary: dict[str, Any]) -> Header:
+    """Name, verdict, what puts it in doubt, the moment that stands worst, limits."""
+    signed = summary["sign_off"] or {}
+    facts = [
+        *_worst_facts(summary),
+        ("Certified", _certified_word(summary["certified"])),
+        *_limit_facts(summary),
+        ("Measured", f"{_extent(summary)}, {summary['motion']} motion"),
+        ("Cross-check", _cross_check_word(summary["cross_check"])),
+        *((name.capitalize(), value) for name, value in signed.items() if value),
+    ]
+    failing = summary["disputed_by"] or summary["verdict"] in (STALE, NOT_PROVEN)
+    kind = "violated" if failing else summary["verdict"]
+    told = [Bullets(_headline(summary), "beside headline"), Bullets(_beside(summary), "beside")]
+    return Header(
+        "Clearance report",
+        summary["name"],
+        badge_text(summary),
+        kind,
+        [block for block in told if block.lines],
+        facts,
+    )
+
+
+def badge_text(summary: dict[str, Any]) -> str:
+    """The verdict in a few words."""
+    status, measured, basis, disputed_by, clocks, n_waivers = (
+        summary[name]
+        for name in ("verdict", "measured", "basis", "disputed_by", "clocks", "n_waivers")
+    )
+    title, given = _TITLES.__getitem__, summary.get("tolerances", {}).get("verdict", "")
+    told = verdict_text(status, measured, basis, disputed_by, clocks, n_waivers, title, given)
+    return capital(told)
+
+
+def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
+    worst = summary["worst"]
+    name = "Least clearance" if summary["nearer"] is None else "Worst against its rule"
+    near: Content = [Inline(mm(worst["clearance"]), element="strong"), " mm"]
+    if worst["touches"]:
+        name, near = "Deepest contact", Inline(depth_of(worst), element="strong")
+    return [
+        (name, near),
+        ("Between", f"{worst['link']} and {worst['obstacle']}"),
+        ("At", when_of(worst)),
+    ]
+
+
+def _limit_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
+    if len(summary["rules"]) == 1:
+        limits = summary["limits"]
+        return [("Limits", limits_text(limits["fail"], limits["warn"]))]
+    rule = next(one for one in summary["rules"] if one["name"] == summary["worst"]["rule"])
+    limits = limits_text(rule["fail"], rule["warn"])
+    return [("Judged by", name_shown(rule["name"])), ("Its limits", limits)]
+
+
+def _headline(summary: dict[str, Any]) -> list[Content | Cell]:
+    """What stands worst against which rule, and what is nearest if that is something else; where there are
+    rules."""
+    if len(summary["rules"]) == 1:
+        return []
+    worst = summary["worst"]
+    told = next(iter(summary["reasons"]), None) if worst["status"] != "clear" else None
+    found: list[Content | Cell] = [Cell(told, f"text-{worst['status']}")] if told else []
+    return found + ([f"Nearest of all: {summary['nearer']}"] if summary["nearer"] else [])
+
+
+def _beside(summary: dict[str, Any]) -> list[Content | Cell]:
+    """What a reader must know beside the clearance, right below the verdict."""
+    suspects = [f"Suspect {one['kind']}: {one['text']}" for one in summary["suspects"]]
+    failing = [f"Violated: {text}" for text in summary["broken"]] + [
+        *map(capital, summary["stale"])
+    ]
+    doubts = [text for text in (summary["at_level"], summary["unproven"]) if text]
+    doubts += [f"Warning: {text}" for text in summary["warnings"]]
+    return [
+        *(Cell(text, "text-suspect") for text in suspects),
+        *(Cell(text, "text-violated") for text in failing),
+        *(Cell(f"Waived: {text}", "text-near") for text in summary["waived"]),
+        *_with_tolerances(summary),
+        *(Cell(capital(text), "text-near") for text in doubts),
+        *(capital(one["text"]) for one in summary["self_clearance"]),
+        *(f"{name.capitalize()} not checked" for name in summary["not_checked"]),
+    ]
+
+
+def _with_tolerances(summary: dict[str, Any]) -> list[Cell]:
+    """What the tolerances leave, a line a rule; marked where a limit is not proven with them."""
+    told = summary.get("tolerances")
+    if told is None:
+        return []
+    marked = told["verdict"] in (NOT_PROVEN, ACCEPTED)
+    found = told["lines"] or [f"{capital(NOT_WORKED_OUT)}."]
+    return [Cell(line, "text-violated" if marked else "") for line in found]
+
+
+def _certified_word(certified: dict[str, Any] | None) -> str:
+    return "no, looked at the samples only" if certified is None else least_proven(certified)
+
+
+def _extent(summary: dict[str, Any]) -> str:
+    measured = {(pair["link"], pair["obstacle"]) for pair in summary["pairs"]}  # a row a rule
+    pairs = f", {count(len(measured), 'pair')}" if measured else ""
+    return count(summary["n_steps"], "step") + pairs + _EXTENTS[summary["need"]]
+
+
+def _cross_check_word(check: dict[str, Any] | None) -> str:
+    if check is None:
+        return "not asked for"
+    return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
+
+
+TOPIC: Topic = Topic(data, lines)

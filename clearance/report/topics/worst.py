@@ -1,0 +1,206 @@
+"""The moment that stands worst: joints, witness points, and what its clearance changes by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from clearance.record.moment import Moment
+from clearance.record.names import LINK_AND_OBSTACLE
+from clearance.record.record import Record
+from clearance.record.sensitivity import Sensitivity
+from clearance.record.wording import count, joint_value, mm, other_time, seconds
+from clearance.report.blocks import Cell, Paragraph, Row, Section, Table, faint, number
+from clearance.report.model import PageContent, ReportModel
+from clearance.report.moment import (
+    depth_of,
+    moment_link,
+    name_shown,
+    step_link,
+    told_moment,
+    when_of,
+)
+from clearance.report.topic import Line, Topic
+from clearance.world.motion import Motion
+
+MOST_PAIRS = 8
+"""Pairs that are as near, by name."""
+
+_PER = {"rad": (math.radians(1.0) * 1e3, "1°"), "m": (1.0, "1 mm")}
+"""Of a variable's unit: from metres of clearance a unit to millimetres a step, and the step."""
+
+
+def data(model: ReportModel) -> dict[str, Any]:
+    """The worst moment of the motion, of the samples, the nearest whatever judges it, and slopes."""
+    record = model.record
+    return {
+        "worst": _worst(record, record.worst),
+        "worst_sample": _worst(record, record.worst_sample),
+        "nearest": told_moment(record, record.nearest),
+        "sensitivity": sensitivity_data(model.details.sensitivity),
+    }
+
+
+def _worst(record: Record, worst: Moment) -> dict[str, Any]:
+    of_robots = zip(record.motions, worst.positions, strict=True)
+    joints = [joint for motion, positions in of_robots for joint in _joints(motion, positions)]
+    return told_moment(record, worst) | {"joints": joints}
+
+
+def _joints(motion: Motion, positions: np.ndarray) -> list[dict[str, Any]]:
+    """Name, kind, position and limits [rad] or [m] of every moving joint at one moment."""
+    return [
+        {
+            "robot": motion.placed.robot.name,
+            "name": joint.name,
+            "kind": str(joint.kind),
+            "position": float(position),
+            "lower": float(joint.lower) if np.isfinite(joint.lower) else None,
+            "upper": float(joint.upper) if np.isfinite(joint.upper) else None,
+        }
+        for joint, position in zip(motion.placed.robot.moving_joints, positions, strict=True)
+    ]
+
+
+def sensitivity_data(found: Sensitivity) -> dict[str, Any]:
+    """Slopes in metres of clearance per radian or metre, or why there are none."""
+    return {
+        "why_not": found.why_not or None,
+        "pairs": [list(pair) for pair in found.pairs],
+        "rates": [rate._asdict() | {"both_ways": rate.both_ways} for rate in found.rates],
+    }
+
+
+def lines(model: ReportModel) -> Iterator[Line]:
+    """Step, time, bodies and witness points."""
+    record, worst = model.record, model.record.worst
+    a, b = ("link", "obstacle") if record.sides[:2] == LINK_AND_OBSTACLE else ("a", "b")
+    between = f"between the steps {worst.step} and {worst.step + 1}"
+    where = between if worst.between else f"step {worst.step}"
+    of_steps = f"of {count(record.steps.num_rows, 'step')}"
+    at = f"{seconds(worst.time)}{other_time(worst.obstacle, worst.time_b)}"
+    yield "worst", f"{where} {of_steps}, {at}: {worst.link} - {worst.obstacle}"
+    yield "points", f"{a} {_point(worst.point_link)}, {b} {_point(worst.point_obstacle)} m"
+
+
+def _point(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{value:.6f}' for value in point)})"
+
+
+class JointRow(NamedTuple):
+    """A joint: its name and position in words, and its share of its range, or why there is none."""
+
+    name: str
+    position: str
+    told: str
+    share: float | None = None
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class Joints:
+    """Where in its limits each joint stands."""
+
+    template: ClassVar[str] = "joints"
+    rows: Sequence[JointRow]
+
+
+def sections(content: PageContent) -> Iterator[Section]:
+    """The joint values and witness points of the worst moment."""
+    summary = content.summary
+    worst = summary["worst"]
+    several = len({joint["robot"] for joint in worst["joints"]}) > 1
+    joints = Joints([_joint_row(joint, several) for joint in worst["joints"]])
+    points = [
+        Row([f"on {worst[body]}", *(number(f"{v * 1000:.3f}") for v in worst[f"point_{body}"])])
+        for body in ("link", "obstacle")
+    ]
+    near = depth_of(worst) if worst["touches"] else f"{mm(worst['clearance'])} mm"
+    first = f"{near} between {worst['link']} and {worst['obstacle']} at "
+    yield Section(
+        "Worst moment",
+        [
+            Paragraph([first, moment_link(worst, when_of(worst)), "."]),
+            *_nearest(summary),
+            *_worst_sample(summary),
+            *([joints] if joints.rows else []),
+            Table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
+            *sensitivity_blocks(summary["sensitivity"], several_robots=several),
+        ],
+    )
+
+
+def _nearest(summary: dict[str, Any]) -> list[Paragraph]:
+    """The least clearance of all, where something else stands worse against its rule."""
+    if summary["nearer"] is None:
+        return []
+    nearest = summary["nearest"]
+    text = f"Nearest of all are {nearest['link']} and {nearest['obstacle']}: {mm(nearest['clearance'])} mm at "
+    by = f", judged by {name_shown(nearest['rule'])}: {nearest['status']}."
+    return [Paragraph([text, moment_link(nearest, when_of(nearest)), by])]
+
+
+def _worst_sample(summary: dict[str, Any]) -> list[Paragraph]:
+    """The least clearance at the steps, where that between them is less."""
+    sample = summary["worst_sample"]
+    if not summary["worst"]["between"]:
+        return []
+    least = "least" if len(summary["rules"]) == 1 else "worst"
+    text = f"At the steps the {least} is {mm(sample['clearance'])} mm between {sample['link']} and "
+    return [Paragraph([text, f"{sample['obstacle']}, ", step_link(sample["step"]), "."])]
+
+
+def _joint_row(joint: dict[str, Any], several: bool) -> JointRow:
+    name = f"{joint['robot']} / {joint['name']}" if several else joint["name"]
+    position = joint_value(joint["kind"], joint["position"])
+    lower, upper = joint["lower"], joint["upper"]
+    if lower is None or upper is None or upper <= lower:
+        return JointRow(name, position, "no limits", kind="faint")
+    share = (joint["position"] - lower) / (upper - lower)
+    if not 0.0 <= share <= 1.0:
+        return JointRow(name, position, "outside its limits", kind="text-violated")
+    ends = f"{joint_value(joint['kind'], lower)} to {joint_value(joint['kind'], upper)}"
+    return JointRow(name, position, ends, share)
+
+
+def sensitivity_blocks(given: dict[str, Any], *, several_robots: bool) -> list[Table | Paragraph]:
+    """The table under the worst moment, or a line that says why there is none."""
+    if given["why_not"]:
+        return [faint(f"What it changes by is not worked out: {given['why_not']}.")]
+    if not given["rates"]:
+        return [faint("Nothing that can be moved changes it.")]
+    heads = ("What this clearance changes by", ">Moved by", ">Up, mm", ">Down, mm", "")
+    rows = [_rate(rate, several_robots) for rate in given["rates"]]
+    return [Table(heads, rows, tall=True), faint(_note(given))]
+
+
+def _rate(rate: dict[str, Any], several_robots: bool) -> Row:
+    factor, step = _PER[rate["unit"]]
+    name = f"{rate['kind']} {rate['of']}, {rate['name']}"
+    if rate["kind"] == "joint":
+        name = f"{rate['of']} / {rate['name']}" if several_robots else rate["name"]
+    figures = [step, *(_signed(rate[way] * factor) for way in ("more", "less"))]
+    one_way = "" if rate["both_ways"] else "each holds one way only"
+    return Row([name, *map(number, figures), Cell(one_way, "faint")])
+
+
+def _signed(value: float) -> str:
+    text = f"{value:+.3f}"
+    return "0" if float(text) == 0.0 else text
+
+
+def _note(given: dict[str, Any]) -> str:
+    told = "In first order, near this moment: a large move changes it otherwise, and other pairs come near."
+    if len(given["pairs"]) > 1:
+        names = [f"{a} and {b}" for a, b in given["pairs"][:MOST_PAIRS]]
+        more = len(given["pairs"]) - len(names)
+        names += [f"{more} more"] if more else []
+        told = f"As near are {'; '.join(names)}: the least of them counts. {told}"
+    return told
+
+
+TOPIC: Topic = Topic(data, lines, sections)

@@ -1,0 +1,34 @@
+"""Makes the trajectories, pose tables and meshes of scenes/; the case files beside them are written by hand.
+
+    python scripts/make_scenes.py [--out REPOSITORY] [SCENE ...]
+
+Run again, it writes the same bytes. Needs robots/heron6 (scripts/make_robot.py) and pybullet_data.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from makers.paths import write_table
+from makers.scene_meshes import MESHES
+from makers.scene_paths import TABLES
+from makers.solids import write_stl
+
+
+def make(root: Path, name: str) -> None:
+    """Writes the files of one scene under `root`/scenes."""
+    folder = root / "scenes" / name
+    for mesh_name, shape in MESHES.get(name, {}).items():
+        write_stl(folder / "meshes" / f"{mesh_name}.stl", shape())
+    for file_name, table in TABLES[name]().items():
+        write_table(folder / file_name, table)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(TABLES))
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1])
+    arguments = parser.parse_args()
+    for scene in arguments.scenes or TABLES:
+        make(arguments.out, scene)
