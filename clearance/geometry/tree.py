@@ -1,7 +1,8 @@
 """Polyhedra in the form that kernels search: owned features, plane data and the bounding volume tree.
 
 Built once a polyhedron and cached in it; `join` lays several behind one another so that one compiled call
-can serve a whole robot and scene. Not for: the search itself (`kernels.search.descent`).
+can serve a whole robot and scene. A point of a cloud is a face of one corner, which it owns. It has no edge, no
+normal and no cone, so that the search for surfaces serves clouds as it is.
 """
 
 from __future__ import annotations
@@ -12,8 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.geometry.closing import Closing, closing_of
-from clearance.geometry.cloud_surface import cloud_surface
-from clearance.geometry.cones import face_cones, node_cones
+from clearance.geometry.cones import face_cones, no_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
 from clearance.geometry.point_cloud import PointCloud
@@ -23,6 +23,7 @@ from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
 from clearance.kernels.mesh.surface import ANYTHING, LISTED, Surface
+from clearance.ordered import ascending
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
@@ -261,3 +262,53 @@ def _cones(
         ring, twin, vertices, remaining, normals[chosen], bent[chosen]
     )
     return axes, angles
+
+
+_OWNS_ITS_CORNER = 1
+
+_ROUNDED_UP = 1.0 + 2.0**-21
+
+
+def cloud_surface(cloud: PointCloud) -> Surface:
+    """The searchable form of a cloud."""
+    points, n = cloud.vertices.copy(), cloud.n_points
+    starts, each = np.arange(n + 1), np.arange(n)
+    nothing = np.zeros((n, 3))
+    centres, boxes, children = nodes_over(points, starts, each)
+    _, firsts = np.unique(cloud.face_component, return_index=True)
+    probes = ascending(np.sort(firsts))  # halved to test whether a point is one
+    return Surface(
+        vertices=points,
+        exact=points,
+        face_starts=starts,
+        face_vertices=each,
+        normals=nothing,
+        blunt=np.ones(n),
+        width=np.zeros(n),
+        bent=np.zeros(n, dtype=np.bool_),
+        corner_normals=nothing,
+        vertex_starts=starts,
+        owned_vertices=each,
+        edge_starts=np.zeros(n + 1, dtype=np.int64),
+        owned_edges=np.empty((0, 2), dtype=np.int64),
+        owns=np.full(n, _OWNS_ITS_CORNER, dtype=np.uint16),
+        centres=centres,
+        boxes=_with_balls(boxes, cloud.ball_radius),
+        cones=no_cones(boxes),
+        children=children,
+        roots=np.zeros(1, dtype=np.int64),
+        probe_starts=np.array([0, len(probes)]),
+        probes=probes.astype(np.int64),
+        turns=np.zeros(n, dtype=np.int32),
+        cap_starts=np.zeros(2, dtype=np.int64),
+        caps=np.empty((0, 3)),
+        radii=np.array([cloud.ball_radius]),
+    )
+
+
+def _with_balls(boxes: np.ndarray, radius: float) -> np.ndarray:
+    """The boxes, with that of the root and its equivalents large enough for the balls."""
+    grown = boxes.copy()
+    grown[9:12, :WIDTH] += np.float32(radius * _ROUNDED_UP)
+    grown[9:12, :WIDTH] *= np.float32(_ROUNDED_UP)
+    return grown

@@ -1,6 +1,6 @@
 """The tree of boxes over some of the faces of a surface, in the arrays that kernels search.
 
-Not for: how it is built (`kernels.mesh.tree_build`), and what else a surface has (`tree`, `cloud_surface`).
+Not for: how it is built (`kernels.mesh.tree_build`), and what else a surface has (`tree`).
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ asked here by the same number: is a part known to be outside? The rule depends o
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
@@ -20,7 +21,6 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.search.containment import MARGIN
 from clearance.kernels.search.doubt import OutsideRule, in_doubt
-from clearance.query.cloud_points import CloudPoints
 
 WOUND = 0.98
 """[turns] Loose faces that go round a point by more may be a solid with cracks, seen under 2 % at most."""
@@ -185,3 +185,51 @@ def _kept(
     if shape not in known:
         known[shape] = make(shape)
     return known[shape]
+
+
+class CloudPoints(NamedTuple):
+    """Points of a cloud, ordered by x.
+
+    Attributes:
+        every: (n, 3) [m] all of them. heads: (k, 3) [m] one of each group whose balls hang together.
+    """
+
+    every: np.ndarray
+    heads: np.ndarray
+
+    @classmethod
+    def of(cls, cloud: PointCloud) -> CloudPoints:
+        """Those of a cloud."""
+        _, firsts = np.unique(cloud.face_component, return_index=True)
+        return cls(cloud.vertices, cloud.vertices[np.sort(firsts)])
+
+    def within(
+        self,
+        bounds: np.ndarray,
+        world_from_body: np.ndarray,
+        world_from_cloud: np.ndarray,
+        one_of_each: bool = False,
+    ) -> np.ndarray:
+        """(m, 3) [m] the points that may be within the bounds (2, 3) [m] of a body, in the frame of the cloud.
+
+        Args:
+            one_of_each: of each group of balls that hang together only one.
+        """
+        corners = np.array(list(itertools.product(*bounds.T)))
+        corners = (
+            corners @ world_from_body[:3, :3].T + world_from_body[:3, 3] - world_from_cloud[:3, 3]
+        )
+        corners = corners @ world_from_cloud[:3, :3]
+        slack = _ROUNDING * np.abs(corners).max()
+        low, high = corners.min(axis=0) - slack, corners.max(axis=0) + slack
+        points = self.heads if one_of_each else self.every
+        first, last = (
+            np.searchsorted(points[:, 0], low[0]),
+            np.searchsorted(points[:, 0], high[0], "right"),
+        )
+        near = points[first:last]
+        return near[((near >= low) & (near <= high)).all(axis=1)]
+
+
+_ROUNDING = 1e-9
+"""[-] Of the coordinates, by which a box is made larger."""

@@ -147,7 +147,7 @@ class MeasuringSession(MeasuredRun):
 
     def earlier_motion(self, replay: Replay) -> list[EarlierBody]:
         """The bodies of a replay of another run that were elsewhere in this one."""
-        from clearance.simulate.replay.earlier_motion import earlier_motion
+        from clearance.simulate.replay.replay import earlier_motion
 
         return earlier_motion(self.record, replay)
 

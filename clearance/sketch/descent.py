@@ -1,7 +1,7 @@
 """A whole part solved from the drawing: least squares with exact second derivatives, sparse, any size.
 
 The sum of squared errors goes down by Newton's method in a trust region. Two things distinguish it from the damped
-descent of numeric clusters (`solve.damped`): the second derivatives of the equations, which
+descent of numeric clusters (`solve.search`): the second derivatives of the equations, which
 lead away from where slivers lie flat, and corrections of second order, which follow the curved valleys that
 slivers make, with the factors that are at hand. Not for: the other minima that it may end in (`folds`).
 Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (corrections of second order).

@@ -3,7 +3,7 @@
 A gripper with an error closes on a part without one. Let the carrier be at C(g) d(g) at the grasp, where d is its
 error, and at C(t) d(t) later, and the part at P before. Then the part is at C(t) d(t) d(g)^-1 C(g)^-1 P. It has
 the errors of both moments, and keeps them when it is laid down or handed on. Axes and places stay constant, seen
-from the part. Not for: how large errors are (`budget`), what carries what (`grips`).
+from the part.
 """
 
 from __future__ import annotations

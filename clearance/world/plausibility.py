@@ -7,19 +7,31 @@ only a file shows (`load.plausibility`), and values that cannot be right.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
-from clearance.world.case import Case, Limits
+import numpy as np
+
+from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.extents import metres
 from clearance.world.joint_limits import notices_on_joints
 from clearance.world.joint_positions import joint_extents
 from clearance.world.joint_speeds import notices_on_speed
-from clearance.world.notice import Notice, Severity, listed, worst_first
-from clearance.world.plausible_clocks import notices_on_clocks
-from clearance.world.plausible_motion import notices_on_motion
+from clearance.world.notice import WRAP, Notice, Severity, listed, worst_first
+from clearance.world.plausible_motion import (
+    CREEP_SLIDE,
+    CREEP_TURN,
+    LEAST_SLIDE,
+    LEAST_TURN,
+    notices_on_motion,
+)
 from clearance.world.plausible_recordings import notices_on_holes
 from clearance.world.plausible_sizes import notices_on_sizes
-from clearance.world.plausible_tables import notices_on_tables
 from clearance.world.plausible_wrap import notices_on_wrap
+from clearance.world.pose_table import PoseTable
+from clearance.world.timing import Timing
 
 LARGE_LIMIT = 0.5
 """[m] A clearance limit above half a metre would forbid a robot most of its cell; in millimetres it
@@ -96,3 +108,152 @@ def _in_millimetres(large: list[str], what: str) -> list[Notice]:
     names = " and ".join(large) if len(large) < 3 else listed(large)
     text = f"CHECK UNITS: {names}; {what} in metres, is this millimetres?"
     return [Notice(Severity.SUSPECT, "units", text)]
+
+
+LARGE_TRAVEL = 100.0
+"""[m] Nothing in a cell goes so far; in millimetres it is usual."""
+
+
+HALF_TURN = 2e-3
+"""[rad] A turn that is as near to half a turn is one: quaternions of three digits are off by so much."""
+
+
+def notices_on_tables(case: Case) -> list[Notice]:
+    """Tables of obstacles that look like another unit, or leave a turn open."""
+    texts, halves = [], []
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None:
+            texts += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
+            halves += _half_turns(f"obstacle {obstacle.name!r}", obstacle.moves)
+    notices = [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in texts]
+    return [*notices, *(Notice(Severity.SUSPECT, WRAP, text) for text in halves)]
+
+
+def _half_turns(what: str, table: PoseTable) -> list[str]:
+    """Notice of half a turn of a body in a step, which is as far either way round."""
+    cosines = np.abs((table.quaternions[1:] * table.quaternions[:-1]).sum(axis=1))
+    steps = np.flatnonzero(2.0 * cosines < HALF_TURN)
+    if not len(steps):
+        return []
+    start, end = table.times[steps[0] : steps[0] + 2].tolist()
+    return [
+        f"{what} turns by half a turn in one step, from {start:g} to {end:g} s, and its table does not say which "
+        "way round; give a row between"
+    ]
+
+
+def _odd(what: str, table: PoseTable) -> list[str]:
+    texts = []
+    travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
+    if travel > LARGE_TRAVEL:
+        texts.append(
+            f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?"
+        )
+    if _creeps(table):
+        length = float(table.times[-1] - table.times[0]) / table.timing.rate
+        texts.append(
+            f"{what} moves no faster than {CREEP_SLIDE * 1000:g} mm/s and {CREEP_TURN:g} rad/s in {length:g} s; "
+            "times are in seconds, is this milliseconds?"
+        )
+    return texts
+
+
+def _creeps(table: PoseTable) -> bool:
+    """True for a motion that gets somewhere, but never faster than creeping."""
+    if len(table) < 2:
+        return False
+    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
+    chords = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+    turns = 4.0 * np.arcsin(np.minimum(1.0, chords / 2.0))
+    lengths = np.diff(table.times) / table.timing.rate
+    slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
+    return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))
+
+
+SKEW = 1e-3
+"""[s] Recordings that begin within it begin together. Beyond it, and within an interval of theirs, each began with
+its first message: that is a warning."""
+
+
+class _Table(NamedTuple):
+    """The owner of a table, and its start and end in the run [s]; the end is infinite if it repeats."""
+
+    start: float
+    end: float
+    name: str
+    timing: Timing
+
+    @property
+    def text(self) -> str:
+        until = "on" if self.end == math.inf else f"to {self.end:.12g} s"
+        return f"{self.name} moves from {self.start:.12g} {until}"
+
+
+def notices_on_clocks(case: Case) -> list[Notice]:
+    """Notices on tables that end before others begin, and on recordings that are shifted against their stamps.
+
+    There is none where the case says `start` or `after`.
+    """
+    if case.clock.slack == math.inf:
+        return []
+    tables, found = sorted(_tables(case)), []
+    for i, later in enumerate(tables[1:], 1):
+        earlier = max(tables[:i], key=lambda table: table.end)
+        meant = earlier.timing.says_after or later.timing.says_start
+        if earlier.end < later.start and not meant:
+            text = (
+                f"CHECK CLOCKS: {earlier.text}, {later.text}: they never move together; do their times "
+                "come from one clock? If so, give the later table a `start:`, or the earlier one `after: hold`"
+            )
+            found.append(Notice(Severity.SUSPECT, "clocks", text))
+    return [*found, *_recordings_begin_unlike(case)]
+
+
+def _recordings_begin_unlike(case: Case) -> Iterator[Notice]:
+    """Notices on recordings that begin together in the case, but not by their stamps."""
+    recorded = [one for one in case.robots if one.trajectory and one.trajectory.began is not None]
+    recorded.sort(key=_clock_at_start)
+    for later in recorded[1:]:
+        delay = _clock_at_start(later) - _clock_at_start(recorded[0])
+        if delay > SKEW and not later.timing.says_start:
+            start = f"{delay / later.timing.rate:.6g}"
+            text = (
+                f"CHECK CLOCKS: by its stamps the recording of robot {later.robot.name!r} begins {start} s after "
+                f"that of {recorded[0].robot.name!r}, but it is taken from 0 s; beside its file, "
+                f"`start: {start}` keeps the delay and `start: 0` drops it"
+            )
+            by_chance = delay <= max(_usual_interval(later), _usual_interval(recorded[0]))
+            yield Notice(Severity.WARNING if by_chance else Severity.SUSPECT, "clocks", text)
+
+
+def _usual_interval(placed: PlacedRobot) -> float:
+    """[s] between two samples of a recording, by its clock."""
+    intervals = np.diff(placed.given_trajectory.times)
+    return float(np.median(intervals)) if len(intervals) else 0.0
+
+
+def _clock_at_start(placed: PlacedRobot) -> float:
+    """[s] What the clock of a recording showed at the run's time 0."""
+    began = placed.given_trajectory.began
+    assert began is not None
+    return began - placed.timing.start * placed.timing.rate
+
+
+def _tables(case: Case) -> Iterator[_Table]:
+    for placed in case.robots:
+        if placed.trajectory is not None and np.ptp(placed.trajectory.positions, axis=0).any():
+            name = f"robot {placed.robot.name!r}"
+            yield _table(name, placed.trajectory.times, placed.timing)
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None and _changes(obstacle.moves):
+            name = f"obstacle {obstacle.name!r}"
+            yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+
+
+def _changes(table: PoseTable) -> bool:
+    return any(np.ptp(one, axis=0).any() for one in (table.positions, table.quaternions))
+
+
+def _table(name: str, times: np.ndarray, timing: Timing) -> _Table:
+    start, end = timing.run_times(times)[[0, -1]].tolist()
+    return _Table(start, math.inf if timing.after == "loop" else end, name, timing)

@@ -1,6 +1,6 @@
 """Motions of robots that look like degrees, millimetres or milliseconds.
 
-Not for: joint limits (`joint_limits`), nor tables of poses (`plausible_tables`).
+Not for: joint limits (`joint_limits`), nor tables of poses (`plausibility`).
 """
 
 from __future__ import annotations

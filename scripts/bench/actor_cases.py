@@ -1,7 +1,7 @@
 """Cases in which more moves than one robot among standing things, made in memory from real robots.
 
 An arm that minds itself and a scene, a humanoid that minds itself, two arms over one table. Seeds are fixed; what
-touches at rest is allowed, so that no run ends at a contact. Not for: measuring (`actors`, `actor_loops`).
+touches at rest is allowed, so that no run ends at a contact. Not for: measuring (`actors`).
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from harness import SCENES
 
 import clearance as cl
 from clearance.formats.robot.srdf import load_srdf
@@ -84,6 +85,11 @@ def two_arms(n_steps: int = 300) -> Case:
     tray = Obstacle(Body("tray", torus(0.12, 0.02, 48, 12)), at(y=0.3, z=0.04))
     standing = Allowance(("*/panda_link0", "table"))
     return settled(Case("two_arms", arms, (table, tray), allow=(standing,)))
+
+
+def handover() -> Case:
+    """Two arms, one of which hands the other a part."""
+    return cl.load_case(SCENES / "dual_arm_handover" / "case.yaml")
 
 
 CASES: dict[str, Callable[..., Case]] = {

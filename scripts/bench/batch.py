@@ -1,13 +1,12 @@
-"""Prints how fast a batch is: cases a second, two workers against one, what store and engine cost, memory, run
-two.
+"""Prints how fast a batch is: cases a second, two workers against one, what store and engine cost, memory.
 
-    python scripts/bench/batch.py [--cases N] [--many N] [--only rates|workers|many] [--scene NAME] [--csv FILE]
+    python scripts/bench/batch.py [--parts rates|workers|many ...] [--cases N] [--many N] [--scene NAME]
 
 `--cases` trajectories of 300 steps in one cell of `scenes/`, for both bases of a verdict; `--many` short ones for
 memory, after a tenth of them and after all, and for the second run. Rates are of processor time, after the cell is
 read and all is compiled: the median of tasks of 20 cases and the best of them, which says more on a busy machine.
 Two workers are held against one by the wall, in turns, the least of each; and by processor time of all their
-processes, which says what two idle cores would show. The conditions are printed.
+processes, which says what two idle cores would show.
 """
 
 from __future__ import annotations
@@ -19,14 +18,12 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from itertools import chain
 from pathlib import Path
 from statistics import median
 
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from inputs import ROOT
-from rich.console import Console
-from rows import write_csv
+from harness import ROOT, SCENES, Row, timed
 
 from clearance.batch.answer import answer_of
 from clearance.batch.engine import LocalEngine
@@ -41,67 +38,78 @@ from clearance.batch.store import FILE, open_store
 from clearance.batch.workers import WorkerEngine, local_workers
 from clearance.case.case_file import load_case
 
-COLUMNS = ("what", "value", "unit", "target")
-CHUNK = 20
-TURNS = 3
-CART = """<robot name="cart"><link name="ground"/>
-  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
-  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
-    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
-RAIL = """robot: {urdf: cart.urdf}
-scene: {obstacles: [{name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}]}
-limits: {fail: 0.05, warn: 0.3}
-"""
+CHUNK, TURNS = 20, 3
+
+SMALLEST = ["--parts", "rates", "--cases", "80", "--scene", "box_box"]
 
 
-def main() -> None:
+def main(words: list[str] | None = None) -> list[Row]:
     """Runs all parts."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--many", type=int, default=10_000)
-    parser.add_argument("--only", choices=tuple(PARTS), help="one part of it")
-    parser.add_argument("--scene", default="iiwa_pipe_rack")
-    parser.add_argument("--csv", type=Path, help="write the rows here")
-    asked = parser.parse_args()
-    console = Console(width=120)
-    rows = []
+    asked = harness.arguments(
+        __doc__, words, parts=[*PARTS], cases=1000, many=10_000, scene="iiwa_pipe_rack"
+    )
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        parts = [PARTS[asked.only]] if asked.only else PARTS.values()
-        for row in chain.from_iterable(part(folder, asked) for part in parts):
-            rows.append(dict(zip(COLUMNS, row, strict=True)))
-            console.print(f"{row[0]:<64} {row[1]:>10.3g} {row[2]:<12} {row[3]}", highlight=False)
+        found = [row for part in asked.parts for row in PARTS[part](Path(name), asked)]
+    rows = [dict(zip(("what", "value", "unit"), row, strict=True)) for row in found]
     load = " ".join(f"{value:.1f}" for value in os.getloadavg())
-    console.print(f"{os.cpu_count()} cores, load {load}", highlight=False)
-    if asked.csv:
-        write_csv(rows, COLUMNS, asked.csv, digits=4)
+    harness.show(f"{asked.scene}; {os.cpu_count()} cores, load {load}", rows)
+    harness.write_csv(rows, asked.csv, digits=4)
+    return rows
 
 
 def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Cases a second in a cell of the scenes, in this process."""
     manifest = scene_batch(folder / "rates", asked.scene, asked.cases)
     for certify, basis in ((False, "samples"), (True, "motion")):
-        items = items_of([str(manifest)], dict(certify=certify))
-        times = chunk_times(items)
-        what = f"{asked.scene}: cases a second, 1 core, {basis}"
-        yield what + " (median)", 1.0 / median(times), "1/s", ">= 200"
-        yield what + " (best)", 1.0 / min(times), "1/s", ">= 200"
+        times = chunk_times(items_of([str(manifest)], {"certify": certify}))
+        yield f"cases a second, 1 core, {basis} (median)", 1.0 / median(times), "1/s"
+        yield f"cases a second, 1 core, {basis} (best)", 1.0 / min(times), "1/s"
 
 
 def _workers(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     """Store and engine, and two workers against one, in the same cell."""
     manifest = scene_batch(folder / "workers", asked.scene, asked.cases)
     items = items_of([str(manifest)])
-    yield "store and engine a case", 1000.0 * overhead(folder / "over", items), "ms", "<= 1"
+    yield "store and engine a case", 1000.0 * overhead(folder / "over", items), "ms"
     costs: dict[int, list[tuple[float, float]]] = {1: [], 2: []}
     for k in range(TURNS):
         for jobs, found in costs.items():
             found.append(cost(folder / f"w{jobs}-{k}", items, jobs))
-    (one, cpu_one), (two, cpu_two) = (
-        map(min, zip(*found, strict=True)) for found in costs.values()
+    (one, cpu_one), (two, cpu_two) = (map(min, zip(*costs[n], strict=True)) for n in (1, 2))
+    yield "2 workers against 1", one / two, "x"
+    yield "the same, if two cores did nothing else", 2.0 * cpu_one / cpu_two, "x"
+
+
+def _many(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
+    """Memory over many cases, and the second run of the same manifest."""
+    manifest = str(cart_batch(folder / "many", asked.many))
+    items = items_of([manifest])
+    with local_workers(2) as engine:
+        watch = _Resident(engine, len(items))
+        _run(folder / "kept", items, engine, watch)
+    for name, late in watch.late.items():
+        yield f"{name}: resident after {len(items) // 10:,} cases", watch.early[name], "MB"
+        yield f"{name}: resident after {len(items):,} cases", late, "MB"
+    yield "store a case", (folder / "kept" / FILE).stat().st_size / len(items), "bytes"
+    for name in ("second run", "third run"):
+        begun = time.process_time()
+        outcome = Outcome(items_of([manifest]))
+        with open_store(folder / "kept") as store:
+            run_batch(outcome, store, _here, _Unseen())
+            known = time.process_time()
+            write_answer(answer_of(outcome, store), store)
+        ended = time.process_time()
+        assert outcome.n_cached == len(items)
+        yield f"{name}: cases a second, until all are known", len(items) / (known - begun), "1/s"
+        yield f"{name}: cases a second, answer written", len(items) / (ended - begun), "1/s"
+    yield (
+        f"page of {len(items):,} cases",
+        (folder / "kept" / "batch.html").stat().st_size / 1e6,
+        "MB",
     )
-    yield "2 workers against 1", one / two, "x", ">= 1.8"
-    yield "the same, if two cores did nothing else", 2.0 * cpu_one / cpu_two, "x", ""
+
+
+PARTS = {"rates": _rates, "workers": _workers, "many": _many}
 
 
 def chunk_times(items: Sequence[Item]) -> list[float]:
@@ -109,9 +117,9 @@ def chunk_times(items: Sequence[Item]) -> list[float]:
     times = []
     for start in range(0, len(items), CHUNK):
         own = tuple(items[start : start + CHUNK])
-        begun = time.process_time()
-        measure(Task(own, 1e9, program(), "bench"))
-        times.append((time.process_time() - begun) / len(own))
+        times.append(
+            timed(lambda own=own: measure(Task(own, 1e9, program(), "bench")))[0] / len(own)
+        )
     return times[2:]
 
 
@@ -119,9 +127,7 @@ def overhead(place: Path, items: Sequence[Item]) -> float:
     """[s] a case of processor time in this process where two workers measure: all but measuring."""
     with local_workers(2) as engine:
         _run(place / "warm", items[:64], engine)
-        begun = time.process_time()
-        _run(place / "all", items, engine)
-        return (time.process_time() - begun) / len(items)
+        return timed(lambda: _run(place / "all", items, engine))[0] / len(items)
 
 
 def cost(place: Path, items: Sequence[Item], jobs: int) -> tuple[float, float]:
@@ -136,51 +142,11 @@ def cost(place: Path, items: Sequence[Item], jobs: int) -> tuple[float, float]:
 
 def _processor_time(engine: WorkerEngine) -> float:
     """[s] of this process and its workers."""
-    return time.process_time() + sum(map(_spent, engine.processes))
-
-
-def _spent(process: int) -> float:
-    """[s] of processor time of a process."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
-    """Memory over many cases, and the second run of the same manifest."""
-    items = items_of([str(cart_batch(folder / "many", asked.many))])
-    with local_workers(2) as engine:
-        resident = _Resident(engine, len(items))
-        _run(folder / "kept", items, engine, resident)
-    for name, (early, late) in resident.found().items():
-        yield f"{name}: resident after {len(items) // 10:,} cases", early, "MB", ""
-        yield f"{name}: resident after {len(items):,} cases", late, "MB", "flat"
-    n_bytes = (folder / "kept" / FILE).stat().st_size
-    yield "store a case", n_bytes / len(items), "bytes", ""
-    for k in range(2):
-        begun = time.process_time()
-        items = items_of([str(folder / "many" / "batch.yaml")])
-        outcome = Outcome(items)
-        with open_store(folder / "kept") as store:
-            run_batch(outcome, store, _here, _Unseen())
-            known = time.process_time()
-            write_answer(answer_of(outcome, store), store)
-        ended = time.process_time()
-        assert outcome.n_cached == len(items)
-        name = "second run" if k == 0 else "third run"
-        yield (
-            f"{name}: cases a second, until all are known",
-            len(items) / (known - begun),
-            "1/s",
-            "",
-        )
-        yield (
-            f"{name}: cases a second, answer written",
-            len(items) / (ended - begun),
-            "1/s",
-            ">= 5000",
-        )
-    page = (folder / "kept" / "batch.html").stat().st_size
-    yield f"page of {len(items):,} cases", page / 1e6, "MB", ""
+    fields = [
+        Path(f"/proc/{n}/stat").read_text().rpartition(")")[2].split() for n in engine.processes
+    ]
+    ticks = sum(int(each[11]) + int(each[12]) for each in fields)
+    return time.process_time() + ticks / os.sysconf("SC_CLK_TCK")
 
 
 class _Unseen:
@@ -195,26 +161,23 @@ class _Resident(_Unseen):
     """Notes the memory of this process, which writes, and of its workers, on the way."""
 
     def __init__(self, engine: WorkerEngine, n_items: int) -> None:
-        self._engine, self._n = engine, n_items
-        self._done, self._early, self._late = 0, {}, {}
+        self._engine, self._n, self._done = engine, n_items, 0
+        self.early: dict[str, float] = {}
+        self.late: dict[str, float] = {}
 
     def tell(self, measured, faults) -> None:
         before, self._done = self._done, self._done + len(measured) + len(faults)
         if before < self._n // 10 <= self._done:
-            self._early = self._now()
+            self.early = self._now()
         if self._done >= self._n - 200:
-            self._late = self._now()
+            self.late = self._now()
 
     def _now(self) -> dict[str, float]:
         workers = map(_resident, map(str, self._engine.processes))
-        return {"parent": _resident(), "workers, the greatest": max(workers)}
-
-    def found(self) -> dict[str, tuple[float, float]]:
-        """[MB] early and late, by who."""
-        return {name: (self._early[name], self._late[name]) for name in self._late}
+        return {"parent": _resident("self"), "workers, the greatest": max(workers)}
 
 
-def _resident(process: str = "self") -> float:
+def _resident(process: str) -> float:
     """[MB] of a process."""
     pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
@@ -231,22 +194,32 @@ def _run(place: Path, items: Sequence[Item], engine, watch=None) -> None:
         run_batch(Outcome(items), store, opened, watch or _Unseen())
 
 
-PARTS = {"rates": _rates, "workers": _workers, "many": _bulk}
-
-
 @contextmanager
 def _here(n_cases: int) -> Iterator[LocalEngine]:
     yield LocalEngine()
 
 
+MANIFEST = 'cell: cell.yaml\ntrajectories: "t*.csv"\n'
+
+CART = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+
+RAIL = """robot: {urdf: cart.urdf}
+scene: {obstacles: [{name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}]}
+limits: {fail: 0.05, warn: 0.3}
+"""
+
+
 def scene_batch(folder: Path, scene: str, n_cases: int, n_steps: int = 300) -> Path:
     """A manifest of a scene's cell and its motion, each joint shifted by up to a few hundredths."""
-    source = ROOT / "scenes" / scene
+    source = SCENES / scene
     folder.mkdir(parents=True)
     if (source / "meshes").is_dir():
         shutil.copytree(source / "meshes", folder / "meshes")
-    lines = (source / "case.yaml").read_text().splitlines()
-    cell = [line for line in lines if not line.startswith("trajectory:")]
+    text = (source / "case.yaml").read_text().replace("../../robots", str(ROOT / "robots"))
+    cell = [line for line in text.splitlines() if not line.startswith("trajectory:")]
     (folder / "cell.yaml").write_text("\n".join(cell) + "\n")
     given = load_case(source / "case.yaml").robots[0].given_trajectory
     times = np.linspace(given.times[0], given.times[-1], n_steps)
@@ -256,7 +229,7 @@ def scene_batch(folder: Path, scene: str, n_cases: int, n_steps: int = 300) -> P
         shifted = np.column_stack([times, *moves])
         shifted[:, 1:] += 0.01 * rng.standard_normal(len(moves))
         np.savetxt(folder / f"t{k:06d}.csv", shifted, "%.6f", ",", header=header, comments="")
-    (folder / "batch.yaml").write_text('cell: cell.yaml\ntrajectories: "t*.csv"\n')
+    (folder / "batch.yaml").write_text(MANIFEST)
     return folder / "batch.yaml"
 
 
@@ -267,7 +240,7 @@ def cart_batch(folder: Path, n_cases: int) -> Path:
     (folder / "cell.yaml").write_text(RAIL)
     for k, far in enumerate(np.random.default_rng(28).uniform(0.0, 0.79, n_cases)):
         (folder / f"t{k:06d}.csv").write_text(f"time,rail\n0,0\n1,{far:.4f}\n2,0.1\n")
-    (folder / "batch.yaml").write_text('cell: cell.yaml\ntrajectories: "t*.csv"\n')
+    (folder / "batch.yaml").write_text(MANIFEST)
     return folder / "batch.yaml"
 
 

@@ -1,24 +1,40 @@
-"""What tolerances cost and how tight their proof is, over the scenes: `python scripts/bench/budget.py`.
+"""Prints what tolerances cost and how tight their proof is, over the scenes, with the figures of a typical cell.
 
-For each scene, with the same figures of a typical cell: the least that is proven; the least found by errors at
-random and by making one after the other as bad as it can be, on distances measured anew; the sum of reach times
-error that people add by hand; time with and without, steps alone and certified. `budget_campaign.py` draws random
-budgets instead.
+    python scripts/bench/budget.py [--scenes NAME ...] [--budgets N] [--random N] [--starts N] [--csv FILE]
+
+For each section of a scene, at the step at which least is proven: the least found by errors at random, and by
+errors that are made as bad as found, on distances measured anew; none may be below the proof. Beside it the
+expected standard deviation over that of distances measured anew, and CPU time over that without tolerances, of the
+steps alone and certified. `--budgets` further tolerances are drawn at random.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from clock import least_time
-from inputs import SCENES
+from budget_samples import (
+    Apart,
+    Errors,
+    Key,
+    Machine,
+    Size,
+    body_name,
+    random_errors,
+    scaled,
+    sizes_of,
+    slopes,
+    surfaces_of,
+    typical,
+)
+from harness import SCENES, SHARED, Row, least_time
 
 import clearance as cl
+from clearance.budget.errors_of import surface_of
+from clearance.budget.expected import deviations, witness_of
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
-from clearance.query.distance import distance
 from clearance.record.measurement import Measurement
 from clearance.run.answers import measurement_plan
 from clearance.run.question import Question
@@ -26,202 +42,212 @@ from clearance.simulate.measure.certify import certify_motion
 from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.sections import Section
 from clearance.tolerance import CERTIFY_GAP
-from clearance.world.budget import (
-    Budget,
-    JointTolerance,
-    ObstacleTolerance,
-    PlacementTolerance,
-    RobotTolerance,
-)
+from clearance.world.budget import Budget
 from clearance.world.case import Case
-from clearance.world.pairs import BodyIndex
-from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
+from clearance.world.pairs import Pair
 
 NAMES = ("box_box", "box_pipe", "hot_cell", "iiwa_pipe_rack", "panda_shelf", "turntable_cell")
+
 NEAREST = 3
-"""Pairs that are measured anew at a moment beside the one that decides it: the nearest."""
+"""Pairs that are sampled beside the one that decides, a tenth as often: the nearest."""
+
+ROUNDS = 5
+"""How often all errors are turned against the distance at once; then one after another."""
+
+MOST, DECADES = 6.0, 1.5
+"""The greatest random tolerances are up to so many times those of a typical cell, down by so many decades."""
+
+ROUNDING = 1e-12
+"""[m] By which a measured distance may be off."""
+
+SMALLEST = ["--scenes", "box_box", "--budgets", "1", "--random", "50", "--starts", "10"]
 
 
-def typical(case: Case) -> Budget:
-    """Repeatability and calibration of a typical cell."""
-    frame = PlacementTolerance(0.0002, 0.0001)
-    robots = {
-        placed.robot.name: RobotTolerance(
-            {joint.name: JointTolerance(0.0005, 0.0, frame) for joint in placed.robot.joints},
-            PlacementTolerance(0.002, 0.001),
-            dict.fromkeys(placed.robot.link_names, 0.0005),
-        )
-        for placed in case.robots
-    }
-    place = ObstacleTolerance(PlacementTolerance(0.001), 0.0005)
-    return Budget(robots, {obstacle.name: place for obstacle in case.obstacles})
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A section of a case, what was measured of it, and its pairs, whose arrays are kept."""
+
+    name: str
+    section: Section
+    found: Measurement
+    apart: Apart
 
 
-def scaled(case: Case, rng: np.random.Generator, factor: float) -> Budget:
-    """Random tolerances of up to so many times those."""
-    base = typical(case)
-
-    def by(most: float) -> float:
-        return float(factor * most * rng.random())
-
-    def place(own: PlacementTolerance) -> PlacementTolerance:
-        return PlacementTolerance(by(own.xyz), by(max(own.angle, 0.0005)))
-
-    robots = {
-        name: replace(
-            own,
-            joints={
-                j: JointTolerance(by(t.position), 0.0, place(t.frame))
-                for j, t in own.joints.items()
-            },
-            base=place(own.base),
-            surfaces={link: by(s) for link, s in own.surfaces.items()},
-        )
-        for name, own in base.robots.items()
-    }
-    obstacles = {
-        n: ObstacleTolerance(place(o.place), by(o.surface)) for n, o in base.obstacles.items()
-    }
-    return Budget(robots, obstacles)
-
-
-class Measured(Perturbed):
-    """Pairs whose bodies are measured where errors put them."""
-
-    def each(self, time: float, errors: dict) -> dict[tuple[str, str], float]:
-        poses = self.poses(time, errors)
-        return {
-            (a, b): distance(
-                self.shapes[a], self.shapes[b], pose_a=poses[a], pose_b=poses[b]
-            ).distance
-            - self.surface(a)
-            - self.surface(b)
-            for a, b in self.pairs
-        }
-
-    def __post_init__(self) -> None:
-        robots = self.case.robots
-        links = {f"{p.robot.name}/{b.name}": b.shape for p in robots for b in p.robot.bodies}
-        self.shapes = links | {o.name: o.body.shape for o in self.case.obstacles}
-
-
-def name_of(case: Case, body: BodyIndex) -> str:
-    """The name of a body with its robot's before it."""
-    own = body.own_name_in(case)
-    return own if body.is_obstacle else f"{case.robots[body.i_robot].robot.name}/{own}"
-
-
-def worst_found(
-    case: Case,
-    section: Section,
-    step: int,
-    pair: int,
-    n_random: int,
-    n_ascended: int,
-    rng: np.random.Generator,
-) -> float:
-    """[m] the least that is found left at a step."""
-    machine = Measured(case, [])
-    names = [(name_of(case, p.a), name_of(case, p.b)) for p in section.pairs]
-    moment = float(section.phase.times[step])
-    poses = machine.poses(moment, {})
-    shapes = machine.shapes
-    gaps = [
-        distance(shapes[a], shapes[b], pose_a=poses[a], pose_b=poses[b]).distance for a, b in names
-    ]
-    machine.pairs = [names[i] for i in {pair, *np.argsort(gaps)[:NEAREST].tolist()}]
-    wanted = sizes(case)
-    zero = {key: np.zeros(size.n) for key, size in wanted.items()}
-    least = machine.left(moment, zero)
-    for _ in range(n_random):
-        least = min(least, machine.left(moment, random_errors(wanted, rng)))
-    for i in range(n_ascended):
-        start = zero if i == 0 else random_errors(wanted, rng)
-        least = min(least, ascended(lambda e: machine.left(moment, e), wanted, start)[0])
-    return least
-
-
-def naive(case: Case, section: Section, pair: int) -> float:
-    """[m] what people take off by hand: angles times how far the arm reaches, and lengths."""
-    body = section.pairs[pair].a
-    robot = case.robots[max(0, body.i_robot)].robot
-    own = case.tolerance.robots[robot.name]
-    box = body.shape_in(case).vertices
-    reach = float(np.abs(box).max())
-    total = 0.0
-    parents = {joint.child: joint for joint in robot.joints}
-    link = body.own_name_in(case)
-    while link in parents:
-        joint = parents[link]
-        tolerance = own.joints[joint.name]
-        size = tolerance.position * (1.0 if joint.kind.value == "prismatic" else reach)
-        total += size + tolerance.frame.angle * reach + tolerance.frame.xyz
-        reach += float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
-        link = joint.parent
-    total += own.base.angle * reach + own.base.xyz + own.surfaces.get(body.own_name_in(case), 0.0)
-    other = section.pairs[pair].b
-    if other.is_obstacle:
-        obstacle = case.tolerance.obstacles[case.obstacles[other.i_body].name]
-        total += obstacle.place.xyz + obstacle.surface
-    return total
-
-
-def milliseconds(work: Callable[[], object]) -> float:
-    """[ms] of CPU time, the least of five."""
-    return 1e3 * least_time(work, 5)
-
-
-def sections_of(
-    name: str, budget: Callable[[Case], Budget]
-) -> Iterator[tuple[Case, Section, Measurement]]:
-    """The case of a scene with a budget, its sections and what is measured of each."""
-    case = cl.load_case(SCENES / name / "case.yaml")
-    case = replace(case, tolerance=budget(case))
-    for section in measurement_plan(Question(case)).sections.sections:
-        yield case, section, measure(section.in_motion)
-
-
-def table(n_random: int, n_ascended: int) -> None:
-    """One line a section of each scene."""
-    print(
-        "scene, pair, nominal, proven, worst found [mm], tightness, naive/worst, steps, certified (ratio of time)"
+def main(words: list[str] | None = None) -> list[Row]:
+    """Runs what the command line asks for."""
+    asked = harness.arguments(
+        __doc__, words, scenes=[*NAMES], budgets=0, random=10_000, starts=1000
     )
-    rng = np.random.default_rng(1)
-    for name in NAMES:
-        for case, section, found in sections_of(name, typical):
-            pairs = PairsWithErrors(section.in_motion, case.tolerance)
-            rows = proven_of_steps(pairs, found)
-            step = int(np.argmin(rows.proven))
-            pair = int(rows.pair[step])
-            if found.clearance[step] <= 0.0 or section.pairs[pair].a.is_obstacle:
-                continue
-            worst = worst_found(case, section, step, pair, n_random, n_ascended, rng)
-            nominal = float(found.clearance[step])
-            taken = nominal - worst
-            proven_between(pairs, rows, CERTIFY_GAP)
-            certify_motion(section.in_motion, found, CERTIFY_GAP)
-            steps = milliseconds(lambda s=section: measure(s.in_motion))
-            extra = milliseconds(lambda p=pairs, f=found: proven_of_steps(p, f))
-            motion = milliseconds(
-                lambda s=section, f=found: certify_motion(s.in_motion, f, CERTIFY_GAP)
-            )
-            more = milliseconds(lambda p=pairs, r=rows: proven_between(p, r, CERTIFY_GAP))
-            names = "-".join(name_of(case, body).split("/")[-1] for body in section.pairs[pair])
-            print(
-                f"{name}, {names}, {nominal * 1e3:.3f}, {rows.proven[step] * 1e3:.3f}, {worst * 1e3:.3f}, "
-                f"{(nominal - rows.proven[step]) / taken:.4f}, {naive(case, section, pair) / taken:.2f}, "
-                f"{1 + extra / steps:.2f}, {1 + (extra + more) / (steps + motion):.2f}",
-                flush=True,
-            )
+    rows: list[Row] = []
+    for one in (one for name in asked.scenes for one in sections_of(name)):
+        case = one.section.phase.case
+        for i in range(asked.budgets + 1):
+            rng = np.random.default_rng(i)
+            factor = MOST * 10.0 ** (-DECADES * rng.random())
+            budget = typical(case)
+            if i:
+                budget = scaled(budget, lambda most, f=factor, rng=rng: f * most * rng.random())
+            row = row_of(one, budget, rng, asked.random, asked.starts)
+            if row is not None:
+                rows.append(
+                    {"scene": one.name, "budget": i, **row, **({} if i else cost_of(one, budget))}
+                )
+        harness.write_csv(rows, asked.csv)
+    harness.show("tolerances", rows)
+    return rows
 
 
-def main() -> None:
-    """Prints the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--random", type=int, default=20, help="samples at random a worst moment")
-    parser.add_argument("--ascended", type=int, default=1, help="samples made as bad as can be")
-    asked = parser.parse_args()
-    table(asked.random, asked.ascended)
+def sections_of(name: str) -> Iterator[Loaded]:
+    """The sections of a scene, or shared case, that have a clearance at all."""
+    place = SCENES if (SCENES / name).is_dir() else SHARED
+    case = cl.load_case(place / name / "case.yaml")
+    case = replace(case, tolerance=typical(case))
+    for section in measurement_plan(Question(case)).sections.sections:
+        found = measure(section.in_motion)
+        if section.tied and np.nanmax(found.clearance) > 0.0:
+            yield Loaded(name, section, found, Apart())
+
+
+def row_of(
+    of: Loaded, budget: Budget, rng: np.random.Generator, n: int, n_starts: int
+) -> Row | None:
+    """How tight the proof of a budget is; None where bodies touch without errors.
+
+    Raises:
+        SystemExit: a sample is below what is proven.
+    """
+    rows = proven_of_steps(PairsWithErrors(of.section.in_motion, budget), of.found)
+    apart = (of.found.clearance > 0.0) & (rows.pair >= 0)
+    if not apart.any():
+        return None
+    step = int(np.argmin(np.where(apart, rows.proven, np.inf)))
+    moment = Moment(
+        of, replace(of.section.phase.case, tolerance=budget), step, int(rows.pair[step])
+    )
+    nominal, proven = moment.nominal(), float(rows.proven[step])
+    worst = min(moment.at_random(n, rng), moment.as_bad_as_found(n_starts, rng))
+    names = " - ".join(body_name(moment.case, body) for body in moment.pairs[0])
+    if worst < proven - ROUNDING:
+        raise SystemExit(
+            f"below what is proven: {of.name}, {names}, step {step}: {worst} < {proven}"
+        )
+    return {
+        "pair": names, "nominal_mm": 1e3 * nominal, "proven_mm": 1e3 * proven, "worst_mm": 1e3 * worst,
+        "tightness": (nominal - proven) / (nominal - worst), "deviation": deviation_of(of, moment, step, n, rng),
+    }  # fmt: skip
+
+
+def cost_of(of: Loaded, budget: Budget) -> Row:
+    """CPU time with tolerances over that without: of the steps, and certified."""
+    pairs = PairsWithErrors(of.section.in_motion, budget)
+    rows = proven_of_steps(pairs, of.found)
+
+    def seconds(work: Callable[[], object]) -> float:
+        work()
+        return least_time(work, 5)[0]
+
+    steps = seconds(lambda: measure(of.section.in_motion))
+    extra = seconds(lambda: proven_of_steps(pairs, of.found))
+    motion = seconds(lambda: certify_motion(of.section.in_motion, of.found, CERTIFY_GAP))
+    more = seconds(lambda: proven_between(pairs, rows, CERTIFY_GAP))
+    return {
+        "steps_cost": 1 + extra / steps,
+        "certified_cost": 1 + (extra + more) / (steps + motion),
+    }
+
+
+class Moment:
+    """The pairs of a section at one step: the deciding one, and the nearest without errors."""
+
+    def __init__(self, of: Loaded, case: Case, step: int, pair: int) -> None:
+        self.case, self.apart = case, of.apart
+        self.machine = Machine(case, of.section.phase.motions, step)
+        self.sizes = sizes_of(case)
+        frames, pairs = self.machine.frames({}, 1), of.section.pairs
+        gaps = [float(self.apart.of(case, one, frames)[0][0]) for one in pairs]
+        order = [i for i in np.argsort(gaps, kind="stable").tolist() if i != pair]
+        self.pairs = [pairs[i] for i in (pair, *order[:NEAREST])]
+
+    def nominal(self) -> float:
+        """[m] the distance of the deciding pair without errors."""
+        return float(self.apart.of(self.case, self.pairs[0], self.machine.frames({}, 1))[0][0])
+
+    def left(self, pair: Pair, errors: Errors, n: int) -> tuple[np.ndarray, dict[Key, np.ndarray]]:
+        """(n,) [m] what is left of a pair, and its slopes."""
+        frames = self.machine.frames(errors, n)
+        gaps, points = self.apart.of(self.case, pair, frames)
+        a, b = (frames[body_name(self.case, body)] for body in pair)
+        return gaps - surfaces_of(self.case.tolerance, self.case, pair), slopes(a, b, points)
+
+    def at_random(self, n: int, rng: np.random.Generator) -> float:
+        """[m] the least of n samples of the deciding pair, and a tenth as many of each other."""
+        least = np.inf
+        for i, pair in enumerate(self.pairs):
+            m = n if i == 0 else max(1, n // 10)
+            least = min(
+                least, float(self.left(pair, random_errors(self.sizes, m, rng), m)[0].min())
+            )
+        return least
+
+    def as_bad_as_found(self, n: int, rng: np.random.Generator) -> float:
+        """[m] the least of n starts from which the errors of the deciding pair go against its distance."""
+        errors = random_errors(self.sizes, n, rng)
+        for value in errors.values():
+            value[:, 0] = 0.0
+        best, kept = np.full(n, np.inf), errors
+        for _ in range(ROUNDS):
+            left, slope = self.left(self.pairs[0], errors, n)
+            better, best = left < best, np.minimum(best, left)
+            kept = {k: np.where(better, errors[k], kept[k]) for k in errors}
+            errors = {k: _against(slope, k, size, errors[k]) for k, size in self.sizes.items()}
+        i = int(np.argmin(best))
+        return self._one_by_one(float(best[i]), {k: v[:, i] for k, v in kept.items()})
+
+    def _one_by_one(self, best: float, errors: dict[Key, np.ndarray]) -> float:
+        """[m] the least when one error after another goes to the end, or against its slope, that leaves least."""
+        for _ in range(2 * len(errors)):
+            tries = list(self._tries(errors))
+            rows = {k: np.stack([one[k] for one in tries], axis=1) for k in errors}
+            left = self.left(self.pairs[0], rows, len(tries))[0]
+            i = int(np.argmin(left))
+            if left[i] >= best:
+                break
+            best, errors = float(left[i]), tries[i]
+        return best
+
+    def _tries(self, errors: dict[Key, np.ndarray]) -> Iterator[dict[Key, np.ndarray]]:
+        yield errors
+        slope = self.left(self.pairs[0], {k: v[:, None] for k, v in errors.items()}, 1)[1]
+        for key, size in self.sizes.items():
+            for one in (size.most, -size.most) if size.n == 1 else ():
+                yield {**errors, key: np.array([one])}
+            if size.n == 3:
+                yield {**errors, key: _against(slope, key, size, errors[key][:, None])[:, 0]}
+
+
+def _against(slope: dict[Key, np.ndarray], key: Key, size: Size, now: np.ndarray) -> np.ndarray:
+    """The error of its greatest size that lessens the distance most; as it is where it does nothing."""
+    if key not in slope:
+        return now
+    way = slope[key]
+    length = np.sqrt((way * way).sum(axis=0))
+    return np.where(length > 0.0, -way / np.where(length > 0.0, length, 1.0) * size.most, now)
+
+
+def deviation_of(of: Loaded, moment: Moment, step: int, n: int, rng: np.random.Generator) -> float:
+    """The expected deviation of the deciding pair, over that of n distances with errors as it takes them."""
+    case, pair, motions = moment.case, moment.pairs[0], of.section.phase.motions
+    points = moment.apart.of(case, pair, moment.machine.frames({}, 1))[1].copy()
+    witness = witness_of(case, case.tolerance, motions, pair, np.array([step]), points)
+    errors = {}
+    for key, size in moment.sizes.items():
+        v = rng.normal(size=(size.n, n))
+        share = rng.random(n) ** (1.0 / size.n)
+        errors[key] = v / np.sqrt((v * v).sum(axis=0)) * size.most * share
+    gaps = moment.apart.of(case, pair, moment.machine.frames(errors, n))[0].copy()
+    for body in pair:
+        gaps -= surface_of(case, case.tolerance, body) * rng.uniform(-1.0, 1.0, n)
+    return float(deviations(case, case.tolerance, witness)[0] / gaps.std())
 
 
 if __name__ == "__main__":

@@ -1,14 +1,15 @@
 """A machine that is off, many samples at once: where errors put its bodies, and how far apart they are there.
 
 Poses are worked out in numpy, (3, 3, n) and (3, n); distances are the package's own exact ones, the bodies placed
-anew each time. Joints and obstacles are taken where the motion has them at a step. Not for: what is proven, nor
-clocks.
+anew each time. Joints and obstacles are taken where the motion has them at a step. Not for: what is proven
+(`budget`), nor clocks.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,13 @@ from clearance.kernels.search.pair_query import POSES_ARE_RIGID, nearest_at_pose
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import OnePair, answer_rows
 from clearance.world.body import Obstacle
-from clearance.world.budget import Budget, PlacementTolerance
+from clearance.world.budget import (
+    Budget,
+    JointTolerance,
+    ObstacleTolerance,
+    PlacementTolerance,
+    RobotTolerance,
+)
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import joined_positions, positions_between
 from clearance.world.motion import Motion
@@ -71,6 +78,34 @@ class Frame:
     def place(self, point: np.ndarray) -> np.ndarray:
         """(3, n) where a point of it is."""
         return np.tensordot(self.turn, point, (1, 0)) + self.at
+
+
+def typical(case: Case) -> Budget:
+    """Repeatability and calibration of a typical cell."""
+    frame = PlacementTolerance(0.0002, 0.0001)
+    robots = {
+        placed.robot.name: RobotTolerance(
+            {joint.name: JointTolerance(0.0005, 0.0, frame) for joint in placed.robot.joints},
+            PlacementTolerance(0.002, 0.001),
+            dict.fromkeys(placed.robot.link_names, 0.0005),
+        )
+        for placed in case.robots
+    }
+    place = ObstacleTolerance(PlacementTolerance(0.001), 0.0005)
+    return Budget(robots, {obstacle.name: place for obstacle in case.obstacles})
+
+
+def scaled(value: Any, by: Callable[[float], float]) -> Any:
+    """A budget, or a part of one, each of whose tolerances is another."""
+    if isinstance(value, bool) or (
+        not isinstance(value, float | Mapping) and not is_dataclass(value)
+    ):
+        return value
+    if isinstance(value, float):
+        return by(value)
+    if isinstance(value, Mapping):
+        return {key: scaled(one, by) for key, one in value.items()}
+    return replace(value, **{f.name: scaled(getattr(value, f.name), by) for f in fields(value)})
 
 
 def sizes_of(case: Case) -> dict[Key, Size]:

@@ -5,26 +5,18 @@
 One robot, the Panda of `scenes/panda_shelf` on its way, in what a scanner might see: a table with things on it,
 a vault all round, and the table higher, so that the arm is in it for half of its way. The mesh is the surface;
 the cloud is one point a triangle, in its middle. CPU seconds, least of interleaved passes after one to warm up;
-memory in bytes of the arrays that are searched. The target is that the cloud takes no more than three times as
-long a step as the mesh.
+memory in bytes of the arrays that are searched.
 """
 
 from __future__ import annotations
 
-import argparse
-import dataclasses
-import sys
-from pathlib import Path
+from dataclasses import replace
 
-from inputs import scene_of  # first: it sets the number of threads before numpy is loaded
+import harness  # first: it sets the number of threads before numpy is loaded
+import numpy as np
+from harness import SCENES, Row, interleaved, timed
 
-import numpy as np  # isort: skip
-
-from clock import interleaved, timed
-from rich.console import Console
-from rich.table import Table
-from rows import write_csv
-
+from clearance import load_case
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
@@ -34,57 +26,44 @@ from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
-
-COLUMNS = ("scene", "what", "mesh", "cloud", "ratio")
-
-SCENES = Path(__file__).parents[2] / "scenes"
 
 RADIUS = 0.003
 """[m] Of each ball."""
 
+ONE_THREAD = Resources(jobs=1)
 
-def main() -> None:
+SMALLEST = ["--count", "500", "--passes", "1"]
+
+
+def main(words: list[str] | None = None) -> list[Row]:
     """Runs what the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--count", type=int, default=1_000_000, help="triangles, and points")
-    parser.add_argument("--passes", type=int, default=5)
-    parser.add_argument("--csv", type=Path, help="write the rows here")
-    asked = parser.parse_args()
-    rows = []
+    asked = harness.arguments(__doc__, words, count=1_000_000, passes=5)
+    rows: list[Row] = []
     for name, height in (("table", table), ("vault", vault), ("in contact", table_in_arm)):
-        rows += rows_of(name, *mesh_and_cloud(height, asked.count), asked.passes)
-    Console(width=None if sys.stdout.isatty() else 132).print(table_of(rows, asked.count))
-    if asked.csv:
-        write_csv(rows, COLUMNS, asked.csv)
+        rows += rows_of(name, mesh_and_cloud(height, asked.count), asked.passes)
+    harness.show(f"{asked.count:,} triangles or points", rows)
+    harness.write_csv(rows, asked.csv)
+    return rows
 
 
-def rows_of(name: str, mesh: Polyhedron, cloud: PointCloud, n_passes: int) -> list[dict]:
+def rows_of(name: str, shapes: tuple[Polyhedron, PointCloud], n_passes: int) -> list[Row]:
     """All that is compared in one scene."""
-    built = [timed(lambda shape=shape: surface_of(shape)) for shape in (mesh, cloud)]
+    built = [timed(lambda shape=shape: surface_of(shape)) for shape in shapes]
     sizes = [sum(one.nbytes for one in {id(a): a for a in tree}.values()) for _, tree in built]
-    whats = [in_motion(Obstacle(Body("scan", shape))) for shape in (mesh, cloud)]
-    found = [measure(what, resources=Resources(jobs=1)) for what in whats]
-    print(
-        name, "least clearance [mm]:", *(f"{1e3 * np.nanmin(one.clearance):.3f}" for one in found)
-    )
+    whats = [in_motion(Obstacle(Body("scan", shape))) for shape in shapes]
+    works = [lambda what=what: measure(what, resources=ONE_THREAD) for what in whats]
+    swept = interleaved(works, n_passes, 200.0)
+    found = [timing.answer for timing in swept]
+    proofs = [
+        lambda what=what, one=one: certify_motion(what, one, CERTIFY_GAP, resources=ONE_THREAD)
+        for what, one in zip(whats, found, strict=True)
+    ]
+    proven = interleaved(proofs, 2, 200.0)
     n_steps = len(found[0].clearance)
-    swept = interleaved(
-        [lambda what=what: measure(what, resources=Resources(jobs=1)) for what in whats],
-        n_passes, 200.0,
-    )  # fmt: skip
-    proven = interleaved(
-        [
-            lambda what=what, one=one: certify_motion(
-                what, one, CERTIFY_GAP, resources=Resources(jobs=1)
-            )
-            for what, one in zip(whats, found, strict=True)
-        ],
-        2, 200.0,
-    )  # fmt: skip
     pairs = {
+        "least clearance, mm": [1e3 * np.nanmin(one.clearance) for one in found],
         "tree, s": [seconds for seconds, _ in built],
         "memory of the tree, MB": [size / 1e6 for size in sizes],
         "a step, ms": [1e3 * one.least / n_steps for one in swept],
@@ -92,22 +71,15 @@ def rows_of(name: str, mesh: Polyhedron, cloud: PointCloud, n_passes: int) -> li
         "nodes a step": [one.tally["node_tests"] / n_steps for one in found],
     }
     return [
-        {
-            "scene": name,
-            "what": what,
-            "mesh": of_mesh,
-            "cloud": of_cloud,
-            "ratio": of_cloud / of_mesh,
-        }
-        for what, (of_mesh, of_cloud) in pairs.items()
-    ]
+        {"scene": name, "what": what, "mesh": float(mesh), "cloud": float(cloud),
+         "ratio": float(cloud / mesh) if mesh else None}
+        for what, (mesh, cloud) in pairs.items()
+    ]  # fmt: skip
 
 
 def in_motion(obstacle: Obstacle) -> PairsInMotion:
     """The Panda of the shelf scene on its way, with nothing but one obstacle."""
-    case: Case = dataclasses.replace(
-        scene_of(SCENES / "panda_shelf" / "case.yaml").case, obstacles=(obstacle,), allow=()
-    )
+    case = replace(load_case(SCENES / "panda_shelf" / "case.yaml"), obstacles=(obstacle,), allow=())
     pairs, _ = measured_pairs(case)
     return PairsInMotion(case, tuple(kinematic_motion(placed) for placed in case.robots), pairs)
 
@@ -121,8 +93,7 @@ def mesh_and_cloud(points_of, count: int) -> tuple[Polyhedron, PointCloud]:
     one = np.stack([corner, corner + n + 1, corner + 1], axis=1)
     two = np.stack([corner + n + 1, corner + n + 2, corner + 1], axis=1)
     triangles = np.concatenate([one, two])
-    middles = points[triangles].mean(axis=1)
-    return Polyhedron(points, triangles), PointCloud(middles, RADIUS)
+    return Polyhedron(points, triangles), PointCloud(points[triangles].mean(axis=1), RADIUS)
 
 
 def table(u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -149,17 +120,6 @@ def vault(u: np.ndarray, v: np.ndarray) -> np.ndarray:
 def rough(like: np.ndarray) -> np.ndarray:
     """[m] noise of a scanner."""
     return np.random.default_rng(5).normal(scale=0.0005, size=like.shape)
-
-
-def table_of(rows: list[dict], count: int) -> Table:
-    """All rows."""
-    shown = Table(title=f"{count:,} triangles or points", title_justify="left")
-    for column in COLUMNS:
-        shown.add_column(column, justify="left" if column in COLUMNS[:2] else "right")
-    for row in rows:
-        numbers = [f"{row[name]:.4g}" for name in COLUMNS[2:]]
-        shown.add_row(row["scene"], row["what"], *numbers)
-    return shown
 
 
 if __name__ == "__main__":

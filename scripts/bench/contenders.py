@@ -7,12 +7,13 @@ Not for: other libraries' own distances (`peers`).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from inputs import Scene, Solid
 from loops import sphere_of
 from peers import Coal
+from scipy.spatial import KDTree
 
 import clearance as cl
 from clearance.query.paper import distance_paper
@@ -78,32 +79,18 @@ class SampledPoints(_Posing):
         self.name = f"points 1e{round(math.log10(n_points))}"
 
     def body(self, given: Solid) -> Placed:
-        """The points, and the tree of what stands."""
-        return Placed(cloud(sampled([given], [np.eye(4)], self.n_points), with_tree=given.stands))
+        """The points, or the tree of them where the body stands."""
+        points = sampled([given], [np.eye(4)], self.n_points)
+        return Placed(KDTree(points) if given.stands else points)
 
     def distance(self, a: Placed, b: Placed) -> float:
         """The least distance of a's points, moved into b's frame, from b's."""
         motion = np.linalg.inv(b.pose) @ a.pose
-        moved = a.form.points @ motion[:3, :3].T + motion[:3, 3]
-        return least_distance(b.form.tree, moved)
+        return least_distance(b.form, a.form @ motion[:3, :3].T + motion[:3, 3])
 
 
-class Cloud(NamedTuple):
-    """Points (n, 3) [m] and their KD-tree, if asked for."""
-
-    points: np.ndarray
-    tree: Any
-
-
-def cloud(points: np.ndarray, with_tree: bool) -> Cloud:
-    """The points, indexed."""
-    from scipy.spatial import KDTree
-
-    return Cloud(points, KDTree(points) if with_tree else None)
-
-
-def least_distance(tree: Any, points: np.ndarray) -> float:
-    """[m] Of points from a tree's; a few first, so that the many look no further than those found."""
+def least_distance(tree: KDTree, points: np.ndarray) -> float:
+    """[m] The least of points from those of a tree; a few first, so that the many look no further."""
     best = math.inf
     for stride in (1000, 30, 1):
         distances = tree.query(points[::stride], distance_upper_bound=best)[0]
@@ -144,7 +131,7 @@ class SampledScene:
         self._links = [
             sampled([link], [np.eye(4)], n) for link, n in zip(scene.links, shares, strict=True)
         ]
-        self._tree = cloud(sampled(scene.obstacles, list(scene.standing), n_points), True).tree
+        self._tree = KDTree(sampled(scene.obstacles, list(scene.standing), n_points))
         self.counters: dict[str, int] = {}
 
     def run(self, steps: np.ndarray) -> np.ndarray:

@@ -1,34 +1,27 @@
 """Measures run time against error, for us and for everybody else, on the same input in one run.
 
-    python scripts/bench/error_time.py [--out FOLDER] [--polygons N] [--poses N] [--steps N] [--seconds S]
+    python scripts/bench/error_time.py [--csv FILE] [--picture FILE] [--polygons N] [--poses N] [--steps N]
 
-Polygon pairs of every family of tests/strategies.py, pairs of bodies, and whole steps of the shared cases.
-Writes error_time.csv, error_time.svg and polygon_families.svg into --out, and prints the totals. Times are
-CPU a query, posing included, forms and trees made before, least of three calls; errors are in parts of the
-size of the two bodies, for steps in metres. A contact is false (missed) if the truth (the answer) exceeds
+Polygon pairs of every hostile family, pairs of bodies, and whole steps of the shared cases. Times are CPU a
+query, posing included, forms and trees made before, least of three calls; errors are in parts of the size of
+the two bodies, for steps in metres. A contact is false (missed) if the truth (the answer) exceeds
 1e-12 of the size; the csv also counts them to the last bit. No answer (NaN, infinity) is counted apart.
 """
 
 from __future__ import annotations
 
-import argparse
-import csv
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from pathlib import Path
 from typing import NamedTuple
 
-import inputs  # first: it sets the number of threads before numpy is loaded
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from clock import timed
 from contenders import BoundingSpheres, ConvexHulls, Ours, Paper, SampledPoints, SampledScene
-from inputs import Scene
+from harness import Row, least_time, tell, timed
+from inputs import Scene, absent_inputs
 from loops import AllPairs, OurSteps
 from peers import PEERS, PairPeer, absent_peers, available, peer, silenced, versions
 from questions import Question, body_questions, polygon_questions, step_sample, step_scenes
-from rich.console import Console
-from rich.table import Table
 
 import clearance as cl
 from clearance.errors import ClearanceError
@@ -38,6 +31,14 @@ ROUNDING = 1e-12
 
 MOST_FACE_PAIRS = 20_000_000
 """A step for the paper's method; scenes of more are left out, and named (minutes a step)."""
+
+
+SHOWN = (
+    "group", "method", "us_median", "us_10th", "us_90th", "error_median", "error_worst", "false_contacts",
+    "missed_contacts", "no_answer", "asked",
+)  # fmt: skip
+
+SMALLEST = ["--polygons", "1", "--poses", "1", "--steps", "0", "--seconds", "0.02"]
 
 
 class Answer(NamedTuple):
@@ -52,47 +53,26 @@ class Answer(NamedTuple):
     gross: bool
 
 
-def main() -> None:
+def main(words: list[str] | None = None) -> list[Row]:
     """Runs what the command line asks for."""
-    asked = arguments()
-    console = Console(width=None if sys.stdout.isatty() else 160)
-    for line in [*inputs.absent_inputs(), *absent_peers()]:
-        console.print(line, style="yellow", highlight=False)
-    rows: list[dict] = []
-    if asked.polygons:
-        rows += measured_polygons(polygon_questions(asked.polygons), asked.seconds)
-    if asked.poses:
-        rows += measured_bodies(body_questions(asked.poses), asked.seconds)
-    if asked.steps:
-        for scene in step_scenes(asked.scenes):
-            if face_pairs(scene) > MOST_FACE_PAIRS:
-                console.print(
-                    f"left out: paper on {scene.name}, {face_pairs(scene)} face pairs a step"
-                )
-            rows += measured_steps(scene, step_sample(scene, asked.steps), asked.seconds)
-    console.print(table_of(totals(rows)))
-    console.print(versions(), highlight=False)
-    if asked.out:
-        write(rows, asked.out)
-        if available("matplotlib"):
-            from figures import draw_error_time, draw_families
+    asked = harness.arguments(
+        __doc__, words, polygons=60, poses=8, steps=12, scenes=[], seconds=1.5, picture=""
+    )
+    tell(*absent_inputs(), *absent_peers())
+    rows = measured_polygons(polygon_questions(asked.polygons), asked.seconds)
+    rows += measured_bodies([*body_questions(asked.poses)], asked.seconds)
+    for scene in step_scenes(asked.scenes) if asked.steps else ():
+        if face_pairs(scene) > MOST_FACE_PAIRS:
+            tell(f"left out: paper on {scene.name}, {face_pairs(scene)} face pairs a step")
+        rows += measured_steps(scene, step_sample(scene, asked.steps), asked.seconds)
+    harness.show("run time against error (parts of the size; steps: metres)", totals(rows), SHOWN)
+    tell(versions())
+    harness.write_csv(rows, asked.csv)
+    if asked.picture:
+        from figures import draw_error_time
 
-            draw_error_time(totals(rows), asked.out / "error_time.svg")
-            draw_families(rows, asked.out / "polygon_families.svg")
-        else:
-            console.print("absent: matplotlib (pip install .[bench]); no pictures")
-
-
-def arguments() -> argparse.Namespace:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--out", type=Path, help="folder for the csv and the pictures")
-    parser.add_argument("--polygons", type=int, default=60, help="pairs a family")
-    parser.add_argument("--poses", type=int, default=8, help="poses a family of bodies")
-    parser.add_argument("--steps", type=int, default=12, help="steps a shared case")
-    parser.add_argument("--scenes", nargs="*", default=None, help="shared cases; all if not given")
-    parser.add_argument("--seconds", type=float, default=1.5, help="CPU a method and group")
-    return parser.parse_args()
+        draw_error_time(totals(rows), asked.picture)
+    return rows
 
 
 def other_libraries() -> Iterable[PairPeer]:
@@ -102,7 +82,7 @@ def other_libraries() -> Iterable[PairPeer]:
             yield found
 
 
-def measured_polygons(questions: Sequence[Question], seconds: float) -> list[dict]:
+def measured_polygons(questions: Sequence[Question], seconds: float) -> list[Row]:
     """One row a family and method."""
     rows = our_batches(questions)
     rows += asked_one_by_one(
@@ -115,7 +95,7 @@ def measured_polygons(questions: Sequence[Question], seconds: float) -> list[dic
     return rows
 
 
-def our_batches(questions: Sequence[Question]) -> list[dict]:
+def our_batches(questions: Sequence[Question]) -> list[Row]:
     """`polygon_distances`, a family a call, as one has it for many."""
     rows = []
     for family in dict.fromkeys(q.family for q in questions):
@@ -123,9 +103,9 @@ def our_batches(questions: Sequence[Question]) -> list[dict]:
         ps = np.array([q.a.soup.vertices for q in chosen])
         qs = np.array([q.b.soup.vertices for q in chosen])
         cl.polygon_distances(ps, qs)
-        passes = [timed(lambda ps=ps, qs=qs: cl.polygon_distances(ps, qs)) for _ in range(5)]
-        each = min(spent for spent, _ in passes) / len(chosen)
-        judged = [judge(q, d, each) for q, d in zip(chosen, passes[-1][1], strict=True)]
+        spent, found = least_time(lambda ps=ps, qs=qs: cl.polygon_distances(ps, qs), 5)
+        each = spent / len(chosen)
+        judged = [judge(q, d, each) for q, d in zip(chosen, found, strict=True)]
         rows.append(row_of("polygons", family, "clearance", "clearance exact", judged, len(chosen)))
     return rows
 
@@ -140,7 +120,7 @@ def _paper(question: Question) -> Callable[[], float]:
     return lambda: cl.polygon_distance(p, q, method="paper").distance
 
 
-def measured_bodies(questions: Sequence[Question], seconds: float) -> list[dict]:
+def measured_bodies(questions: Sequence[Question], seconds: float) -> list[Row]:
     """One row a family and method."""
     papers = [
         Paper(), Paper(1.0), Paper(0.1), Paper(0.01), Paper(0.1, rule_2=False), Paper(rule_2=False),
@@ -151,7 +131,7 @@ def measured_bodies(questions: Sequence[Question], seconds: float) -> list[dict]
     return [row for by in methods for row in asked_of("bodies", by, questions, seconds)]
 
 
-def asked_of(group: str, by: PairPeer, questions: Sequence[Question], seconds: float) -> list[dict]:
+def asked_of(group: str, by: PairPeer, questions: Sequence[Question], seconds: float) -> list[Row]:
     """One row a family of what a contender answers."""
 
     def ready(question: Question) -> Callable[[], float]:
@@ -178,7 +158,7 @@ def asked_one_by_one(
     questions: Sequence[Question],
     seconds: float,
     ready: Callable[[Question], Callable[[], float]],
-) -> list[dict]:
+) -> list[Row]:
     """One row a family; questions left when `seconds` of CPU are spent are not asked."""
     families = list(dict.fromkeys(question.family for question in questions))
     judged: dict[str, list[Answer]] = {family: [] for family in families}
@@ -216,7 +196,7 @@ def judgement(error: float, truth: float, answer: float, seconds: float) -> Answ
     return Answer(seconds, error, relative, max(0.0, answer) - truth, false, missed, gross)
 
 
-def measured_steps(scene: Scene, steps: np.ndarray, seconds: float) -> list[dict]:
+def measured_steps(scene: Scene, steps: np.ndarray, seconds: float) -> list[Row]:
     """One row a method on one shared case."""
     papers = [Paper(), Paper(rule_2=False)] if face_pairs(scene) <= MOST_FACE_PAIRS else []
     loops = [AllPairs(scene, by) for by in [*papers, *other_libraries(), BoundingSpheres()]]
@@ -243,12 +223,11 @@ def face_pairs(scene: Scene) -> int:
     return int(sum(faces[0][i] * faces[1][j] for i, j in scene.index))
 
 
-def _our_steps(scene: Scene, steps: np.ndarray) -> dict:
+def _our_steps(scene: Scene, steps: np.ndarray) -> Row:
     ours, everything = OurSteps(scene), np.arange(scene.n_steps)
     ours.run(everything)
-    taken = min(timed(lambda: ours.run(everything))[0] for _ in range(3)) / scene.n_steps
-    found = ours.run(everything)
-    judged = [judge_step(scene, step, found[step], taken) for step in steps]
+    taken, found = least_time(lambda: ours.run(everything), 3)
+    judged = [judge_step(scene, step, found[step], taken / scene.n_steps) for step in steps]
     return row_of("steps", scene.name, "clearance", "clearance exact", judged, len(judged))
 
 
@@ -271,7 +250,7 @@ def library_of(name: str) -> str:
 
 def row_of(
     group: str, family: str, library: str, method: str, judged: Sequence[Answer], asked: int
-) -> dict:
+) -> Row:
     """What is known of a method on a family; NaN where it answered nothing."""
     none = [Answer(*[np.nan] * 4, False, False, False)]
     table = np.array([answer[:4] for answer in judged or none])
@@ -302,7 +281,7 @@ SUMMED = [
 ]  # fmt: skip
 
 
-def totals(rows: Sequence[dict]) -> list[dict]:
+def totals(rows: Sequence[Row]) -> list[Row]:
     """One row a group and method: counts summed, worst of the worst, median of the medians."""
     found = []
     for key in dict.fromkeys((row["group"], row["library"], row["method"]) for row in rows):
@@ -316,44 +295,6 @@ def totals(rows: Sequence[dict]) -> list[dict]:
             total[name] = max((row[name] for row in answered), default=np.nan)
         found.append(total)
     return found
-
-
-def table_of(rows: Sequence[dict]) -> Table:
-    """Time, errors and contact faults of every method in every group."""
-    table = Table(title="run time against error (errors in parts of the size; steps: metres)")
-    table.add_column("group", no_wrap=True)
-    table.add_column("method", no_wrap=True)
-    names = (
-        "us",
-        "10th-90th",
-        "median",
-        "worst",
-        "of distance",
-        "false",
-        "missed",
-        "none",
-        "asked",
-    )
-    for name in names:
-        table.add_column(name, justify="right", no_wrap=True)
-    for row in rows:
-        table.add_row(
-            row["group"], row["method"], f"{row['us_median']:.3g}",
-            f"{row['us_10th']:.3g}-{row['us_90th']:.3g}", f"{row['error_median']:.1e}",
-            f"{row['error_worst']:.1e}", f"{row['error_to_distance_worst']:.1e}",
-            str(row["false_contacts"]), str(row["missed_contacts"]), str(row["no_answer"]), str(row["asked"]),
-        )  # fmt: skip
-    return table
-
-
-def write(rows: Sequence[dict], folder: Path) -> None:
-    """Every row as error_time.csv, numbers to six digits."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "error_time.csv").open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

@@ -1,14 +1,13 @@
 """Holds the answers and times of this tree against those of an earlier revision, side by side in one run.
 
     python scripts/bench/fence.py REVISION [--cases NAME ...] [--cells N] [--verdicts NAME ...] [--passes N]
-                                           [--first-run]
 
 Each tree answers in processes of its own, the two in turn: the scenes, the shared cases where they are there, and
 random cells. Compared are the bits of every clearance, witness point and pair at the steps; the certified bounds,
 with and without tolerances, which may differ but must not be looser by more than 1 %; exit code and summary; and
 CPU seconds. Of small cases that end in every kind of verdict, exit code and summary alone are compared. Last come
-the seconds of a start, the least of all commands, and of the first check and first distance with nothing
-compiled. The exit code is 1 where bits, exit codes or summaries differ, or a bound is looser.
+the seconds of a start, the least of all commands. The exit code is 1 where bits, exit codes or summaries differ,
+or a bound is looser.
 """
 
 from __future__ import annotations
@@ -37,16 +36,17 @@ LOOSER = 0.01
 FINE = 1e-6
 """[m] Bounds that differ by less are alike: the proof ends at a gap of 0.1 mm."""
 
+CELLS = ROOT / "scripts" / "makers" / "cells.py"
+
 RUN = """
-import hashlib, json, sys, time
+import hashlib, json, runpy, sys, time
 import numpy as np
 import clearance as cl
 
 def case_of(name):
     if not name.startswith("cell "):
         return cl.load_case(name)
-    from tests.cells import cell
-    return cell(int(name.removeprefix("cell ")))
+    return runpy.run_path(sys.argv[3])["cell"](int(name.removeprefix("cell ")))
 
 def least(values):
     known = [value for value in values if value is not None and value == value]
@@ -84,16 +84,6 @@ print(json.dumps(told))
 """
 
 
-FIRST = {
-    "first check": ("-m", "clearance", "check", "scenes/box_box/case.yaml", "--quiet"),
-    "first distance": (
-        "-c",
-        "import clearance as cl; cl.distance(cl.box((1, 1, 1)), cl.sphere(radius=0.2))",
-    ),
-}
-"""Commands whose first run is timed."""
-
-
 def main() -> int:
     """Runs what the command line asks for."""
     asked = _arguments()
@@ -102,9 +92,6 @@ def main() -> int:
         trees = {"before": before, "now": ROOT}
         differing = sum(_case_differs(trees, name, asked.passes) for name in names)
         differing += _differing_verdicts(trees, CASES if asked.verdicts is None else asked.verdicts)
-        for what, command in FIRST.items() if asked.first_run else ():
-            seconds = {tree: _first(path, command) for tree, path in trees.items()}
-            print(f"{what:34} {_shown_seconds(seconds)}", flush=True)
     print(f"{differing} differ")
     return int(differing > 0)
 
@@ -140,7 +127,6 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument(
         "--verdicts", nargs="*", choices=[*CASES], help="small cases; default: all", metavar="NAME"
     )
-    parser.add_argument("--first-run", action="store_true", help="time that as well; minutes")
     parser.add_argument("--cells", type=int, default=200, help="number of random cells")
     parser.add_argument("--passes", type=int, default=3, help="runs of which the least time counts")
     return parser.parse_args()
@@ -185,16 +171,16 @@ def _shown(name: str) -> str:
 
 def _answer(tree: Path, name: str, passes: int) -> dict:
     """What a tree says of a case: bits, bounds, seconds; exit code and summary of the command."""
-    done = _run(tree, "-c", RUN, name, str(passes))
+    done = _run(tree, "-c", RUN, name, str(passes), str(CELLS))
     if done.returncode:
         return {"crashed": done.stderr.strip().rpartition("\n")[2]}
     told = json.loads(done.stdout)
     return told if name.startswith("cell ") else told | _command(tree, [name])
 
 
-def _run(tree: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+def _run(tree: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """A Python process that has its modules from a tree."""
-    own = {"PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1", **environment}
+    own = {"PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1"}
     command = [sys.executable, *arguments]
     return subprocess.run(command, cwd=tree, env=os.environ | own, capture_output=True, text=True)
 
@@ -216,17 +202,6 @@ def _verdicts(trees: dict[str, Path], name: str) -> tuple[dict[str, dict], dict[
             verdicts[tree] = _command(path, arguments)
             seconds[tree] = time.perf_counter() - start
     return verdicts, seconds
-
-
-def _first(tree: Path, command: tuple[str, ...]) -> float:
-    """Seconds of a command with nothing compiled, by a process of its own."""
-    with tempfile.TemporaryDirectory() as cache:
-        start = time.perf_counter()
-        done = _run(tree, *command, NUMBA_CACHE_DIR=cache, XDG_CACHE_HOME=cache)
-        seconds = time.perf_counter() - start
-    if done.returncode:
-        raise SystemExit(done.stderr)
-    return seconds
 
 
 def _shown_seconds(seconds: dict[str, float]) -> str:

@@ -1,4 +1,4 @@
-"""The pictures of the benchmarks: ratio bars of the trajectories, error against time, families by method.
+"""The pictures of the benchmarks: trajectories by scene, growth, error against time.
 
 matplotlib, from the rows that also go into the csv files; nothing is computed here that is not in them.
 """
@@ -13,8 +13,6 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
-import numpy as np
-from matplotlib.colors import LogNorm
 
 COLOURS = {
     "clearance": "#c1121f",
@@ -40,7 +38,7 @@ STYLE = {
 }
 
 
-def draw_trajectory(rows: Sequence[dict], path: Path) -> None:
+def draw_trajectory(rows: Sequence[dict], path: str) -> None:
     """Milliseconds a step of every loop, a row a scene; lines carry the ratio to ours."""
     names = list(dict.fromkeys(row["scene"] for row in rows))
     shown = [row for row in rows if not row["method"].endswith("pair minima")]
@@ -87,46 +85,7 @@ def _span_of(axes, height: int, rows: Sequence[dict]) -> None:
         )
 
 
-def draw_ratios(rows: Sequence[dict], path: Path) -> None:
-    """Bars, a group a scene: how many times our time the peers' best loop of each kind takes."""
-    kinds = {
-        "all pairs, managers, sorted": (("all pairs", "managers", "by spheres"), "#8fa9c4"),
-        "python-fcl's managers": (("managers",), "#1d4e89"),
-        "Klampt with bounds carried by hand": (("carried bounds",), "#6a4c93"),
-    }
-    names = list(dict.fromkeys(row["scene"] for row in rows))
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(9.5, 0.55 * len(names) + 1.6), layout="constrained")
-        for i, (label, (endings, colour)) in enumerate(kinds.items()):
-            for height, name in enumerate(names):
-                ratios = [
-                    row["ratio_to_ours"]
-                    for row in rows
-                    if row["scene"] == name
-                    and row["library"] != "clearance"
-                    and row["method"].endswith(endings)
-                ]
-                if ratios:
-                    place = height + 0.26 * (i - 1)
-                    axes.barh(
-                        place, min(ratios), 0.24, color=colour, label=label if height == 0 else None
-                    )
-                    axes.annotate(
-                        f"{min(ratios):.3g}", (min(ratios), place), (3, 0), textcoords="offset points",
-                        va="center", fontsize=7,
-                    )  # fmt: skip
-        axes.axvline(1.0, color="#c1121f", linewidth=1.2)
-        axes.set(
-            xscale="log", xlabel="times our time a step (line: ours)", yticks=range(len(names))
-        )
-        axes.set_yticklabels(names)
-        axes.set_ylim(len(names) - 0.4, -0.6)
-        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
-        axes.set_title("The fastest loop of each kind against ours", loc="left")
-        _save(figure, path)
-
-
-def draw_growth(rows: Sequence[dict], path: Path) -> None:
+def draw_growth(rows: Sequence[dict], path: str) -> None:
     """Two panels: milliseconds a step against triangles, and against steps of one motion."""
     panels = {"triangles": "triangles in the scene", "steps": "steps of one motion"}
     with plt.rc_context(STYLE):
@@ -156,7 +115,7 @@ def draw_growth(rows: Sequence[dict], path: Path) -> None:
         _save(figure, path)
 
 
-def draw_error_time(rows: Sequence[dict], path: Path) -> None:
+def draw_error_time(rows: Sequence[dict], path: str) -> None:
     """A panel a group: worst error against median time, a line down to the median error."""
     groups = [g for g in ("polygons", "bodies", "steps") if any(row["group"] == g for row in rows)]
     titles = {
@@ -268,51 +227,7 @@ def _overlap(a, b) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
-def draw_families(rows: Sequence[dict], path: Path) -> None:
-    """Worst error by family and method, with the contacts that were false (F) or missed (M)."""
-    chosen = [row for row in rows if row["group"] == "polygons"]
-    if not chosen:
-        return
-    families = list(dict.fromkeys(row["family"] for row in chosen))
-    methods = list(dict.fromkeys(row["method"] for row in chosen))
-    worst = np.full((len(families), len(methods)), np.nan)
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(
-            figsize=(1.0 * len(methods) + 2.2, 0.4 * len(families) + 2.0), layout="constrained"
-        )
-        for row in chosen:
-            i, j = families.index(row["family"]), methods.index(row["method"])
-            worst[i, j] = max(row["error_worst"], FLOOR)
-            marks = [
-                f"{n}{k}"
-                for n, k in ((row["false_contacts"], "F"), (row["missed_contacts"], "M"))
-                if n
-            ]
-            figures = f"{row['error_worst']:.0e}" if row["no_answer"] < row["asked"] else "none"
-            colour = "black" if worst[i, j] < 1e-4 or math.isnan(worst[i, j]) else "white"
-            axes.text(
-                j,
-                i,
-                " ".join([figures, *marks]),
-                ha="center",
-                va="center",
-                fontsize=7,
-                color=colour,
-            )
-        image = axes.pcolormesh(
-            worst, norm=LogNorm(1e-17, 1.0), cmap="Reds", edgecolor="white", linewidth=1.0
-        )
-        image.set_transform(matplotlib.transforms.Affine2D().translate(-0.5, -0.5) + axes.transData)
-        axes.set(xticks=range(len(methods)), yticks=range(len(families)))
-        axes.set_xticklabels(methods, rotation=30, ha="right")
-        axes.set_yticklabels([name.replace("_", " ") for name in families])
-        axes.set(xlim=(-0.5, len(methods) - 0.5), ylim=(len(families) - 0.5, -0.5))
-        axes.set_title("worst error in parts of the size; F false, M missed contacts", loc="left")
-        _save(figure, path)
-
-
-def _save(figure, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    metadata = {"Date": None} if path.suffix == ".svg" else None
-    figure.savefig(path, metadata=metadata, dpi=110)
+def _save(figure, path: str) -> None:
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None, dpi=110)
     plt.close(figure)

@@ -1,35 +1,38 @@
-"""What the benchmarks run on: whole cases with their motion worked out, single bodies, polygon pairs.
+"""What the benchmarks run on: whole cases with their motion worked out, and single bodies.
 
 Everything here is made outside the clock, with fixed seeds. Not for: measuring (`peers`, `loops`).
 """
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
-    os.environ.setdefault(_threads, "1")  # before numpy is loaded: one thread for everybody
+from harness import SCENES, SHARED  # first: it sets the number of threads before numpy is loaded
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))  # so that a script runs from the root without an installation
+import numpy as np  # isort: skip
 
-import numpy as np  # noqa: E402
+from clearance import load_case
+from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.world.body import Body
+from clearance.world.case import Case
+from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.pairs import Pair, measured_pairs
+from scripts.makers import hostile_cases
 
-from clearance import load_case  # noqa: E402
-from clearance.crosscheck.triangles import TriangleSoup, triangle_soup  # noqa: E402
-from clearance.geometry.polyhedron import Polyhedron  # noqa: E402
-from clearance.world.body import Body  # noqa: E402
-from clearance.world.case import Case  # noqa: E402
-from clearance.world.motion import Motion, kinematic_motion  # noqa: E402
-from clearance.world.pairs import Pair, measured_pairs  # noqa: E402
-
-SHARED = ROOT.parent / "shared" / "cases"
-SCENES = ROOT / "scenes"
+MADE: dict[str, Callable[[], Case]] = {
+    "arm_among_obstacles": lambda: hostile_cases.arm_among_obstacles(32, 300),
+    "teleporting": lambda: hostile_cases.teleporting(32, 60),
+    "linked_tori": lambda: hostile_cases.linked_tori(16, 40),
+    "linked_tori_16k": lambda: hostile_cases.linked_tori(64, 10),
+    "nested_shells": lambda: hostile_cases.nested_shells(4, 10),
+    "everything_equidistant": lambda: hostile_cases.everything_equidistant(24, 20),
+    "facing_plates": lambda: hostile_cases.facing_plates(24, 20),
+}
+"""The field's scene (seven links among 20 obstacles, 2048 triangles each), and those in which nothing is cut."""
 
 
 class Round(NamedTuple):
@@ -126,11 +129,12 @@ def absent_inputs() -> list[str]:
     return [] if shared else [f"skipped: no shared cases in {SHARED.name}/ beside the repository"]
 
 
-def scenes(names: list[str] | None = None) -> Iterator[Scene]:
-    """Every case whose folder name is in `names`; all of them if that is empty or None."""
+def scenes(names: Sequence[str] = ()) -> Iterator[Scene]:
+    """The cases of some names, made ones too; every case file where none is named."""
     for path in case_files():
         if not names or path.parent.name in names:
             yield scene_of(path)
+    yield from (scene_from(name, make()) for name, make in MADE.items() if name in names)
 
 
 def scene_of(path: Path) -> Scene:

@@ -2,7 +2,7 @@
 
 All get the same triangles in metres, as their users would hand them over, and none is told where it will
 fail. A library that cannot be imported is named by `absent_peers`, never replaced. Not for: loops over
-the pairs of a scene (`loops`), or methods that are approximate by design (`approximations`).
+the pairs of a scene (`loops`), or methods that are approximate by design (`contenders`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ DISTRIBUTIONS = {
     "coal": "coal",
     "klampt": "Klampt",
     "pybullet": "pybullet",
-    "pinocchio": "pin",
+    "python_solvespace": "python-solvespace",
 }
 """Module to the name under which pip installs it."""
 

@@ -1,31 +1,42 @@
 """Shared regions and common points against the peers: the table of `clearance/query/POLYTOPES.md`, and a CSV.
 
-Run from the repository's root: `python scripts/bench/polytopes.py [--largest N] [--seconds S] [--csv FILE]`.
-Fixed seed, bodies prepared outside the clock, warmed up, peers in the same process. The least of the
-repetitions is reported with their median and the least processor time (of all threads together): on a busy
-machine the first two drift apart, and the third is what can be compared.
+    python scripts/bench/polytopes.py [--corners N ...] [--seconds S] [--csv FILE]
+
+Bodies are prepared outside the clock. The least of the repetitions is told with their median and the least
+processor time (of all threads together): on a busy machine the first two drift apart, and the third is what can be
+compared.
 """
 
 from __future__ import annotations
 
-import argparse
-import csv
-import sys
 import time
-from pathlib import Path
+from collections.abc import Callable
 
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
+from harness import Row
+from peers import available
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
-
-sys.path.insert(
-    0, str(Path(__file__).parents[2])
-)  # so that it runs from the root without an installation
 
 from clearance.geometry.polytope import Polytope
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
 from clearance.query.intersection import intersect
+
+SMALLEST = ["--corners", "50", "--seconds", "0.01"]
+
+
+def main(words: list[str] | None = None) -> list[Row]:
+    """Runs what the command line asks for."""
+    asked = harness.arguments(__doc__, words, corners=[50, 1000, 5000], seconds=0.5)
+    rows = [trajectory_row(asked.seconds)]
+    for m in (2, 64):
+        for n in asked.corners:
+            rows += rows_of(m, n, asked.seconds)
+    harness.show("shared regions of m bodies of n corners", rows)
+    harness.write_csv(rows, asked.csv)
+    return rows
 
 
 def ball(rng: np.random.Generator, n: int, centre: np.ndarray) -> Polytope:
@@ -34,21 +45,27 @@ def ball(rng: np.random.Generator, n: int, centre: np.ndarray) -> Polytope:
     return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre).prepared()
 
 
-def timed(call, budget: float) -> tuple[float, float, float]:
-    """(least, median, least processor) time of a call [ms]; the first counts only if it takes a second."""
-    rows, end = [], None
+def repeated(call: Callable[[], object], budget: float) -> np.ndarray:
+    """(3,) [ms] least, median and least processor time; the first call counts only if it takes a second."""
+    found, end = [], None
     while True:
         began, worked = time.perf_counter(), time.process_time()
         call()
         row = time.perf_counter() - began, time.process_time() - worked
         if end is not None or row[0] > 1.0:
-            rows.append(row)
+            found.append(row)
         now = time.perf_counter()
         end = end or now + budget
-        if rows and (now > end or len(rows) == 300):
+        if found and (now > end or len(found) == 300):
             break
-    wall, work = 1e3 * np.array(rows).T
-    return wall.min(), float(np.median(wall)), work.min()
+    wall, work = 1e3 * np.array(found).T
+    return np.array([wall.min(), np.median(wall), work.min()])
+
+
+def row_of(what: str, m: int, n: int, ms: np.ndarray) -> Row:
+    """One measurement."""
+    columns = ("least_ms", "median_ms", "least_cpu_ms")
+    return {"what": what, "m": m, "n": n, **dict(zip(columns, ms.tolist(), strict=True))}
 
 
 def lp_and_qhull(bodies: list[Polytope]) -> float:
@@ -59,19 +76,17 @@ def lp_and_qhull(bodies: list[Polytope]) -> float:
     return ConvexHull(HalfspaceIntersection(rows, best.x[:3]).intersections).volume
 
 
-def manifold_of(bodies: list[Polytope]):
-    """A call that intersects with manifold3d, or None where it is not installed."""
-    try:
-        import manifold3d
-    except ImportError:
-        return None
+def by_manifold(bodies: list[Polytope]) -> Callable[[], float]:
+    """The volume by manifold3d."""
+    import manifold3d
+
     solids = [manifold3d.Manifold.hull_points(body.vertices) for body in bodies]
     both = manifold3d.OpType.Intersect
     return lambda: manifold3d.Manifold.batch_boolean(solids, both).volume()
 
 
-def rows_of(m: int, n: int, budget: float) -> list[list]:
-    """(what, m, n, least ms, median ms, least processor ms) of ours and the peers on one family of balls."""
+def rows_of(m: int, n: int, budget: float) -> list[Row]:
+    """Ours and the peers on one family of balls."""
     rng = np.random.default_rng([m, n])
     spread = 0.4 if m == 2 else 0.05
     bodies = [ball(rng, n, rng.normal(size=3) * spread) for _ in range(m)]
@@ -83,13 +98,12 @@ def rows_of(m: int, n: int, budget: float) -> list[list]:
     if m * n <= 64000:
         calls["intersect, dual"] = lambda: intersect(bodies, "dual")
         calls["LP + Qhull (scipy)"] = lambda: lp_and_qhull(bodies)
-    peer = manifold_of(bodies)
-    if peer:
-        calls["manifold3d"] = peer
-    return [[what, m, n, *timed(call, budget)] for what, call in calls.items()]
+    if available("manifold3d"):
+        calls["manifold3d"] = by_manifold(bodies)
+    return [row_of(what, m, n, repeated(call, budget)) for what, call in calls.items()]
 
 
-def trajectory_row(budget: float, n: int = 50, n_poses: int = 200) -> list:
+def trajectory_row(budget: float, n: int = 50, n_poses: int = 200) -> Row:
     """A pose of two bodies that pass each other, each common point begun with the last one's faces."""
     bodies = [ball(np.random.default_rng(i), n, np.zeros(3)) for i in range(2)]
     poses = np.tile(np.eye(4), (n_poses, 2, 1, 1))
@@ -98,39 +112,12 @@ def trajectory_row(budget: float, n: int = 50, n_poses: int = 200) -> list:
     poses[:, 1, 1, 0], poses[:, 1, 0, 1] = np.sin(angle), -np.sin(angle)
     poses[:, 1, 0, 3], poses[:, 1, 1, 3] = way, 0.3
 
-    def follow():
+    def follow() -> None:
         warm = ()
         for pair in poses:
             warm = common_point(bodies, pair, warm).warm
 
-    return [
-        "common_point, warm, a pose",
-        2,
-        n,
-        *(value / n_poses for value in timed(follow, budget)),
-    ]
-
-
-def main() -> None:
-    """Prints a line a measurement and writes them all."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--largest", type=int, default=5000, help="largest number of corners")
-    parser.add_argument("--seconds", type=float, default=0.5, help="how long each is repeated")
-    parser.add_argument("--csv", type=Path, default=None, help="where to write the rows")
-    given = parser.parse_args()
-    sizes = [(m, n) for m in (2, 64) for n in (50, 1000, 5000) if n <= given.largest]
-    table = [trajectory_row(given.seconds)]
-    for m, n in sizes:
-        table += rows_of(m, n, given.seconds)
-        for what, _, _, least, median, work in (line for line in table if line[1:3] == [m, n]):
-            print(
-                f"m {m:3d}  n {n:5d}  {what:28s} {least:10.4f} ms  (median {median:.4f}, cpu {work:.4f})"
-            )
-    if given.csv:
-        with given.csv.open("w", newline="", encoding="utf-8") as out:
-            writer = csv.writer(out, lineterminator="\n")
-            writer.writerow(["what", "m", "n", "least_ms", "median_ms", "least_cpu_ms"])
-            writer.writerows([*line[:3], *(f"{value:.5f}" for value in line[3:])] for line in table)
+    return row_of("common_point, warm, a pose", 2, n, repeated(follow, budget) / n_poses)
 
 
 if __name__ == "__main__":

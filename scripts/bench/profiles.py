@@ -1,72 +1,127 @@
-"""Times of swept profiles, fits and comparisons, with the plain way beside them; writes results/profiles.csv.
+"""Prints the times of swept profiles, fits and comparisons, with the plain way beside them.
 
-    python scripts/bench/profiles.py [--case CASE.yaml]
+    python scripts/bench/profiles.py [--case NAME] [--pieces N] [--modes MODE ...] [--csv FILE]
 
 The peer is shapely alone: the union of all projected triangles at all the instants that a sweep to the same
-tolerance inserts. It is run on a few instants spread over the motion and scaled by their number (favouring it: the
-union of all instants' unions is left out), since the whole takes minutes. Least CPU time of several runs, so that
-other work on the machine counts little; ratios count.
+tolerance inserts. It is run on two instants of each link and scaled by their number (favouring it: the union of
+all instants' unions is left out), since the whole takes minutes. Least CPU time of several runs; ratios count.
 """
 
 from __future__ import annotations
 
-import argparse
-import csv
-import resource
-import time
 from dataclasses import replace
-from pathlib import Path
 
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
 import shapely
-from clock import timed
+from harness import Row, least_time, timed
+from inputs import scenes
 
 import clearance as cl
 from clearance.profiles.chain import chain_of
 from clearance.profiles.chords import knots_of
 from clearance.profiles.compare import compare
 from clearance.profiles.contour import Contour
-from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.outline_file import DrawnOutline
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Profile
 from clearance.profiles.sweep import SHARE, TOLERANCE
+from clearance.world.case import Case
 from clearance.world.motion import kinematic_motion
 
-HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
 FREE = {0, 1, 3, 5}
-"""Sides of the bench's sketch whose lengths are free."""
+"""Sides of the sketch whose lengths are free."""
 
-DEFAULT = ROOT.parent / "shared" / "cases" / "kuka_iiwa_valve_wall" / "case.yaml"
+MODES = ("nearest", "outside", "inside")
 
-
-def least(action, times: int) -> tuple[float, object]:
-    """Least CPU time of several runs [s], after one that warms up, and its result."""
-    action()
-    return min((timed(action) for _ in range(times)), key=lambda row: row[0])
+SMALLEST = ["--case", "box_box", "--modes"]
 
 
-def plain_union(case, plane: Plane, samples: int) -> tuple[float, int]:
+def main(words: list[str] | None = None) -> list[Row]:
+    """Runs what the command line asks for."""
+    asked = harness.arguments(
+        __doc__, words, case="kuka_iiwa_valve_wall", pieces=2000, modes=[*MODES]
+    )
+    case = next(scene.case for scene in scenes([asked.case]))
+    rows = [*sweep_rows(case), *fit_rows(asked.pieces, asked.modes)]
+    harness.show(asked.case, rows)
+    harness.write_csv(rows, asked.csv)
+    return rows
+
+
+def sweep_rows(case: Case) -> list[Row]:
+    """A sweep in plan view to 0.5 mm, the same of a longer motion, shapely alone, and two sweeps compared."""
+    cl.swept_profile(case)  # compiled code is warm
+    took, profile = least_time(lambda: cl.swept_profile(case), 2)
+    plain, instants = plain_union(case, Plane.of("xy"), 2)
+    longer, _ = timed(lambda: cl.swept_profile(lengthened(case, 4)))
+    wider = [Contour(1.001 * one.vertices, one.bulges) for one in profile.contours]
+    other = replace(profile, contours=tuple(wider))
+
+    def compared() -> object:
+        outlines = (
+            DrawnOutline(name, one.curve, one)
+            for name, one in zip("ab", (profile, other), strict=True)
+        )
+        return compare(*outlines, limit=1e-4)
+
+    compared()
+    return [
+        row_of(
+            "polygons of the robot", sum(b.shape.n_faces for b in case.robots[0].robot.bodies), ""
+        ),
+        row_of("steps", case.robots[0].trajectory.n_steps, ""),
+        row_of("sweep", took, "s"),
+        row_of("bound", 1000.0 * profile.bound, "mm"),
+        row_of("lines and arcs", profile.n_pieces, ""),
+        row_of("instants of all links", instants, ""),
+        row_of("shapely alone (sampled, scaled)", plain, "s"),
+        row_of("shapely over sweep", plain / took, "x"),
+        row_of("sweep of 4 times the steps", longer, "s"),
+        row_of("compare two sweeps", 1000.0 * least_time(compared, 5)[0], "ms"),
+    ]
+
+
+def fit_rows(n_pieces: int, modes: list[str]) -> list[Row]:
+    """A sketch of 12 dimensions, 4 of them free, fitted to an outline of so many pieces."""
+    outline, sketch = busy_outline(n_pieces), stepped_sketch()
+    ring = outline.contours[0]  # larger, as a drawn room, for the largest plate inside
+    room = Contour(3.0 * ring.vertices, ring.bulges).curve()
+    rows = []
+    for mode in modes:
+        other = room if mode == "inside" else outline
+        work = lambda mode=mode, other=other: cl.fit(sketch, other, mode)  # noqa: E731
+        work()
+        rows.append(row_of(f"fit, 4 free, {n_pieces} pieces, {mode}", least_time(work, 2)[0], "s"))
+    return rows
+
+
+def row_of(what: str, value: float, unit: str) -> Row:
+    """One figure."""
+    return {"what": what, "value": value, "unit": unit}
+
+
+def plain_union(case: Case, plane: Plane, samples: int) -> tuple[float, int]:
     """CPU time [s] of shapely's union of all projected triangles at all inserted instants, and their number."""
-    motion = kinematic_motion(case.robots[0])
+    motion, robot = kinematic_motion(case.robots[0]), case.robots[0].robot
     took, instants = 0.0, 0
-    links = case.robots[0].robot.link_names
-    for body in case.robots[0].robot.bodies:
-        chain = chain_of(case, (motion,), links.index(body.name))
+    for body in robot.bodies:
+        chain = chain_of(case, (motion,), robot.link_names.index(body.name))
         knots = knots_of(chain, body.shape, plane, SHARE * TOLERANCE, solid=False)
         corners = body.shape.vertices[body.shape.triangles()]
         chosen = np.linspace(0, len(knots.instant) - 1, samples).astype(int)
-        before = time.process_time()
-        for pose in knots.poses[chosen]:
-            seen = plane.coordinates(corners @ pose[:3, :3].T + pose[:3, 3])
-            shapely.unary_union(shapely.polygons(seen))
-        took += (time.process_time() - before) / samples * len(knots.instant)
+
+        def union(poses=knots.poses[chosen], corners=corners) -> None:
+            for pose in poses:
+                seen = plane.coordinates(corners @ pose[:3, :3].T + pose[:3, 3])
+                shapely.unary_union(shapely.polygons(seen))
+
+        took += timed(union)[0] / samples * len(knots.instant)
         instants += len(knots.instant)
     return took, instants
 
 
-def lengthened(case, factor: int):
+def lengthened(case: Case, factor: int) -> Case:
     """The case with its path there and back, `factor` times as many steps."""
     placed = case.robots[0]
     asked = placed.trajectory
@@ -97,55 +152,6 @@ def stepped_sketch() -> cl.Sketch:
         length = float(np.hypot(*(p[i + 1].position - p[i].position)))
         s.distance(p[i], p[i + 1], length, name=f"d{i}", driven=i in FREE)
     return s
-
-
-def main() -> None:
-    """Measures and writes."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--case", type=Path, default=DEFAULT)
-    path = parser.parse_args().case
-    case = cl.load_case(path)
-    polygons = sum(body.shape.n_faces for body in case.robots[0].robot.bodies)
-    rows = []
-
-    def tell(what: str, value: float, unit: str) -> None:
-        rows.append((path.parent.name, what, f"{value:.6g}", unit))
-        print(f"{what:<46} {value:12.6g} {unit}", flush=True)
-
-    tell("polygons of the robot", polygons, "")
-    tell("steps", case.robots[0].trajectory.n_steps, "")
-    took, profile = least(lambda: cl.swept_profile(case), 2)
-    tell("sweep, plan view, 0.5 mm", took, "s")
-    tell("bound", 1000.0 * profile.bound, "mm")
-    tell("lines and arcs", profile.n_pieces, "")
-    plain, instants = plain_union(case, Plane.of("xy"), 2)
-    tell("instants of all links", instants, "")
-    tell("shapely alone (sampled, scaled)", plain, "s")
-    tell("ratio", plain / took, "x")
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    took, _ = least(lambda: cl.swept_profile(lengthened(case, 4)), 1)
-    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    tell("sweep of 4 times the steps", took, "s")
-    tell("more memory at the most for it", (after - before) / 1024.0, "MiB")
-    outline, sketch = busy_outline(2000), stepped_sketch()
-    shape = SketchShape(sketch, None)
-    tell("dimensions of the sketch", len(shape.free) + len(shape.fixed), "")
-    tell("of these free", len(shape.free), "")
-    ring = outline.contours[0]  # larger, as a drawn room, for the largest plate inside
-    room = Contour(3.0 * ring.vertices, ring.bulges).curve()
-    for mode, other in (("nearest", outline), ("outside", outline), ("inside", room)):
-        took, _ = least(lambda mode=mode, other=other: cl.fit(sketch, other, mode), 2)
-        tell(f"fit, 4 free, 2000 pieces, {mode}", took, "s")
-    other = replace(
-        profile, contours=tuple(Contour(1.001 * c.vertices, c.bulges) for c in profile.contours)
-    )
-    pair = DrawnOutline("a", profile.curve, profile), DrawnOutline("b", other.curve, other)
-    took, _ = least(
-        lambda: compare(*(DrawnOutline(d.name, d.curve, d.profile) for d in pair), limit=1e-4), 5
-    )
-    tell("compare two sweeps", 1000.0 * took, "ms")
-    with open(HERE / "results" / "profiles.csv", "w", newline="", encoding="utf-8") as file:
-        csv.writer(file, lineterminator="\n").writerows([("case", "what", "value", "unit"), *rows])
 
 
 if __name__ == "__main__":

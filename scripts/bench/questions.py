@@ -1,24 +1,30 @@
 """What run time against error is measured on, with the truth: polygon pairs, body pairs, whole steps.
 
-Truth of the first two is rational arithmetic (tests/oracle); of steps the shared cases' references, where
-the nearest obstacle is the very mesh that is measured. Seeds are fixed; made outside the clock.
+The truth of the first two is in `truths/`, written by exact arithmetic (`tests/golden/make_truths.py`); that of
+steps are the shared cases' references, where the nearest obstacle is the very mesh that is measured. Seeds are
+fixed; all is made outside the clock.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import csv
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
+from pathlib import Path
 
 import numpy as np
 from inputs import Scene, Solid, scenes, solid
 
-import clearance as cl
 from clearance.crosscheck.triangles import TriangleSoup
-from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
-from tests import oracle
-from tests.made_cases import faces_of
-from tests.strategies import FAMILIES, rotations
+from scripts.makers.body_pairs import body_pairs
+from scripts.makers.polygon_pairs import FAMILIES
+
+TRUTHS = Path(__file__).parent / "truths"
+
+N_POLYGONS, N_POSES, SEED = 60, 8, 5
+"""Pairs and poses a family that the files hold."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +33,7 @@ class Question:
 
     Attributes:
         size: [m] the greatest extent of the two; errors are told in parts of it.
-        true_sq: [m^2] exact.
+        exact: [m] to 40 digits.
     """
 
     family: str
@@ -36,37 +42,42 @@ class Question:
     pose_a: np.ndarray
     pose_b: np.ndarray
     size: float
-    true_sq: object
+    exact: Decimal
 
     @property
     def truth(self) -> float:
         """[m]"""
-        return float(oracle.root(self.true_sq))
+        return float(self.exact)
 
     def error(self, answer: float) -> float:
-        """|answer - truth| in parts of the size, from 50 digits; below 0 is contact."""
-        return float(oracle.error(max(0.0, float(answer)), self.true_sq)) / self.size
+        """|answer - truth| in parts of the size; below 0 is contact."""
+        return float(abs(Decimal(max(0.0, float(answer))) - self.exact)) / self.size
 
 
 def polygon_questions(n: int) -> list[Question]:
-    """`n` pairs of each family of tests/strategies.py, families in turn."""
-    by_family = [
-        [
-            _polygon_question(name, p, q)
-            for p, q in zip(*family(np.random.default_rng(5), n), strict=True)
-        ]
+    """`n` pairs of each family, at most as many as the file holds; families in turn."""
+    truths = {(row[0], int(row[1])): Decimal(row[2]) for row in _rows("polygons")}
+    drawn = {
+        name: list(zip(*family(np.random.default_rng(SEED), N_POLYGONS), strict=True))
         for name, family in FAMILIES.items()
+    }
+    return [
+        _polygon_question(name, *pairs[i], truths[name, i])
+        for i in range(min(n, N_POLYGONS))
+        for name, pairs in drawn.items()
     ]
-    return [question for row in zip(*by_family, strict=True) for question in row]
 
 
-def _polygon_question(family: str, p: np.ndarray, q: np.ndarray) -> Question:
+def _rows(name: str) -> list[list[str]]:
+    with (TRUTHS / f"{name}.csv").open(encoding="utf-8") as lines:
+        return list(csv.reader(lines))
+
+
+def _polygon_question(family: str, p: np.ndarray, q: np.ndarray, exact: Decimal) -> Question:
     p, q = _from_least_corner(p), _from_least_corner(q)
     size = max(np.ptp(p, axis=0).max(), np.ptp(q, axis=0).max())
-    true_sq = oracle.polygon_distance_sq(p, q)
-    return Question(
-        family, fan("p", p), fan("q", q, True), np.eye(4), np.eye(4), float(size), true_sq
-    )
+    a, b = fan("p", p), fan("q", q, stands=True)
+    return Question(family, a, b, np.eye(4), np.eye(4), float(size), exact)
 
 
 def _from_least_corner(polygon: np.ndarray) -> np.ndarray:
@@ -86,97 +97,16 @@ def fan(name: str, corners: np.ndarray, stands: bool = False) -> Solid:
     return Solid(name, None, open_soup, None, stands)
 
 
-def body_questions(n: int) -> list[Question]:
-    """`n` poses of each family of bodies: gaps from 1 um to 0.3 m, every fourth in contact."""
-    random = np.random.default_rng(17)
-    families: dict[str, Callable[[], tuple[Polyhedron, Polyhedron]]] = {
-        "boxes": lambda: (_box(random), _box(random)),
-        "pipes": lambda: (_pipe(random), _pipe(random)),
-        "box and pipe": lambda: (_box(random), _pipe(random)),
-    }
-    iiwa, panda = _links("iiwa_pipe_rack"), _links("panda_shelf")
-    families["iiwa link and pipe"] = lambda: (iiwa[random.integers(3, 7)], _pipe(random))
-    families["panda links"] = lambda: (panda[random.integers(0, 10)], panda[random.integers(0, 10)])
-    asked = []
-    for i in range(n):
-        for name, draw in families.items():
-            a, b = (
-                solid(Body(part, shape), part == "b")
-                for part, shape in zip("ab", draw(), strict=True)
-            )
-            asked.append(_body_question(random, name, a, b, touching=i % 4 == 3))
-    asked.append(_body_question_at("rod in a bore", _rod(0.05), _bore(0.08), _lifted(0.01)))
-    asked.append(_body_question_at("box in a box", _cube(0.2), _cube(1.0), _lifted(0.1)))
-    return asked
-
-
-def _body_question(
-    random: np.random.Generator, family: str, a: Solid, b: Solid, touching: bool
-) -> Question:
-    """b at a random attitude, moved towards a until the wanted gap is left, or 2 mm into it."""
-    pose = np.eye(4)
-    pose[:3, :3] = rotations(random, 1)[0]
-    toward = random.normal(size=3)
-    toward /= np.linalg.norm(toward)
-    wanted = 0.0 if touching else 10.0 ** random.uniform(-6.0, -0.5)
-    reach = (
-        2.0 * (a.shape.bounds.ptp() if hasattr(a.shape.bounds, "ptp") else np.ptp(a.shape.bounds))
-        + 2.0
-    )
-    for _ in range(200):
-        pose[:3, 3] = reach * toward
-        gap = cl.distance(a.shape, b.shape, pose_b=pose).distance
-        if gap <= wanted * (1 + 1e-3) + 1e-9 or reach <= 0.0:
-            break
-        reach -= gap - wanted
-    pose[:3, 3] = (reach - 0.002 * touching) * toward
-    return _body_question_at(family, a, b, pose)
-
-
-def _body_question_at(family: str, a: Solid, b: Solid, pose: np.ndarray) -> Question:
-    true_sq = oracle.solid_distance_sq(
-        a.shape.vertices, faces_of(a.shape), b.shape.vertices, faces_of(b.shape), None, pose,
-        _has_inside(a.shape), _has_inside(b.shape),
-    )  # fmt: skip
-    size = max(np.ptp(s.shape.bounds, axis=0).max() for s in (a, b))
-    return Question(family, a, b, np.eye(4), pose, float(size), true_sq)
-
-
-def _has_inside(shape: Polyhedron) -> bool:
-    return shape.closed and shape.oriented
-
-
-def _box(random: np.random.Generator) -> Polyhedron:
-    return cl.box(tuple(10.0 ** random.uniform(-2.0, 0.0, 3)))
-
-
-def _pipe(random: np.random.Generator) -> Polyhedron:
-    outer = random.uniform(0.02, 0.15)
-    return cl.pipe(inner_radius=0.8 * outer, outer_radius=outer, length=random.uniform(0.3, 1.5))
-
-
-def _links(scene: str) -> list[Polyhedron]:
-    return [link.shape for link in next(scenes([scene])).links]
-
-
-def _rod(radius: float) -> Solid:
-    return solid(Body("rod", cl.cylinder(radius, 3.0)))
-
-
-def _bore(radius: float) -> Solid:
-    return solid(
-        Body("bore", cl.pipe(inner_radius=radius, outer_radius=2 * radius, length=1.0)), True
-    )
-
-
-def _cube(width: float) -> Solid:
-    return solid(Body("cube", cl.box((width, width, width))), width == 1.0)
-
-
-def _lifted(x: float) -> np.ndarray:
-    pose = np.eye(4)
-    pose[0, 3] = x
-    return pose
+def body_questions(n: int) -> Iterator[Question]:
+    """`n` poses of each family of bodies, at most as many as the file holds, and two inside another."""
+    rows = list(zip(body_pairs(N_POSES), _rows("bodies"), strict=True))
+    n_families = (len(rows) - 2) // N_POSES
+    for pair, row in [*rows[: n * n_families], *rows[-2:]]:
+        pose = np.eye(4)
+        pose[:3] = np.array(row[3:], dtype=float).reshape(3, 4)
+        a, b = solid(Body("a", pair.a)), solid(Body("b", pair.b), stands=True)
+        size = max(np.ptp(shape.bounds, axis=0).max() for shape in (pair.a, pair.b))
+        yield Question(pair.family, a, b, np.eye(4), pose, float(size), Decimal(row[2]))
 
 
 def step_sample(scene: Scene, n: int) -> np.ndarray:
@@ -185,6 +115,6 @@ def step_sample(scene: Scene, n: int) -> np.ndarray:
     return exact[np.unique(np.linspace(0, len(exact) - 1, n).round().astype(int))]
 
 
-def step_scenes(names: list[str] | None) -> list[Scene]:
+def step_scenes(names: Sequence[str]) -> list[Scene]:
     """The shared cases among `names`."""
     return [scene for scene in scenes(names) if scene.reference is not None]

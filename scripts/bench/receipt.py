@@ -1,98 +1,79 @@
-"""Receipts of the scenes and the shared cases: how long they are, and what verifying takes beside a certified run.
+"""Prints how long receipts are, and what verifying takes beside a certified run.
 
-    python scripts/bench/receipt.py [--tolerances] [NAME ...] > scripts/bench/results/receipt.csv
+    python scripts/bench/receipt.py [--scenes NAME ...] [--tolerances] [--csv FILE]
 
-CPU time of one process, compiled kernels, the least of three: a run is `check` of a case in memory, a verification
-goes from the receipt to the answer with the case in memory. `loaded` are the same two with the case read from its
-files each time. `--tolerances` measures receipts of cases with the tolerances of a typical cell instead.
+CPU time, least of three, with the case in memory: a run is `check` of a case, a verification goes from the receipt
+to the answer. `loaded` are the same two with the case read from its files each time. `--tolerances` measures
+receipts of cases with the tolerances of a typical cell instead, and what they leave proven.
 """
 
 from __future__ import annotations
 
-import csv
-import sys
 import tempfile
-import time
 from dataclasses import replace
 from pathlib import Path
 
-from budget import typical
-from clock import least_time
-from inputs import SCENES, SHARED
+import harness
+from budget_samples import typical
+from harness import SCENES, SHARED, Row, least_time, timed
 
 import clearance as cl
 
-COLUMNS = (
-    "case", "steps", "pairs", "kB", "run_s", "verify_s", "ratio", "loaded_run_s", "loaded_verify_s",
-    "loaded_ratio", "write_s", "proven",
-)  # fmt: skip
-
-WITH_TOLERANCES = (
-    "case", "steps", "pairs", "kB", "run_s", "verify_s", "ratio", "write_s", "told_mm", "proven_mm",
-    "not_ruled_out", "nominal", "proven",
-)  # fmt: skip
+SMALLEST = ["--scenes", "box_box"]
 
 
-def row_with_tolerances(path: Path) -> tuple:
-    """The row of a case file with the tolerances of a typical cell: what they leave is proven too."""
-    case = cl.load_case(path)
-    case = replace(case, tolerance=typical(case))
-    run = cl.check(case)
-    with tempfile.TemporaryDirectory() as place:
-        run.save(place)
-        begun = time.process_time()
-        receipt = cl.write_receipt(run, place)
-        written, size = time.process_time() - begun, receipt.stat().st_size
-        found = cl.verify(place, case)
-        times = [
-            least_time(lambda: cl.check(case), 3),
-            least_time(lambda: cl.verify(place, case), 1),
-        ]
-    told = min(one.least for one in run.record.budget)
-    proven = [bound for rule, bound in found.bounds.items() if rule.endswith("with tolerances")]
-    return (
-        path.parent.name, len(run.steps), found.n_pairs, f"{size / 1e3:.0f}",
-        f"{times[0]:.4f}", f"{times[1]:.3f}", f"{times[1] / times[0]:.1f}", f"{written:.1f}",
-        f"{1e3 * told:.3f}", f"{1e3 * min(proven, default=0.0):.3f}", found.n_not_ruled_out,
-        found.nominal, found.proven,
-    )  # fmt: skip
+def main(words: list[str] | None = None) -> list[Row]:
+    """Runs what the command line asks for."""
+    asked = harness.arguments(__doc__, words, scenes=[], tolerances=True)
+    files = [path for place in (SHARED, SCENES) for path in sorted(place.glob("*/case.yaml"))]
+    chosen = [path for path in files if not asked.scenes or path.parent.name in asked.scenes]
+    rows: list[Row] = []
+    for path in chosen:
+        rows.append(row_of(path, asked.tolerances))
+        harness.write_csv(rows, asked.csv)
+    harness.show("receipts", rows)
+    return rows
 
 
-def row(path: Path) -> tuple:
+def row_of(path: Path, tolerances: bool) -> Row:
     """The row of a case file."""
     case = cl.load_case(path)
+    if tolerances:
+        case = replace(case, tolerance=typical(case))
     run = cl.check(case)
     with tempfile.TemporaryDirectory() as place:
         run.save(place)
-        begun = time.process_time()
-        receipt = cl.write_receipt(run, place, path)
-        written, size = time.process_time() - begun, receipt.stat().st_size
-        found = cl.verify(place)
-        times = [
-            least_time(lambda: cl.check(case), 3),
-            least_time(lambda: cl.verify(place, case), 3),
-            least_time(lambda: cl.check(path), 3),
-            least_time(lambda: cl.verify(place), 3),
-        ]
-    return (
-        path.parent.name, len(run.steps), found.n_pairs, f"{size / 1e3:.0f}",
-        f"{times[0]:.4f}", f"{times[1]:.3f}", f"{times[1] / times[0]:.1f}",
-        f"{times[2]:.3f}", f"{times[3]:.3f}", f"{times[3] / times[2]:.1f}", f"{written:.1f}", found.proven,
-    )  # fmt: skip
+        write_s, receipt = timed(lambda: cl.write_receipt(run, place, None if tolerances else path))
+        found = cl.verify(place, case)
+        run_s, verify_s = (
+            least_time(lambda: cl.check(case), 3)[0],
+            least_time(lambda: cl.verify(place, case), 1 if tolerances else 3)[0],
+        )
+        row = {
+            "case": path.parent.name, "steps": len(run.steps), "pairs": found.n_pairs,
+            "kB": receipt.stat().st_size / 1e3, "run_s": run_s, "verify_s": verify_s,
+            "ratio": verify_s / run_s, "write_s": write_s, "proven": str(found.proven),
+        }  # fmt: skip
+        return row | (left(run, found) if tolerances else loaded(path, place))
 
 
-def main(names: list[str]) -> None:
-    """Prints a row a case."""
-    tolerances = "--tolerances" in names
-    names = [name for name in names if name != "--tolerances"]
-    files = [path for place in (SHARED, SCENES) for path in sorted(place.glob("*/case.yaml"))]
-    table = csv.writer(sys.stdout)
-    table.writerow(WITH_TOLERANCES if tolerances else COLUMNS)
-    for path in files:
-        if not names or path.parent.name in names:
-            table.writerow(row_with_tolerances(path) if tolerances else row(path))
-            sys.stdout.flush()
+def loaded(path: Path, place: str) -> Row:
+    """The same with the case read from its files each time."""
+    run_s, verify_s = (
+        least_time(work, 3)[0] for work in (lambda: cl.check(path), lambda: cl.verify(place))
+    )
+    return {"loaded_run_s": run_s, "loaded_verify_s": verify_s, "loaded_ratio": verify_s / run_s}
+
+
+def left(run: cl.Run, found: object) -> Row:
+    """What the run says that tolerances leave, and what of it is proven again."""
+    told = min(one.least for one in run.record.budget)
+    proven = [bound for rule, bound in found.bounds.items() if rule.endswith("with tolerances")]
+    return {
+        "told_mm": 1e3 * told, "proven_mm": 1e3 * min(proven, default=0.0),
+        "not_ruled_out": found.n_not_ruled_out, "nominal": str(found.nominal),
+    }  # fmt: skip
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -1,34 +1,27 @@
 """Prints what two arms on clocks that nothing ties cost: the least of all steps, and the proof between them.
 
-    python scripts/bench/unsynchronised.py [--robots FOLDER] [--slack S] [--steps N] [--jobs J] [--grid N]
+    python scripts/bench/unsynchronised.py [--robots FOLDER] [--slack S ...] [--steps N] [--jobs J] [--grid N]
 
 Two arms stand face to face and wave, 300 steps each in 10 s; every pair of a link of either is measured. Beside
 the proof stands the least of a grid of N x N pairs of times, by single questions of the pairs whose balls come
-near enough: it may not be below the proof. Seconds are those of the processor, compiled, medians of three.
-FOLDER holds `panda_vamp` and `kuka_iiwa_pybullet`.
+near enough: it may not be below the proof. Seconds are those of the processor, medians of three. FOLDER holds
+`panda_vamp` and `kuka_iiwa_pybullet`; where it is not there, two carts of `robots/gantry_box` wave instead.
 """
 
 from __future__ import annotations
 
 import argparse
 import statistics
-import sys
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from inputs import SHARED
-from rich.console import Console
-from rich.table import Table
+from harness import ROOT, SHARED, Row
 
 import clearance as cl
-from clearance.formats.files.input_files import InputFiles
-from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
 from clearance.simulate.measure.clocks.pairs import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.measure.clocks.unsynchronised import (
     UnsynchronisedAnswers,
@@ -44,22 +37,13 @@ from clearance.world.trajectory import Trajectory
 ARMS = {
     "panda": ("panda_vamp/panda.urdf", (0.0, -0.3, 0.0, -2.0, 0.0, 1.9, 0.7)),
     "kuka": ("kuka_iiwa_pybullet/model.urdf", (0.0, 0.3, 0.0, -1.5, 0.0, 1.0, 0.0)),
+    "cart": ("gantry_box/gantry_box.urdf", (-2.0,)),
 }
-
 GAP = 1e-4
-COLUMNS = (
-    "arms",
-    "apart",
-    "links",
-    "slack",
-    "least",
-    "of grid",
-    "steps s",
-    "proof s",
-    "rectangles",
-    "searches",
-    "gap mm",
-)
+APART = (1.0, 1.4)
+"""[m] Between the bases."""
+
+SMALLEST = ["--robots", str(ROOT / "robots"), "--steps", "30", "--slack", "inf", "--grid", "20"]
 
 
 class Scene(NamedTuple):
@@ -69,6 +53,45 @@ class Scene(NamedTuple):
     case: cl.Case
     motions: list[Motion]
     pairs: list[Pair]
+
+
+def main(words: list[str] | None = None) -> list[Row]:
+    """Runs what the command line asks for."""
+    asked = harness.arguments(
+        __doc__,
+        words,
+        robots=str(SHARED / "robots"),
+        slack=[np.inf, 0.2],
+        steps=300,
+        jobs=1,
+        grid=0,
+    )
+    rows: list[Row] = []
+    arms = (("panda", "panda"), ("kuka", "kuka"), ("panda", "kuka"))
+    if not (Path(asked.robots) / "panda_vamp").is_dir():
+        asked.robots, arms = str(ROOT / "robots"), (("cart", "cart"),)
+    for names in arms:
+        for apart in APART:
+            scene = scene_of(Path(asked.robots), names, apart, asked.steps)
+            rows += [row_of(scene, apart, asked, slack) for slack in asked.slack]
+            harness.write_csv(rows, asked.csv)
+    harness.show("arms on clocks that are not tied", rows)
+    return rows
+
+
+def row_of(scene: Scene, apart: float, asked: argparse.Namespace, slack: float) -> Row:
+    """What the proof of one scene comes to and takes."""
+    found, steps, proof = measured(scene, slack, asked.jobs)
+    bounds = found.intervals
+    grid = 1e3 * least_of_grid(scene, slack, asked.grid) if asked.grid else None
+    return {
+        "arms": scene.name, "apart": apart, "pairs": len(scene.pairs), "slack": slack,
+        "proven_mm": 1e3 * bounds.lower_bound.min(), "seen_mm": 1e3 * bounds.upper_bound.min(),
+        "grid_mm": grid, "steps_s": steps, "proof_s": proof,
+        "rectangles": found.steps_tally["rectangles"] + found.intervals_tally["rectangles"],
+        "searches": found.steps_tally["queries"] + found.intervals_tally["queries"],
+        "gap_mm": 1e3 * (bounds.upper_bound - bounds.lower_bound).max(),
+    }  # fmt: skip
 
 
 def scene_of(folder: Path, names: tuple[str, str], apart: float, n_steps: int) -> Scene:
@@ -81,12 +104,8 @@ def scene_of(folder: Path, names: tuple[str, str], apart: float, n_steps: int) -
         for i, (name, base) in enumerate(zip(names, (np.eye(4), facing), strict=True))
     ]
     case = cl.Case("two_clocks", tuple(placed), ())
-    return Scene(
-        " and ".join(names),
-        case,
-        [kinematic_motion(each) for each in placed],
-        measured_pairs(case)[0],
-    )
+    motions = [kinematic_motion(each) for each in placed]
+    return Scene(" and ".join(names), case, motions, measured_pairs(case)[0])
 
 
 def arm(
@@ -94,55 +113,58 @@ def arm(
 ) -> PlacedRobot:
     """An arm that waves about its rest."""
     urdf, rest = ARMS[name]
-    path = folder / urdf
-    robot = read_robot(RobotRequest(path, (path.parent,)), MeshStore(InputFiles(path.parent)))
+    robot = cl.load_urdf(folder / urdf, package_dirs=[(folder / urdf).parent])
     joints = [joint.name for joint in robot.moving_joints][: len(rest)]
-    times = np.linspace(0.0, 10.0, n_steps)
-    rate, phase = random.uniform(0.3, 1.5, len(rest)), random.uniform(0.0, 6.0, len(rest))
-    size = random.uniform(0.2, 0.5, len(rest)) * np.array([3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+    times, n = np.linspace(0.0, 10.0, n_steps), len(rest)
+    rate, phase = random.uniform(0.3, 1.5, n), random.uniform(0.0, 6.0, n)
+    size = random.uniform(0.2, 0.5, n) * np.array([3.0, *[1.0] * (n - 1)])
     positions = np.array(rest) + size * np.sin(times[:, None] * rate + phase)
-    return PlacedRobot(
-        replace(robot, name=f"{name}_{i}"), Trajectory(times, tuple(joints), positions), base
-    )
+    path = Trajectory(times, tuple(joints), positions)
+    return PlacedRobot(replace(robot, name=f"{name}_{i}"), path, base)
 
 
-def two_clocks(scene: Scene, slack: float) -> PairsOfTwoClocks:
-    """The pairs of both arms, the second arm on its own clock."""
+def measured(scene: Scene, slack: float, jobs: int) -> tuple[UnsynchronisedAnswers, float, float]:
+    """The answers, and the median processor seconds of the steps and of the proof."""
+    n_steps, runs = scene.motions[0].n_steps, []
     side = ClockMotion(scene.case, scene.motions)
     second = frozenset([BodyIndex(1, 0)])
-    return PairsOfTwoClocks(side, side, second, scene.pairs, scene.case.limits, slack)
+    for _ in range(4):  # the first one warms up
+        marks = [time.process_time()]
+
+        def note(done: int, of: int, marks: list[float] = marks) -> None:
+            if done == n_steps:
+                marks.append(time.process_time())
+
+        pairs = PairsOfTwoClocks(side, side, second, scene.pairs, scene.case.limits, slack)
+        found = least_unsynchronised(pairs, GAP, Resources(jobs, note))
+        runs.append((marks[1] - marks[0], time.process_time() - marks[1]))
+    steps, proof = (statistics.median(column) for column in zip(*runs[1:], strict=True))
+    return found, steps, proof
 
 
 def least_of_grid(scene: Scene, slack: float, n: int) -> float:
-    """[m] the least over a grid of both times, of those pairs whose boxes of corners come near enough."""
-    times = scene.motions[0].times
-    shares = np.linspace(0.0, times[-1], n)
+    """[m] the least over a grid of both times, of those pairs whose balls come near enough, nearest first."""
+    shares = np.linspace(0.0, scene.motions[0].times[-1], n)
     poses = np.concatenate([poses_at(motion, shares) for motion in scene.motions], axis=1)
     best = np.inf
     for pair in scene.pairs:
-        a, b = pair.a.shape_in(scene.case), pair.b.shape_in(scene.case)
-        at_a, at_b = pair.a.poses_in(scene.case, poses), pair.b.poses_in(scene.case, poses)
-        balls = [ball_of(shape.vertices, at) for shape, at in ((a, at_a), (b, at_b))]
-        for i, k in cells(balls, shares, slack):
-            way = np.linalg.norm(balls[0][0][i] - balls[1][0][k]) - balls[0][1] - balls[1][1]
-            if way < best:
-                best = min(best, cl.distance(a, b, pose_a=at_a[i], pose_b=at_b[k]).distance)
+        shapes = [body.shape_in(scene.case) for body in pair]
+        at = [body.poses_in(scene.case, poses) for body in pair]
+        balls = [ball_of(*each) for each in zip(shapes, at, strict=True)]
+        apart = np.linalg.norm(balls[0][0][:, None] - balls[1][0][None], axis=2)
+        apart[np.abs(shares[:, None] - shares[None]) > slack] = np.inf
+        for cell in np.argsort(apart, axis=None).tolist():
+            i, k = divmod(cell, n)
+            if apart[i, k] - balls[0][1] - balls[1][1] >= best:
+                break
+            best = min(best, cl.distance(*shapes, pose_a=at[0][i], pose_b=at[1][k]).distance)
     return best
 
 
-def cells(balls: list, shares: np.ndarray, slack: float) -> Iterator[tuple[int, int]]:
-    """The cells of the grid in the band, those whose balls are nearest first."""
-    apart = np.linalg.norm(balls[0][0][:, None] - balls[1][0][None], axis=2)
-    apart[np.abs(shares[:, None] - shares[None]) > slack] = np.inf
-    order = np.argsort(apart, axis=None)
-    for cell in order[: np.isfinite(apart).sum()]:
-        yield divmod(int(cell), len(shares))
-
-
-def ball_of(vertices: np.ndarray, poses: np.ndarray) -> tuple[np.ndarray, float]:
+def ball_of(shape: cl.Polyhedron, poses: np.ndarray) -> tuple[np.ndarray, float]:
     """The centres (n, 3) of a body's ball at some poses, and its radius [m]."""
-    centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
-    radius = float(np.linalg.norm(vertices - centre, axis=1).max())
+    centre = shape.bounds.mean(axis=0)
+    radius = float(np.linalg.norm(shape.vertices - centre, axis=1).max())
     return poses[:, :3, :3] @ centre + poses[:, :3, 3], radius
 
 
@@ -152,60 +174,6 @@ def poses_at(motion: Motion, times: np.ndarray) -> np.ndarray:
     shares = (times - motion.times[steps]) / (motion.times[steps + 1] - motion.times[steps])
     at = [motion.positions_after(int(i), float(s)) for i, s in zip(steps, shares, strict=True)]
     return link_poses(motion.placed, np.array(at))
-
-
-def measured(scene: Scene, slack: float, jobs: int) -> tuple[UnsynchronisedAnswers, float, float]:
-    """The answers, and the median processor seconds of the steps and of the proof."""
-    n_steps = scene.motions[0].n_steps
-    marks: list[float] = []
-    runs = []
-    for _ in range(4):  # the first one compiles
-        marks.clear()
-        start = time.process_time()
-
-        def note(done: int, of: int) -> None:
-            if done == n_steps:
-                marks.append(time.process_time())
-
-        found = least_unsynchronised(two_clocks(scene, slack), GAP, Resources(jobs, note))
-        runs.append((marks[0] - start, time.process_time() - marks[0]))
-    steps, proof = (statistics.median(column) for column in zip(*runs[1:], strict=True))
-    return found, steps, proof
-
-
-def row_of(scene: Scene, apart: float, asked: argparse.Namespace, slack: float) -> list[str]:
-    """One line of the table."""
-    found, steps, proof = measured(scene, slack, asked.jobs)
-    bounds = found.intervals
-    grid = f"{least_of_grid(scene, slack, asked.grid) * 1000:.3f}" if asked.grid else ""
-    return [
-        scene.name, f"{apart:g}", str(len(scene.pairs)), f"{slack:g}",
-        f"{bounds.lower_bound.min() * 1000:.3f} to {bounds.upper_bound.min() * 1000:.3f}", grid,
-        f"{steps:.3f}", f"{proof:.3f}",
-        f"{found.steps_tally['rectangles']} {found.intervals_tally['rectangles']}",
-        f"{found.steps_tally['queries']} {found.intervals_tally['queries']}",
-        f"{(bounds.upper_bound - bounds.lower_bound).max() * 1000:.4f}",
-    ]  # fmt: skip
-
-
-def main() -> None:
-    """Runs what the command line asks for."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--robots", type=Path, default=SHARED / "robots", metavar="FOLDER")
-    parser.add_argument("--slack", type=float, nargs="*", default=[np.inf, 0.2], metavar="S")
-    parser.add_argument("--steps", type=int, default=300, metavar="N")
-    parser.add_argument("--jobs", type=int, default=1, metavar="J")
-    parser.add_argument("--grid", type=int, default=0, metavar="N")
-    asked = parser.parse_args()
-    table = Table(*COLUMNS)
-    for names in (("panda", "panda"), ("kuka", "kuka"), ("panda", "kuka")):
-        for apart in (1.0, 1.4):
-            scene = scene_of(asked.robots, names, apart, asked.steps)
-            for slack in asked.slack:
-                row = row_of(scene, apart, asked, slack)
-                print(*row, sep=" | ", file=sys.stderr, flush=True)
-                table.add_row(*row)
-    Console(width=None if sys.stdout.isatty() else 160).print(table)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from makers.paths import Arm, JointTable, PoseTable, Table, ToolPose, repository
-from makers.program import Program, ease, placed
+from scripts.makers.paths import Arm, JointTable, PoseTable, Table, ToolPose, repository
+from scripts.makers.program import Program, ease, placed
 
 JOINTS = tuple(f"joint_{i}" for i in range(1, 7))
 HOME = (-0.9, -0.75, 0.85, 0.0, -0.1, 0.0)

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from makers.paths import Arm, JointTable, PoseTable, Table, ToolPose, stock
-from makers.program import Program, ease, placed
+from scripts.makers.paths import Arm, JointTable, PoseTable, Table, ToolPose, stock
+from scripts.makers.program import Program, ease, placed
 
 JOINTS = tuple(f"panda_joint{i}" for i in range(1, 8))
 HOME = (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, -0.785)

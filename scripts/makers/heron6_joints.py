@@ -5,7 +5,7 @@ At zero the upper arm stands and the forearm points along x.
 
 from __future__ import annotations
 
-from makers.urdf import JointSpec
+from scripts.makers.urdf import JointSpec
 
 JOINTS = (
     JointSpec(

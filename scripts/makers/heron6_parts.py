@@ -6,8 +6,8 @@ plates cut to a profile (forks, a beam with a slot, a lifting eye, notched finge
 
 from __future__ import annotations
 
-from makers.solids import Solid, arc, box, circle, extruded, ring, turned
-from makers.urdf import Part
+from scripts.makers.solids import Solid, arc, box, circle, extruded, ring, turned
+from scripts.makers.urdf import Part
 
 AMBER = (0.93, 0.58, 0.12)
 GRAPHITE = (0.20, 0.21, 0.24)

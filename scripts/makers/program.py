@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, Slerp
 
-from makers.paths import Arm, ToolPose, smooth
+from scripts.makers.paths import Arm, ToolPose, smooth
 
 LINE_PARTS = 6
 """Waypoints of a straight line: between them the tool is off it by less than 0.1 mm."""

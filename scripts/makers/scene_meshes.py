@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from makers.polygon import Loop
-from makers.solids import Solid, arc, circle, extruded, ring, turned
+from scripts.makers.polygon import Loop
+from scripts.makers.solids import Solid, arc, circle, extruded, ring, turned
 
 
 def valve_body() -> Solid:

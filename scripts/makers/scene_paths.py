@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from makers import door, handover, turntable
-from makers.paths import (
+from scripts.makers import door, handover, turntable
+from scripts.makers.paths import (
     Arm,
     JointTable,
     Table,

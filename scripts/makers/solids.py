@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from makers.polygon import Loop, triangulate
+from scripts.makers.polygon import Loop, triangulate
 
 GRID = 2.0**-16
 """[m] The step that every coordinate is a whole multiple of."""

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from makers.paths import Arm, JointTable, Table, ToolPose, stock
-from makers.program import Program, ease, placed
+from scripts.makers.paths import Arm, JointTable, Table, ToolPose, stock
+from scripts.makers.program import Program, ease, placed
 
 JOINTS = tuple(f"lbr_iiwa_joint_{i}" for i in range(1, 8))
 HOME = (1.57, 0.1, 0.0, -1.9, 0.0, 1.14, 0.0)

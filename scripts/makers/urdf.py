@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from makers.solids import Solid
+from scripts.makers.solids import Solid
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class JointSpec:
 def urdf_text(robot: str, parts: Sequence[Part], joints: Sequence[JointSpec]) -> str:
     """The whole file. Meshes are named `package://<robot>/meshes/<part>.stl`."""
     root = ElementTree.Element("robot", name=robot)
-    root.append(ElementTree.Comment(" written by scripts/make_robot.py "))
+    root.append(ElementTree.Comment(" written by scripts/makers/robot.py "))
     for link in [joints[0].parent, *(joint.child for joint in joints)]:
         _add_link(root, robot, link, [part for part in parts if part.link == link])
     for joint in joints:

@@ -2,49 +2,19 @@
 
 from __future__ import annotations
 
-import ast
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import clearance as cl
 from clearance.geometry.tree import join, surface_of
-from clearance.ordered import ascending, parents_first
 from clearance.planar.assembly import assembled
 from clearance.simulate.measure.certify import path_of
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import all_links, standing_link
 from clearance.world.motion import kinematic_motion
 from tests.made_cases import flying, torus
-
-KERNELS = Path(cl.__file__).parent / "kernels"
-
-HALVED = {
-    "search/containment.py:_is_probe": "Surface.probes",
-    "clocks/unsynchronised_steps.py:_nearest_step": "JointPath.times",
-    "search/boxes_along_path.py:_next_visit": "sums of what is not negative, made by the kernel",
-}
-"""The kernels that halve an array, and which; the tests below are of those that are made outside."""
-
-
-@pytest.mark.slow
-def test_no_kernel_halves_an_array_that_is_not_known_here():
-    found = set()
-    for file in KERNELS.rglob("*.py"):
-        for function in ast.walk(ast.parse(file.read_text())):
-            if isinstance(function, ast.FunctionDef) and any(map(halves, ast.walk(function))):
-                found.add(f"{file.relative_to(KERNELS).as_posix()}:{function.name}")
-    assert found == set(HALVED)
-
-
-def halves(node: ast.AST) -> bool:
-    """True for a loop that ends by comparing two bounds, and puts one of them in their middle."""
-    if not isinstance(node, ast.While):
-        return False
-    sources = [ast.unparse(part) for part in node.body]
-    return "low" in ast.unparse(node.test) and any("(low + high) // 2" in s for s in sources)
 
 
 def random_cloud(random: np.random.Generator) -> cl.PointCloud:
@@ -96,15 +66,3 @@ def test_the_contours_of_a_curve():
     assert assembled(*given, contour=[0, 0, 1]).contour.tolist() == [0, 0, 1]
     with pytest.raises(AssertionError, match="ascending"):
         assembled(*given, contour=[0, 1, 0])
-
-
-@pytest.mark.parametrize("values", [[1, 0], [0, 1, 1], [0.0, np.nan]])
-def test_what_is_not_in_order_is_refused(values):
-    with pytest.raises(AssertionError):
-        ascending(np.array(values))
-
-
-@pytest.mark.parametrize("parents", [[0], [-1, 1], [-2], [-1, 2, 0]])
-def test_a_link_before_its_parent_is_refused(parents):
-    with pytest.raises(AssertionError):
-        parents_first(np.array(parents))

@@ -1,13 +1,14 @@
 """A case whose machine is off, at any time, in numpy alone: what samples of errors leave, at best as bad as found.
 
 Joints may follow cubics and each other, tables may loop, anything may stand on anything, parts change hands
-(`HandlingMachine`). `tests/oracle` is another reading of the same model.
+(`HandlingMachine`).
 """
 
 from __future__ import annotations
 
 import functools
 import itertools
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -84,10 +85,10 @@ class SampledMachine:
         self._add("xyz", owner, part, place.xyz, 3)
         self._add("angle", owner, part, place.angle, 3)
 
-    def surfaces(self, pair: tuple[str, str]) -> float:
+    def surfaces(self, names: Iterable[str]) -> float:
         """[m]"""
         total = 0.0
-        for name in pair:
+        for name in names:
             robot, _, link = name.partition("/")
             budget = self.case.tolerance
             total += budget.robots[robot].surfaces.get(link, 0.0) if link else 0.0

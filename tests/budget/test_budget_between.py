@@ -199,3 +199,18 @@ def test_the_deviation_of_clocks_is_that_of_drawn_errors(cubic):
         a, b = (moved[name] @ x for name, x in zip(pair, held, strict=True))
         lengths.append(np.linalg.norm(b - a))
     assert np.std(lengths) == pytest.approx(deviations(case, budget, witness)[0], rel=0.1)
+
+
+def test_padding_is_taken_off_all_that_is_left():
+    """Of steps, of the motion between and of what is expected, and of the worst moment."""
+    rates = np.array([[0.4], [-0.4]])
+    tolerance = Budget({"slider": RobotTolerance({"a": JointTolerance(0.001)})})
+    case = replace(slider(np.zeros((2, 1)), rates), tolerance=tolerance)
+    padded = replace(case, obstacles=(replace(case.obstacles[0], padding=0.01),))
+    runs = [cl.check(one) for one in (case, padded)]
+    before, after = (run.record.budget[0] for run in runs)
+    for name in ("proven", "between", "expected", "expected_between"):
+        less = pytest.approx(getattr(before, name) - 0.01, abs=1e-9, nan_ok=True)
+        assert getattr(after, name) == less and np.isfinite(getattr(after, name)[0])
+    worst = [run.session.least_left(run.record.budget[0])[0].proven for run in runs]
+    assert worst[1] == pytest.approx(worst[0] - 0.01, abs=1e-9)

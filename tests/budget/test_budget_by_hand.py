@@ -88,20 +88,6 @@ def pin_beyond(corner: np.ndarray, angle: float, gap: float, about: np.ndarray) 
     return Obstacle(Body("pin", cl.box([0.1, 0.001, 0.1])), at(*centre, 0.0, turned=frame))
 
 
-def test_an_offset_of_the_base_takes_itself():
-    budget = Budget({"arm": RobotTolerance(base=PlacementTolerance(0.003))})
-    nominal, left = proven(two_links(), (0.0, 0.0), wall(1.0), budget)
-    assert nominal == pytest.approx(0.1, abs=EXACT)
-    assert left == pytest.approx(0.097, abs=EXACT)
-
-
-def test_a_slide_towards_a_wall_takes_itself():
-    nominal, left = proven(
-        two_links(JointKind.PRISMATIC), (0.0, 0.0), wall(1.0), joints(elbow=0.002)
-    )
-    assert (nominal, left) == pytest.approx((0.1, 0.098), abs=EXACT)
-
-
 def test_slide_offset_place_and_surfaces_add_up():
     budget = Budget(
         {

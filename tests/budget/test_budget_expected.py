@@ -9,12 +9,12 @@ import pytest
 
 import clearance as cl
 from clearance.budget.expected import deviations, expected_of_steps, witness_of
-from clearance.budget.sources import slopes, units_of
+from clearance.budget.sources import slopes
 from clearance.report.topics.tolerances import least_expected
 from clearance.simulate.measure.measure import measure
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
-from tests.oracle.perturbed import Perturbed, Size, sizes
+from tests.budget.sampled_machine import SampledMachine
 from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
 
 COVERAGE = 3.0
@@ -32,14 +32,14 @@ def nearest_points(case, section, step: int):
     )
 
 
-def drawn(size, normal: bool, rng: np.random.Generator) -> np.ndarray:
+def drawn(most: float, n: int, normal: bool, rng: np.random.Generator) -> np.ndarray:
     """One error as the estimate takes it: uniform up to its size, in a ball, or normal."""
     if normal:
-        return rng.normal(size=size.n) * size.most / 3.0
-    if size.n == 1:
-        return rng.uniform(-size.most, size.most, 1)
+        return rng.normal(size=n) * most / 3.0
+    if n == 1:
+        return rng.uniform(-most, most, 1)
     vector = rng.normal(size=3)
-    return vector / np.linalg.norm(vector) * size.most * rng.random() ** (1.0 / 3.0)
+    return vector / np.linalg.norm(vector) * most * rng.random() ** (1.0 / 3.0)
 
 
 @pytest.mark.slow
@@ -52,7 +52,7 @@ def test_deviation_is_that_of_drawn_errors(seed, normal):
     case = replace(case, tolerance=replace(case.tolerance, is_normal=normal))
     (section,) = sections_of(case)
     found, witness = nearest_points(case, section, 2)
-    machine = Perturbed(case, [])
+    machine = SampledMachine(case)
     names = [_name(case, body) for body in witness.pair]
     time = section.phase.times[2]
     poses = machine.poses(time, {})
@@ -60,16 +60,16 @@ def test_deviation_is_that_of_drawn_errors(seed, normal):
         poses[name][:3, :3].T @ (point - poses[name][:3, 3])
         for name, point in zip(names, witness.points[0], strict=True)
     ]
-    rng, wanted = np.random.default_rng(seed), sizes(case)
+    rng = np.random.default_rng(seed)
     lengths = np.empty(N_SAMPLES)
     for i in range(N_SAMPLES):
-        errors = {key: drawn(size, normal, rng) for key, size in wanted.items()}
+        errors = {key: drawn(most, n, normal, rng) for key, (most, n) in machine.most.items()}
         errors |= joint_errors(case, normal, rng)
         moved = machine.poses(time, errors)
         p, q = (moved[n][:3, :3] @ x + moved[n][:3, 3] for n, x in zip(names, carried, strict=True))
         lengths[i] = np.linalg.norm(q - p)
         for name in names:
-            lengths[i] -= _surface(machine.surface(name), normal, rng)
+            lengths[i] -= _surface(machine.surfaces([name]), normal, rng)
     deviation = float(deviations(case, case.tolerance, witness)[0])
     assert lengths.std() == pytest.approx(deviation, rel=0.05)
     assert found.clearance[2] - COVERAGE * deviation == pytest.approx(
@@ -80,8 +80,8 @@ def test_deviation_is_that_of_drawn_errors(seed, normal):
 def joint_errors(case, normal: bool, rng: np.random.Generator) -> dict:
     """What joints are off: repeatability and tracking, drawn each by itself."""
     return {
-        (("joint", robot, joint), "q"): sum(
-            drawn(Size(most, 1), normal, rng) for most in (own.position, own.tracking)
+        ("joint", robot, joint): sum(
+            drawn(most, 1, normal, rng) for most in (own.position, own.tracking)
         )
         for robot, tolerance in case.tolerance.robots.items()
         for joint, own in tolerance.joints.items()
@@ -102,7 +102,7 @@ def test_slopes_are_differences():
     case = random_case(0)
     (section,) = sections_of(case)
     _, witness = nearest_points(case, section, 1)
-    machine = Perturbed(case, [])
+    machine = SampledMachine(case)
     names = [_name(case, body) for body in witness.pair]
     time, step = section.phase.times[1], 1e-6
     poses = machine.poses(time, {})
@@ -119,14 +119,12 @@ def test_slopes_are_differences():
     found = slopes(case, case.tolerance, witness)
     assert found
     for slope in found:
-        kind, name = (
-            slope.key.kind,
-            {"position": "joint", "tracking": "joint"}.get(slope.key.kind, slope.key.kind),
-        )
+        kind = slope.key.kind
         if kind == "surface":
             continue
-        unit = "q" if name == "joint" else ("xyz", "angle")[slope.place]
-        error = ((name, slope.key.owner, slope.key.part), unit)
+        is_joint = kind in ("position", "tracking")
+        unit = "joint" if is_joint else ("xyz", "angle")[slope.place]
+        error = unit, slope.key.owner, slope.key.part
         n = slope.along.shape[1]
         differences = [
             (length({error: step * axis}) - length({error: -step * axis})) / (2 * step)
@@ -135,26 +133,6 @@ def test_slopes_are_differences():
         assert np.linalg.norm(differences) == pytest.approx(
             np.linalg.norm(slope.along[0]), abs=1e-6
         )
-
-
-def test_units_are_told_by_kind_of_joint():
-    case = random_case(0)
-    (section,) = sections_of(case)
-    _, witness = nearest_points(case, section, 1)
-    units = {
-        (s.key.kind, s.key.part): units_of(case, s.key)
-        for s in slopes(case, case.tolerance, witness)
-    }
-    assert all(
-        units[key] == ("m",)
-        for key in units
-        if key[0] == "position" and key[1] in ("wrist", "left")
-    )
-    assert all(
-        value == ("m", "rad")
-        for key, value in units.items()
-        if key[0] in ("frame", "base", "place")
-    )
 
 
 def test_nothing_is_expected_of_contact():

@@ -8,7 +8,7 @@ import pytest
 from clearance.budget.proven import PathMoments, proven_of_steps
 from clearance.kernels.budget.sweep import FEW, REFINED_OF_MANY
 from tests.budget.budget_cases import pair_names, proven_sections, random_case
-from tests.oracle.perturbed import Perturbed, ascended, random_errors, sizes
+from tests.budget.sampled_machine import SampledMachine
 
 ROUNDING = 1e-12
 
@@ -19,21 +19,14 @@ NEAREST = 2
 def assert_none_below(
     case, section, time: float, proven: float, rng, n_random: int, *, ascend: bool
 ):
-    """`proven` [m] is not above any sample; the least of them."""
-    machine = Perturbed(case, pair_names(case, section))
-    found = sizes(case)
-    nominal = machine.each(time, {})
-    machine.pairs = sorted(nominal, key=nominal.__getitem__)[:NEAREST]
-    least = np.inf
-    for _ in range(n_random):
-        left = machine.left(time, random_errors(found, rng))
-        assert proven <= left + ROUNDING
-        least = min(least, left)
-    if ascend:
-        left, _ = ascended(lambda e: machine.left(time, e), found, random_errors(found, rng))
-        assert proven <= left + ROUNDING
-        least = min(least, left)
-    return least
+    """`proven` [m] is not above any sample of the pairs that are nearest."""
+    machine, names = SampledMachine(case), pair_names(case, section)
+    for pair in sorted(names, key=lambda pair: machine.left(time, {}, pair))[:NEAREST]:
+        for _ in range(n_random):
+            assert proven <= machine.left(time, machine.random(rng), pair) + ROUNDING
+        if ascend:
+            left = machine.as_bad_as_found(time, pair, machine.random(rng))
+            assert proven <= left + ROUNDING
 
 
 @pytest.mark.slow

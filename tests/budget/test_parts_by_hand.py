@@ -84,16 +84,6 @@ def test_what_was_laid_down_keeps_the_errors_of_grasp_and_release():
     assert worst <= taken <= MORE * worst
 
 
-def test_what_was_laid_down_from_an_exact_grasp_keeps_that_of_the_release():
-    worst = 0.1 - turned_past(0.1, 0.03)
-    taken = 0.1 - left_at_end(passing(0.1, exact_grasp=True), "part", "right/bar")
-    assert worst <= taken <= MORE * worst
-
-
-def test_passed_at_ten_millimetres_it_is_not_proven():
-    assert left_at_end(passing(0.009999), "part", "right/bar") < 0.0
-
-
 def test_a_slide_takes_its_size_at_both_moments():
     assert left_at_end(slid(off_by(0.004))) == pytest.approx(0.092, abs=EXACT)
 

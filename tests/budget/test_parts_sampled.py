@@ -87,7 +87,7 @@ def of_parts(case: Case):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_no_errors_of_any_moment_come_below_what_is_proven(seed):
     case, rng = handling(seed), np.random.default_rng(seed)
     machine, n_apart = HandlingMachine(case), 0
@@ -105,5 +105,5 @@ def test_no_errors_of_any_moment_come_below_what_is_proven(seed):
             for _ in range(N_RANDOM):
                 errors = {moment: machine.random(rng) for moment in moments}
                 assert machine.left_in(times[0], time, errors, pair) >= proven - ROUNDING
-        assert machine.nearer(times[0], times[i], pair, errors) >= steps.proven[i] - ROUNDING
+    assert machine.nearer(times[0], times[i], pair, errors) >= steps.proven[i] - ROUNDING
     assert n_apart

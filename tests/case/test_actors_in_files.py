@@ -44,14 +44,6 @@ def test_obstacles_stand_ride_or_move(tmp_path):
     assert workpiece.stands and workpiece.world_from_body[:3, 3].tolist() == [2, 2, 0]
 
 
-def test_what_moves_on_something_does_so_from_its_pose(tmp_path):
-    case = load_cell(
-        tmp_path, "moves: door.csv", "on: right/base, pose: {xyz: [1, 0, 0]}, moves: door.csv"
-    )
-    door = case.obstacles[0]
-    assert door.mount.on == "right/base" and door.mount.pose[0, 3] == 1 and len(door.moves) == 3
-
-
 def test_carries_rules_allowances(tmp_path):
     case = load_cell(tmp_path)
     assert case.carries == (Carry("workpiece", "left/tip", Window(0.25, 0.75), ("left/*",)),)
@@ -84,14 +76,9 @@ TIMED = "trajectory: {file: path.csv, start: 0.5, rate: 2, after: loop}"
     [
         changed("trajectory: {file: path.csv}", TIMED),
         changed("arm.urdf", f"arm.urdf, {TIMED}", "trajectory: {file: path.csv}\n", ""),
-        changed(
-            "robot: {urdf: arm.urdf}",
-            "robots: [{urdf: arm.urdf}]",
-            "trajectory: {file: path.csv}",
-            TIMED,
-        ),
+        changed("robot: {urdf: arm.urdf}", "robots: [{urdf: arm.urdf}]", "trajectory: {file: path.csv}", TIMED),
     ],
-)
+)  # fmt: skip
 def test_a_trajectory_stands_at_the_top_or_in_its_robot(tmp_path, case):
     placed = load_small(tmp_path, case).robots[0]
     assert placed.timing == Timing(0.5, 2, "loop") and placed.given_trajectory.n_steps == 3
@@ -102,11 +89,6 @@ def test_one_robot_may_be_named_and_padded(tmp_path):
     placed = load_small(tmp_path, changed("urdf: arm.urdf", f"urdf: arm.urdf, {keys}")).robots[0]
     assert placed.robot.name == "robo"
     assert placed.padding == {"base": 0.001, "upper": 0.003, "tip": 0.001}
-
-
-def test_self_clearance_is_of_each_robot(tmp_path):
-    left, right = load_cell(tmp_path, "name: right,", "name: right, self_clearance: true,").robots
-    assert left.self_clearance is None and right.self_clearance is not None
 
 
 @pytest.mark.slow
@@ -123,15 +105,6 @@ def test_a_scene_file_may_hold_what_moves(tmp_path):
     assert moves.timing == Timing(rate=0.5) and moves.positions.tolist() == [[9, 2, 3], [8, 2, 3]]
     assert case.robots[0].trajectory is None
     assert [source.path for source in case.sources if "door" in source.path] == ["parts/door.csv"]
-
-
-def test_what_moves_alike_is_told_in_one_note(tmp_path):
-    fixture = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, pose: {xyz: [0, 5, 0]}}"
-    also = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, moves: door.csv}"
-    assert load_cell(tmp_path, fixture, also).notes == (
-        "obstacles 'door', 'fixture' move between the poses of their tables by straight translation, and rotation "
-        "about one axis at constant speed",
-    )
 
 
 def test_notes_say_how_things_move(tmp_path):
@@ -171,13 +144,6 @@ def test_a_table_ends_where_its_part_is_picked_up(tmp_path, after, early):
     assert notes[1:] == (
         f"obstacle 'door' {early}",
         "obstacle 'door' follows its table until it is picked up at 0.5 s",
-    )
-
-
-def test_joints_at_zero_are_told_robot_by_robot(tmp_path):
-    notes = load_cell(tmp_path, ", joints: {shoulder: 0.2}", "").notes
-    assert notes[0] == (
-        "robot 'right': joints given neither by the trajectory nor by robots[1].joints stay at 0: shoulder"
     )
 
 

@@ -101,14 +101,6 @@ def test_faults_in_a_scene_file_name_that_file(tmp_path):
 @pytest.mark.parametrize(
     ("shape", "lower", "upper"),
     [
-        ("box: {size: [1, 2, 3]}", [-0.5, -1, -1.5], [0.5, 1, 1.5]),
-        ("cylinder: {radius: 0.5, length: 3}", [-0.5, -0.5, -1.5], [0.5, 0.5, 1.5]),
-        pytest.param("sphere: {radius: 0.5}", [-0.5] * 3, [0.5] * 3, marks=pytest.mark.slow),
-        (
-            "pipe: {inner_radius: 0.4, outer_radius: 0.5, length: 3}",
-            [-0.5, -0.5, -1.5],
-            [0.5, 0.5, 1.5],
-        ),
         ("mesh: {file: upper.stl}", [-0.5] * 3, [0.5] * 3),
         ("mesh: {file: upper.stl, scale: -4}", [-2] * 3, [2] * 3),
         ("mesh: {file: upper.stl, scale: [2, -4, 1.0]}", [-1, -2, -0.5], [1, 2, 0.5]),
@@ -120,17 +112,6 @@ def test_every_shape_becomes_a_solid_that_holds_it(tmp_path, shape, lower, upper
     assert body.shape.bounds == pytest.approx(np.array([lower, upper]), abs=1.1e-4)
     assert body.shape.closed and body.shape.oriented
     assert signed_volume(body.shape) > 0
-
-
-def test_sections_and_bent_pipes_reach_the_shape(tmp_path):
-    straight = "pipe: {inner_radius: 0.04, outer_radius: 0.05, length: 2, sections: 8}"
-    assert len(load_small(tmp_path, with_obstacle(straight)).obstacles[0].body.shape.vertices) == 32
-    bent = (
-        "pipe: {inner_radius: 0.04, outer_radius: 0.05, bend_radius: 0.2, "
-        "path: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]}"
-    )
-    shape = load_small(tmp_path, with_obstacle(bent)).obstacles[0].body.shape
-    assert shape.bounds == pytest.approx(np.array([[0, -0.05, -0.05], [1.05, 1, 0.05]]), abs=1e-3)
 
 
 def test_poses_take_quaternions_or_roll_pitch_yaw(tmp_path):
@@ -225,14 +206,6 @@ def test_messages_and_sources_never_hold_a_path_of_this_machine(tmp_path):
     with pytest.raises(ClearanceError) as caught:
         load_small(tmp_path, changed("arm.urdf", str(tmp_path / "no.urdf")))
     assert str(tmp_path) not in str(caught.value)
-
-
-def test_loading_twice_gives_the_same(tmp_path):
-    one, two = load_small(tmp_path), load_small(tmp_path)
-    assert one.sources == two.sources
-    for a, b in zip(one.robots[0].robot.bodies, two.robots[0].robot.bodies, strict=True):
-        assert a.shape.vertices.tobytes() == b.shape.vertices.tobytes()
-        assert a.shape.face_vertices.tobytes() == b.shape.face_vertices.tobytes()
 
 
 def test_author_and_revision_arrive_for_the_report(tmp_path):

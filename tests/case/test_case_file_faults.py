@@ -1,4 +1,7 @@
-"""Everything in a case file that cannot be meant is refused in one line, with its place."""
+"""Everything in a case file that cannot be meant is refused in one line, with its place.
+
+What the model of the schema refuses is asked of the model; a case with its files is loaded for the rest.
+"""
 
 import pytest
 
@@ -20,230 +23,101 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
+from clearance.formats.schema import case as schema
 from clearance.formats.schema import obstacle as obstacle_schema
+from clearance.formats.schema.strict_model import validated
+from clearance.plain_yaml import plain_data
 from tests.formats.making import ARM, CASE
 from tests.formats.making_case import TWO_JOINTS, changed, load_small, with_obstacle
 
-FAULTS = [
-    (
-        changed("name: small", "nmae: small"),
-        UnknownKey,
-        "case.yaml: unknown key 'nmae'; did you mean 'name'?",
-    ),
-    (changed("robot: {urdf: arm.urdf}\n", ""), MissingKey, "case.yaml: 'robot' is missing"),
-    (
-        changed("urdf: arm.urdf", "urfd: arm.urdf"),
-        UnknownKey,
-        "case.yaml: robot: unknown key 'urfd'; did",
-    ),
-    (
-        changed("xyz: [2", "xzy: [2"),
-        UnknownKey,
-        "case.yaml: scene.obstacles[0].pose: unknown key 'xzy'",
-    ),
-    (changed("{size: [", "{sizes: ["), UnknownKey, "scene.obstacles[0].box: unknown key 'sizes'"),
-    (changed("    box:", "    bxo:"), UnknownKey, "did you mean 'box'?"),
-    (
-        changed("robot: {urdf: arm.urdf}", "robot: arm.urdf"),
-        BadInput,
-        "robot: 'arm.urdf' is given; a mapping",
-    ),
+HALF = "pipe: {inner_radius: 0, outer_radius: 1"
+
+OF_THE_MODEL = [
+    (changed("name: small", "nmae: small"), UnknownKey, "unknown key 'nmae'; did you mean 'name'?"),
+    (changed("robot: {urdf: arm.urdf}\n", ""), MissingKey, "'robot' is missing"),
+    (changed("trajectory: {file: path.csv}\n", ""), MissingKey, "'trajectory' is missing"),
+    (changed("robot: {urdf: arm.urdf}", "robot: arm.urdf"), BadInput, "robot: 'arm.urdf' is given; a mapping"),
     (changed("robot: {urdf: arm.urdf}", "robot:"), BadInput, "robot: nothing is given"),
+    (changed("robot: {urdf: arm.urdf}", "robots: []"), BadShape, "robots: [] is given"),
+    (changed("trajectory: {file: path.csv}", "trajectory: ~"), BadInput, "trajectory: nothing is"),
+    (changed("urdf: arm.urdf", "urdf: arm.urdf, trajectory: path.csv"), BadInput, "is given here and in robot"),
+    (changed("urdf: arm.urdf", "urdf: arm.urdf, geometry: hull"), BadInput, "robot.geometry: 'hull' is given"),
+    (changed("urdf: arm.urdf", "urdf: a, joints: {b: .nan}"), NotFinite, "robot.joints.b: nan"),
     (changed("file: path.csv", "file: 7"), BadInput, "trajectory.file: 7 is given"),
-    (
-        changed("warn: 0.02", "warn: 0.002"),
-        BadDimension,
-        "limits: the warn limit 2 mm is below the fail limit 5 mm; warn at or above fail",
-    ),
     (changed("fail: 0.005", "fail: -0.005"), BadInput, "limits.fail: -0.005 is given"),
-    (changed("fail: 0.005", "fail: .nan"), NotFinite, "limits.fail: nan is given"),
     (changed("fail: 0.005", "fail: .inf"), NotFinite, "limits.fail: inf is given"),
-    (changed("fail: 0.005", "fail: '0.005'"), BadInput, "limits.fail: '0.005' is given"),
     (changed("fail: 0.005", "fail: true"), BadInput, "limits.fail: True is given"),
     (changed("fail: 0.005", "fail: 5 mm"), BadInput, "limits.fail: '5 mm' is given"),
-    (
-        changed("[2, 0, 0]", "[2, 0]"),
-        BadShape,
-        "scene.obstacles[0].pose.xyz: [2, 0] is given; 3 values",
-    ),
-    (changed("[2, 0, 0]", "[2, 0, .nan]"), NotFinite, "scene.obstacles[0].pose.xyz[2]: nan"),
+    (changed("scene:\n", "scene:\n  obstacle: []\n"), UnknownKey, "scene: unknown key 'obstacle'; did you"),
+    (changed("    box:", "    bxo:"), UnknownKey, "did you mean 'box'?"),
+    (changed("    box: {size: [0.1, 0.1, 1]}\n", ""), BadInput, "scene.obstacles[0]: it has no shape"),
+    (changed("    box:", "    sphere: {radius: 1}\n    box:"), BadInput, "box and sphere are given"),
+    (changed("{size: [", "{sizes: ["), UnknownKey, "scene.obstacles[0].box: unknown key 'sizes'"),
+    (changed("[0.1, 0.1, 1]", "[0.1, 0, 1]"), BadDimension, "scene.obstacles[0].box.size[1]: 0 is given"),
+    (changed("[2, 0, 0]", "[2, 0]"), BadShape, "scene.obstacles[0].pose.xyz: [2, 0] is given; 3 values"),
     (changed("[2, 0, 0]", "[2, 0, yes]"), BadInput, "scene.obstacles[0].pose.xyz[2]: 'yes'"),
-    (
-        changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 2]"),
-        BadPose,
-        "scene.obstacles[0].pose.quat_xyzw",
-    ),
-    (changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 0]"), BadPose, "length 0"),
-    (
-        changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 1], rpy: [0, 0, 0]"),
-        BadInput,
-        "both quat_xyzw and rpy",
-    ),
-    (
-        changed("[0.1, 0.1, 1]", "[0.1, -0.1, 1]"),
-        BadDimension,
-        "scene.obstacles[0].box.size[1]: -0.1",
-    ),
-    (
-        changed("[0.1, 0.1, 1]", "[0.1, 0, 1]"),
-        BadDimension,
-        "scene.obstacles[0].box.size[1]: 0 is given",
-    ),
-    (
-        changed("    box: {size: [0.1, 0.1, 1]}\n", ""),
-        BadInput,
-        "scene.obstacles[0]: it has no shape",
-    ),
-    (
-        changed("    box:", "    sphere: {radius: 1}\n    box:"),
-        BadInput,
-        "box and sphere are given",
-    ),
-    (
-        with_obstacle("sphere: {radius: -1}"),
-        BadDimension,
-        "scene.obstacles[0].sphere.radius: -1 is given",
-    ),
-    (
-        with_obstacle("cylinder: {radius: 1}"),
-        MissingKey,
-        "scene.obstacles[0].cylinder: 'length' is missing",
-    ),
-    (
-        with_obstacle("pipe: {inner_radius: 2, outer_radius: 1, length: 1}"),
-        BadDimension,
-        "obstacles[0]",
-    ),
-    (with_obstacle("pipe: {inner_radius: 0, outer_radius: 1}"), BadDimension, "length and path"),
-    (
-        with_obstacle("pipe: {inner_radius: 0, outer_radius: 1, length: 1, bend_radius: 2}"),
-        BadInput,
-        "without path",
-    ),
-    (
-        with_obstacle("pipe: {inner_radius: 0, outer_radius: 1, length: 1, sections: 2}"),
-        BadInput,
-        "sections",
-    ),
-    (
-        with_obstacle("mesh: {file: upper.stl, scale: 0}"),
-        BadDimension,
-        "scene.obstacles[0].mesh.scale: 0 is",
-    ),
-    (with_obstacle("mesh: {file: upper.stl, scale: [1, 2]}"), BadDimension, "mesh.scale: [1, 2]"),
-    (with_obstacle("mesh: {file: upper.stl, scale: '2'}"), BadDimension, "mesh.scale: '2'"),
-    (
-        with_obstacle("mesh: {file: no.stl}"),
-        MissingFile,
-        "scene: obstacles[0]: mesh: there is no file 'no.stl'",
-    ),
-    (
-        with_obstacle("mesh: {file: path.csv}"),
-        BadSyntax,
-        "mesh: path.csv: unknown mesh format '.csv'",
-    ),
-    (with_obstacle("mesh: {file: empty.stl}"), EmptyMesh, "mesh: empty.stl: the mesh has no faces"),
-    (
-        changed("scene:\n", "scene:\n  obstacle: []\n"),
-        UnknownKey,
-        "scene: unknown key 'obstacle'; did you",
-    ),
-    (
-        changed("trajectory: {file: path.csv}\n", ""),
-        MissingKey,
-        "case.yaml: 'trajectory' is missing",
-    ),
-    (
-        changed("path.csv", "no.csv"),
-        MissingFile,
-        "case.yaml: trajectory.file: there is no file 'no.csv'",
-    ),
-    (
-        changed("arm.urdf", "no.urdf"),
-        MissingFile,
-        "case.yaml: robot.urdf: there is no file 'no.urdf'",
-    ),
-    (changed("arm.urdf", "."), MissingFile, "is a folder"),
-    (
-        changed("arm.urdf", "path.csv"),
-        BadSyntax,
-        "robot.urdf: path.csv: this is a table, not a URDF file",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, package_dirs: [nowhere]"),
-        MissingFile,
-        "robot.package_dirs: [0]: there is no folder",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, geometry: hull"),
-        BadInput,
-        "robot.geometry: 'hull' is given; 'collision', 'visual' or",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, exclude_links: [bass]"),
-        UnknownLink,
-        "robot.exclude_links: [0]: unknown link 'bass'; did you mean 'base'?",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, exclude_links: [base, upper]"),
-        NothingToMeasure,
-        "no link-obstacle pair",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, joints: {elbow: 1}"),
-        UnknownJoint,
-        "robot.joints: unknown joint 'elbow'",
-    ),
-    (changed("arm.urdf", "arm.urdf, joints: {flange: 1}"), UnknownJoint, "joint 'flange' is fixed"),
-    (
-        changed("arm.urdf", "arm.urdf, joints: {shoulder: 1}"),
-        DuplicateName,
-        "also a column of the trajectory",
-    ),
-    (
-        changed("arm.urdf", "arm.urdf, joints: {shoulder: .nan}"),
-        NotFinite,
-        "robot.joints.shoulder: nan",
-    ),
-    (
-        CASE + "allow: [[bas, post]]\n",
-        UnknownLink,
-        "allow[0]: unknown link 'bas'; did you mean 'base'?",
-    ),
-    (
-        CASE + "allow: [[base, post], [base, pots]]\n",
-        UnknownObstacle,
-        "allow[1]: unknown obstacle 'pots'; did you mean 'post'?",
-    ),
-    (CASE + "allow: [['arm_*', post]]\n", UnknownLink, "no link matches 'arm_*'"),
-    (CASE + "allow: [[base, 'car_*']]\n", UnknownObstacle, "no obstacle matches 'car_*'"),
-    (
-        CASE + "allow: [[post, bse]]\n",
-        UnknownLink,
-        "allow[0]: unknown link 'bse'; did you mean 'base'?",
-    ),
+    (changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 2]"), BadPose, "scene.obstacles[0].pose.quat_xyzw"),
+    (changed("xyz: [2, 0, 0]", "quat_xyzw: [0, 0, 0, 1], rpy: [0, 0, 0]"), BadInput, "both quat_xyzw and rpy"),
+    (with_obstacle("cylinder: {radius: 1}"), MissingKey, "obstacles[0].cylinder: 'length' is missing"),
+    (with_obstacle(f"{HALF}, length: 1, sections: 2}}"), BadInput, "sections"),
+    (with_obstacle("mesh: {file: a.stl, scale: 0}"), BadDimension, "scene.obstacles[0].mesh.scale: 0 is"),
+    (with_obstacle("mesh: {file: a.stl, scale: [1, 2]}"), BadDimension, "mesh.scale: [1, 2]"),
     (CASE + "allow: [[base]]\n", BadShape, "allow[0]: ['base'] is given; 2 values are needed"),
     (CASE + "allow: [base, post]\n", BadInput, "allow[0]: 'base' is given"),
     (CASE + "contact_response: 1\n", BadInput, "contact_response: 1 is given"),
-    (CASE + "name: again\n", DuplicateName, 'case.yaml: line 10: found duplicate key "name"'),
+    (CASE + "clock: comon\n", BadInput, "clock: 'comon' is given; did you mean 'common'?"),
+    (CASE + "clock: {slack: -1}\n", BadInput, "clock.slack: -1 is given"),
+    (CASE + "clock:\n", BadInput, "clock: nothing is given; common, unsynchronised or"),
+    (CASE + "carry: [{part: a, by: b}]\n", MissingKey, "carry[0]: 'from' is missing"),
+    (CASE + "carry: [{part: a, by: b, from: 2, until: 1}]\n", BadTime, "carry[0]: from 2 s until 1 s"),
+    ("", BadInput, "nothing is given; a mapping is needed, with keys name, robot, robots, scene"),
+    ("- 1\n", BadInput, "[1] is given"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "fault", "says"), OF_THE_MODEL)
+def test_the_model_refuses_in_one_line_with_the_place(text, fault, says):
+    with pytest.raises(fault) as caught:
+        validated(schema.Case, plain_data(text.encode()), "case.yaml")
+    told = str(caught.value)
+    assert told.startswith("case.yaml: ") and says in told and "\n" not in told
+
+
+OF_ITS_FILES = [
+    (changed("warn: 0.02", "warn: 0.002"), BadDimension, "the warn limit 2 mm is below the fail limit 5 mm"),
+    (with_obstacle(f"{HALF}}}"), BadDimension, "length and path"),
+    (with_obstacle(f"{HALF}, length: 1, bend_radius: 2}}"), BadInput, "without path"),
+    (with_obstacle("pipe: {inner_radius: 2, outer_radius: 1, length: 1}"), BadDimension, "obstacles[0]"),
+    (with_obstacle("mesh: {file: no.stl}"), MissingFile, "scene: obstacles[0]: mesh: there is no file 'no.stl'"),
+    (with_obstacle("mesh: {file: path.csv}"), BadSyntax, "mesh: path.csv: unknown mesh format '.csv'"),
+    (with_obstacle("mesh: {file: empty.stl}"), EmptyMesh, "mesh: empty.stl: the mesh has no faces"),
+    (changed("path.csv", "no.csv"), MissingFile, "trajectory.file: there is no file 'no.csv'"),
+    (changed("arm.urdf", "no.urdf"), MissingFile, "robot.urdf: there is no file 'no.urdf'"),
+    (changed("arm.urdf", "."), MissingFile, "is a folder"),
+    (changed("arm.urdf", "path.csv"), BadSyntax, "robot.urdf: path.csv: this is a table, not a URDF file"),
+    (changed("arm.urdf", "arm.urdf, package_dirs: [nowhere]"), MissingFile, "[0]: there is no folder"),
+    (changed("arm.urdf", "arm.urdf, exclude_links: [bass]"), UnknownLink, "[0]: unknown link 'bass'; did you"),
+    (changed("arm.urdf", "arm.urdf, exclude_links: [base, upper]"), NothingToMeasure, "no link-obstacle pair"),
+    (changed("arm.urdf", "arm.urdf, joints: {elbow: 1}"), UnknownJoint, "robot.joints: unknown joint 'elbow'"),
+    (changed("arm.urdf", "arm.urdf, joints: {flange: 1}"), UnknownJoint, "joint 'flange' is fixed"),
+    (changed("arm.urdf", "arm.urdf, joints: {shoulder: 1}"), DuplicateName, "also a column of the trajectory"),
+    (CASE + "allow: [[base, post], [base, pots]]\n", UnknownObstacle, "allow[1]: unknown obstacle 'pots'"),
+    (CASE + "allow: [['arm_*', post]]\n", UnknownLink, "no link matches 'arm_*'"),
+    (CASE + "allow: [[post, bse]]\n", UnknownLink, "allow[0]: unknown link 'bse'; did you mean 'base'?"),
+    (CASE + "name: again\n", DuplicateName, 'line 10: found duplicate key "name"'),
     (CASE + "  - [", BadSyntax, "case.yaml: line"),
-    (
-        "",
-        BadInput,
-        "case.yaml: nothing is given; a mapping is needed, with keys name, robot, robots, scene",
-    ),
-    ("- 1\n", BadInput, "case.yaml: [1] is given"),
     ("a: 1\n---\nb: 2\n", BadSyntax, "another document"),
-    ("a: !!python/object:os.system x", BadSyntax, "case.yaml: line 1: not YAML"),
-    (
-        changed("  - name: post\n", "  - {name: post, sphere: {radius: 1}}\n  - name: post\n"),
-        DuplicateName,
-        "obstacles[1]: two obstacles",
-    ),
-]
+    ("a: !!python/object:os.system x", BadSyntax, "line 1: not YAML"),
+    (changed("  - name: post\n", "  - {name: post, sphere: {radius: 1}}\n  - name: post\n"),
+     DuplicateName, "obstacles[1]: two obstacles"),
+    (changed("- name: post", "- name: base") + "carry: [{part: base, by: tip, from: 0.1}]\n",
+     BadInput, "an obstacle and a link of robot 'arm' are both called 'base'"),
+    (CASE + "carry: [{part: post, by: upper, from: 0.1, touch: [post, bsae]}]\n",
+     UnknownLink, "carry[0].touch: [1]: unknown body 'bsae'; did you mean 'base'?"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(("case", "fault", "says"), FAULTS)
+@pytest.mark.parametrize(("case", "fault", "says"), OF_ITS_FILES)
 def test_each_fault_is_one_line_with_its_place(tmp_path, case, fault, says):
     with pytest.raises(fault) as caught:
         load_small(tmp_path, case, empty__stl=bytes(84))
@@ -253,11 +127,9 @@ def test_each_fault_is_one_line_with_its_place(tmp_path, case, fault, says):
 
 
 def test_no_obstacles_leave_nothing_to_measure(tmp_path):
-    text = (
-        CASE[: CASE.index("  obstacles:")] + "  obstacles: []\n" + CASE[CASE.index("trajectory") :]
-    )
+    before, after = CASE.partition("  obstacles:")[0], CASE[CASE.index("trajectory") :]
     with pytest.raises(NothingToMeasure):
-        load_small(tmp_path, text)
+        load_small(tmp_path, f"{before}  obstacles: []\n{after}")
 
 
 MIMIC = TWO_JOINTS.replace('<limit lower="0" upper="0.1"/>', '<mimic joint="shoulder"/>')
@@ -266,29 +138,12 @@ MIMIC = TWO_JOINTS.replace('<limit lower="0" upper="0.1"/>', '<mimic joint="shou
 @pytest.mark.parametrize(
     ("trajectory", "urdf", "fault", "says"),
     [
-        (
-            "time,sholder\n0,1\n",
-            ARM,
-            UnknownJoint,
-            "unknown joint 'sholder'; did you mean 'shoulder'?",
-        ),
-        (
-            "time,flange\n0,1\n",
-            ARM,
-            UnknownJoint,
-            "joint 'flange' is fixed; moving joints: shoulder",
-        ),
-        (
-            "time,lift\n0,1\n",
-            MIMIC,
-            UnknownJoint,
-            "joint 'lift' mimics 'shoulder' and cannot be set",
-        ),
-        ("time,shoulder\n0,1\n0,1\n", ARM, BadTime, "line 3"),
-        ("time,shoulder\n0,nan\n", ARM, NotFinite, "line 2"),
+        ("time,sholder\n0,1\n", ARM, UnknownJoint, "unknown joint 'sholder'; did you mean 'shoulder'?"),
+        ("time,flange\n0,1\n", ARM, UnknownJoint, "joint 'flange' is fixed; moving joints: shoulder"),
+        ("time,lift\n0,1\n", MIMIC, UnknownJoint, "joint 'lift' mimics 'shoulder' and cannot be set"),
         ("time,shoulder\n0\n", ARM, BadShape, "line 2: 1 columns; the header has 2"),
     ],
-)
+)  # fmt: skip
 def test_faults_of_the_trajectory_name_case_field_and_file(tmp_path, trajectory, urdf, fault, says):
     with pytest.raises(fault) as caught:
         load_small(tmp_path, trajectory=trajectory, urdf=urdf)

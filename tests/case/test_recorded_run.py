@@ -5,7 +5,6 @@ import pytest
 
 import clearance as cl
 from clearance.case.recorded_run import with_recorded
-from clearance.case.tolerance.tolerance_file import with_tolerance
 from clearance.cli import run
 from clearance.errors import (
     BadInput,
@@ -108,15 +107,6 @@ def test_its_errors_become_the_tracking(tmp_path):
     assert "run.csv" in [one.path for one in found.sources]
 
 
-def test_other_tolerances_stay(tmp_path):
-    base = load_small(tmp_path, urdf=TWO_JOINTS, trajectory=PATH)
-    (tmp_path / "run.csv").write_text(DRIVEN)
-    given = {"joints": {"all": 0.001}, "tracking": {"shoulder": 0.1}}
-    found = with_recorded(with_tolerance(base, given), tmp_path / "run.csv")
-    joints = found.tolerance.robots["arm"].joints
-    assert joints["shoulder"].position == 0.001 and joints["shoulder"].tracking < 0.1
-
-
 def test_an_offset_is_added_to_its_times(tmp_path):
     own = with_recorded(case(tmp_path), tmp_path / "run.csv")
     head, *rows = DRIVEN.splitlines()
@@ -207,12 +197,6 @@ def test_the_run_is_measured_as_driven_beside_what_was_asked(tmp_path):
     told = found.summary["recordings"]
     assert told["asked"]["clearance"] == asked.worst_sample["clearance"]
     assert [one["joint"] for one in told["runs"][0]["joints"]] == ["shoulder", "lift"]
-
-
-def test_its_page_has_both_curves(tmp_path):
-    found = cl.check(case(tmp_path), motion="recorded", recorded=tmp_path / "run.csv")
-    page = (found.save(tmp_path / "out") / "report.html").read_text()
-    assert '"name": "as asked"' in page and "<h2>As driven</h2>" in page
 
 
 @pytest.mark.parametrize(

@@ -26,10 +26,6 @@ def test_a_cell_in_metres_and_seconds_is_not_suspect(tmp_path):
     assert told(tmp_path) == []
 
 
-def test_one_on_another_is_not_suspect(tmp_path):
-    assert told(tmp_path, "base: {xyz: [6", "base: {on: left/tip, xyz: [6") == []
-
-
 def test_a_far_cell_whose_robots_stand_on_its_table_is_not_suspect(tmp_path):
     """All stands 500 m from the origin, the robots by way of what they are on."""
     changes = ("trajectory: path.csv", "base: {on: post}, trajectory: path.csv", "{xyz: [6", "{on: post, xyz: [6",
@@ -44,12 +40,6 @@ def test_a_table_in_millimetres(tmp_path):
     assert travel.startswith("CHECK UNITS: obstacle 'door' moves 1000 m; lengths are in metres")
 
 
-def test_a_table_of_a_turn_about_a_place_in_millimetres(tmp_path):
-    door = f"{HEADER}\n0,900,900,0,0,0,0,1\n1,900,900,0,0,0,0.8,0.6\n"
-    (text,) = told(tmp_path, door=door)
-    assert text.startswith("CHECK UNITS: obstacle 'door' stands 1268 m away")
-
-
 @pytest.mark.parametrize("turn", ["0,0,1,0", "0,0.707,-0.707,0.0005"])
 def test_a_turn_by_half_a_turn_in_one_step_can_go_either_way(tmp_path, turn):
     door = f"{HEADER}\n0,4,0,0,0,0,0,1\n1,4,0,0,{turn}\n"
@@ -62,11 +52,6 @@ def test_a_turn_by_half_a_turn_in_one_step_can_go_either_way(tmp_path, turn):
         "0,0.707,-0.707,0.0005", "0,0,1,0"
     )
     assert told(tmp_path, door=between) == []
-
-
-def test_a_place_on_a_link_in_millimetres(tmp_path):
-    (text,) = told(tmp_path, "xyz: [0, 5, 0]", "xyz: [0, 500, 0]")
-    assert text.startswith("CHECK UNITS: obstacle 'fixture' stands 500 m")
 
 
 @pytest.mark.slow
@@ -95,39 +80,17 @@ def test_joints_are_told_with_their_robot_even_where_it_stands(tmp_path):
     ]
 
 
-def test_lengths_of_links_are_told_with_their_robot(tmp_path):
-    texts = told(tmp_path, urdf=ARM.replace('<origin xyz="0 0 0.1"', '<origin xyz="0 0 100"'))
-    assert [text.split(" stands 100 m away")[0] for text in texts] == [
-        "CHECK UNITS: joint 'left/shoulder'",
-        "CHECK UNITS: joint 'right/shoulder'",
-    ]
-
-
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        (
-            ("fail: 0.001,", "fail: 1, warn: 2,"),
-            "limits.rules[0].fail is 1 m and limits.rules[0].warn is 2 m",
-        ),
-        (
-            ("name: post,", "name: post, padding: 2,"),
-            "the padding of obstacle 'post' is 2 m; paddings are",
-        ),
-        (
-            ("name: right,", "name: right, padding: {upper: 2},"),
-            "the padding of link 'right/upper' is 2 m",
-        ),
+        (("fail: 0.001,", "fail: 1, warn: 2,"), "limits.rules[0].fail is 1 m and limits.rules[0].warn is 2 m"),
+        (("name: post,", "name: post, padding: 2,"), "the padding of obstacle 'post' is 2 m; paddings are"),
+        (("name: right,", "name: right, padding: {upper: 2},"), "the padding of link 'right/upper' is 2 m"),
     ],
-)
+)  # fmt: skip
 def test_limits_and_paddings_in_millimetres(tmp_path, changes, says):
     (text,) = told(tmp_path, *changes)
     assert says in text
-
-
-def test_angles_of_bases_are_told_by_their_place(tmp_path):
-    (text,) = told(tmp_path, "base: {xyz: [6, 0, 0]}", "base: {xyz: [6, 0, 0], rpy: [0, 0, 90]}")
-    assert "the base of robots[1] has an angle of 90 rad" in text
 
 
 def test_what_a_file_of_two_robots_shows_is_told_once_with_both(tmp_path):

@@ -12,7 +12,7 @@ from clearance.compile.declared import Floats, Floats2, Integers
 from clearance.compile.decorators import DISABLED, inline, kernel
 from clearance.compile.lending import lend
 from clearance.kernels.arithmetic.union_find import joined_labels
-from tests.compile.spoken import mark
+from tests.compile.kernel_memory import mark
 
 pytestmark = [
     pytest.mark.slow,
@@ -100,9 +100,11 @@ def test_a_kernel_takes_the_arrays_of_another_one():
 
 def test_an_exception_stops_a_kernel_and_what_calls_it():
     assert asking(0.5) == 1.5
+    before = mark()
     for stopped in (refusing, asking):
         with pytest.raises(KernelFault, match=stopped.symbol):
             stopped(2.0)
+        assert mark() == before
 
 
 def test_a_tuple_that_is_lent_stays_where_it_is():

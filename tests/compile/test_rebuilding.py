@@ -112,15 +112,3 @@ def test_kernels_that_are_not_built_need_no_library(built, kernels, said):
     assert built.ask(CLEARANCE_KERNELS=kernels) == (said, "")
     assert (built.built / "manifest.json").read_bytes() == before
     built.edit("1.0 * (x + x)", "2.0 * x")
-
-
-def test_settings_of_the_compiler_change_no_library(built):
-    built.ask()
-    (built.built / "manifest.json").unlink()
-    files = sorted(built.built.glob("x86*/*.o")) + sorted(built.built.glob("aarch64/*.o"))
-    before = [file.read_bytes() for file in files]
-    for file in files:
-        file.unlink()
-    assert built.ask(NUMBA_DISABLE_JIT="1", NUMBA_OPT="3")[0] == "12.0 False"
-    assert [file.read_bytes() for file in files] == before
-    assert os.listdir(built.built).count("manifest.json") == 1

@@ -27,7 +27,7 @@ def record_of(given, near):
 @pytest.mark.parametrize("kind", KINDS)
 def test_right_answers_agree_and_wrong_ones_do_not(n, kind):
     """The other way round as well: a distance where a point is inside, contact where none is."""
-    for seed in range(share_of(10)):
+    for seed in range(share_of(4)):
         given = scan(np.random.default_rng(seed), n, kind)
         true, near = answer(given, np.eye(4))
         record = record_of(given, near)
@@ -50,19 +50,6 @@ def test_a_point_wholly_inside_that_is_called_apart_is_a_disagreement():
     record = rail_record(box(0.5, 0.5, 0.5), {"cloud": (cloud, (0, 0, 0))}, [0.0], [row])
     (found,) = cross_check(record).disagreements
     assert (found.peer_clearance, found.reason) == (0.0, "the peer says contact")
-
-
-def test_a_point_of_fcl_is_a_point_but_for_a_fraction_of_a_nanometre():
-    random = np.random.default_rng(1)
-    for far in (1.0, 100.0):
-        points = random.uniform(-far, far, (300, 3))
-        cloud, solid = PointCloud(points, 1e-3), box(0.4, 0.6, 0.2)
-        beyond = np.maximum(np.abs(points) - [0.2, 0.3, 0.1], 0.0)
-        true = np.linalg.norm(beyond, axis=1).min()
-        one, other = (PeerBody(triangle_soup(shape)) for shape in (cloud, solid))
-        if true > 0.0:
-            off = true - 1e-3 - one.distance(other)
-            assert 0.0 <= off + 1e-13 * far <= one.point_size + 2e-13 * far
 
 
 @pytest.mark.slow

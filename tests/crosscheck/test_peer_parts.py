@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from clearance.crosscheck.containment import is_inside, winding_number
+from clearance.crosscheck.pairs import point_triangle_distances
 from clearance.crosscheck.peer_run import (
     PeerRun,
     greatest_displacements,
@@ -13,7 +14,6 @@ from clearance.crosscheck.peer_run import (
     world_boxes,
 )
 from clearance.crosscheck.triangles import triangle_soup
-from clearance.crosscheck.witness import point_triangle_distances
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
@@ -26,32 +26,6 @@ def random_poses(rng: np.random.Generator, n: int) -> np.ndarray:
     poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
     poses[:, :3, 3] = rng.normal(size=(n, 3))
     return poses
-
-
-def test_a_fan_keeps_area_and_direction():
-    soup = triangle_soup(box(1.0, 2.0, 3.0))
-    corners = soup.corners
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
-    assert len(corners) == 12
-    assert np.isclose(np.linalg.norm(normals, axis=1).sum(), 22.0)
-    assert (np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all()
-    assert soup.encloses and len(soup.part_points) == 1
-
-
-def test_a_pentagon_makes_three_triangles():
-    angles = np.arange(5) * 2 * np.pi / 5
-    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(5)])
-    soup = triangle_soup(Polyhedron(ring, [range(5), (0, 1, 2)]))
-    assert len(soup.triangles) == 4 and not soup.encloses
-    assert (np.cross(*(soup.corners[:, k] - soup.corners[:, 0] for k in (1, 2)))[:, 2] > 0).all()
-
-
-def test_vertices_given_twice_do_not_open_a_surface():
-    closed = box(1, 1, 1)
-    corners = np.concatenate([closed.face(i) for i in range(6)])
-    doubled = Polyhedron(corners, np.arange(24).reshape(6, 4))
-    assert triangle_soup(doubled).encloses
-    assert not triangle_soup(Polyhedron(corners, np.arange(20).reshape(5, 4))).encloses
 
 
 def test_inside_is_what_a_box_says():
@@ -102,20 +76,6 @@ def test_bounds_never_exceed_what_samples_show():
     nearest = np.clip(world, *fixed)
     gaps = np.linalg.norm(world - nearest, axis=2).min(axis=1)
     assert (lower_bound_boxes(world_boxes(soup.bounds, poses), fixed) <= gaps).all()
-
-
-def test_point_to_triangle_by_hand():
-    triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
-    for point, expected in [
-        ((0.25, 0.25, 2.0), 2.0),
-        ((-3.0, 0.5, 0.0), 3.0),
-        ((1.0, 1.0, 0.0), np.sqrt(0.5)),
-        ((4.0, 0.0, 4.0), 5.0),
-    ]:
-        assert np.isclose(point_triangle_distances(np.array(point), triangle)[0], expected)
-    collapsed = np.array([[[0.0, 0, 0], [2, 0, 0], [1, 0, 0]], [[5.0, 0, 0]] * 3])
-    found = point_triangle_distances(np.array([1.0, 1.0, 0.0]), collapsed)
-    assert np.allclose(found, [1.0, np.sqrt(17.0)])
 
 
 def test_skipping_changes_no_answer():

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.formats.robot.srdf import load_srdf
 from clearance.formats.robot.urdf.robot import load_urdf
@@ -136,22 +137,9 @@ def placed_shape(case: cl.Case, body: BodyIndex, link_poses: np.ndarray) -> cl.P
 def lies_inside(one: cl.Polyhedron, other: cl.Polyhedron) -> bool:
     """True if all corners of the one are inside the other, or the other way round."""
     return any(
-        all(turns_about(outer, corner) > 0.5 for corner in inner.vertices)
+        is_inside(triangle_soup(outer), inner.vertices).all()
         for inner, outer in ((one, other), (other, one))
     )
-
-
-def turns_about(shape: cl.Polyhedron, point: np.ndarray) -> float:
-    """How often a surface of triangles winds about a point: the solid angle of all over that of a sphere.
-
-    Source: Van Oosterom and Strackee 1983.
-    """
-    a, b, c = np.moveaxis(triangle_soup(shape).corners - point, 1, 0)
-    sides = [np.linalg.norm(side, axis=1) for side in (a, b, c)]
-    volume = (a * np.cross(b, c)).sum(axis=1)
-    below = sides[0] * sides[1] * sides[2]
-    below += (a * b).sum(1) * sides[2] + (b * c).sum(1) * sides[0] + (c * a).sum(1) * sides[1]
-    return float(abs(2.0 * np.arctan2(volume, below).sum()) / (4.0 * np.pi))
 
 
 def random_positions(robot: cl.Robot) -> np.ndarray:

@@ -8,8 +8,6 @@ import pytest
 from clearance import distance
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.kernels.arithmetic.lanes import WIDTH
-from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from tests.made_cases import at, ball, faces_below, faces_of, with_copies
 from tests.strategies import rotations
 
@@ -78,15 +76,3 @@ def test_a_cavity_that_is_there_twice_is_still_wound_round() -> None:
     hollow = Polyhedron.merged([ball(2.0, 2), BALL.flipped(), BALL.flipped()])
     assert distance(hollow, TINY).contact
     assert not distance(Polyhedron.merged([ball(2.0, 2), BALL.flipped()]), TINY).contact
-
-
-def test_both_sides_of_a_thin_wall_share_a_cone() -> None:
-    """Of the nodes over few faces nearly all have one, though they hold faces that look away from each other."""
-    shell = Polyhedron.merged([BALL, ball(0.99, 3).flipped()])
-    surface = surface_of(shell)
-    sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
-    below = faces_below(surface)
-    few = [node for node, faces in enumerate(below) if 1 < len(faces) <= 40]
-    both = [node for node in few if len({face < BALL.n_faces for face in below[node]}) == 2]
-    assert len(both) > 0.5 * len(few)
-    assert (sines[both] < NO_CONE).mean() > 0.95

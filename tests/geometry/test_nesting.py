@@ -55,14 +55,6 @@ def test_below_one_that_is_right_solids_stay_and_what_is_in_a_cavity_is_solid(si
     assert body(block(5.0), *inner).outward().volume == pytest.approx(volume)
 
 
-def test_each_of_several_bodies_is_turned_by_itself():
-    moved = np.eye(4)
-    moved[0, 3] = 7.0
-    beside = body(inside_out(HOLLOW), HOLLOW.transformed(moved))
-    assert beside.component_inside_out.sum() == 2
-    assert beside.outward().volume == pytest.approx(2.0 * HOLLOW.volume)
-
-
 def test_a_part_that_reaches_through_the_wall_is_not_within():
     """A bolt in the wall of a housing that is inside out stays as it is, wherever its first corner lies."""
     for shift in (0.5, -0.5):

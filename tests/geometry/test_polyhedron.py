@@ -14,7 +14,6 @@ from clearance.errors import (
     BadPolygon,
     BadPose,
     BadShape,
-    ClearanceError,
     EmptyMesh,
     NotFinite,
 )
@@ -151,20 +150,6 @@ def test_scaling_by_nonsense_is_refused(factor):
 def test_transforming_needs_a_rigid_motion():
     with pytest.raises(BadPose):
         box((1, 1, 1)).transformed(np.diag([1.0, 1, -1, 1]))
-
-
-def test_from_trimesh_takes_anything_with_vertices_and_faces():
-    trimesh = pytest.importorskip("trimesh")
-    assert Polyhedron.from_trimesh(trimesh.creation.box((1, 2, 3))).n_faces == 6
-    with pytest.raises(EmptyMesh):
-        Polyhedron.from_trimesh(42)
-    with pytest.raises(ClearanceError):
-        Polyhedron.from_trimesh(trimesh.Trimesh())
-
-
-def test_arrays_cannot_be_written():
-    with pytest.raises(ValueError, match="read-only"):
-        box((1, 1, 1)).vertices[0, 0] = 3.0
 
 
 def test_a_solid_from_another_process_cannot_be_written_either():

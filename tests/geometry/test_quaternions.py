@@ -44,8 +44,3 @@ def test_they_are_those_of_scipy_to_the_last_bit(rotations):
     expected = Rotation.from_matrix(rotations).as_quat(canonical=True) if len(rotations) else found
     assert found.tobytes() == np.ascontiguousarray(expected).tobytes()
     assert found.shape == (len(rotations), 4)
-
-
-def test_they_turn_as_the_matrices_do():
-    turned = Rotation.from_quat(quaternions_of(_RANDOM)).as_matrix()
-    assert np.abs(turned - _RANDOM).max() < 1e-14

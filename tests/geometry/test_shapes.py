@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from clearance.errors import BadDimension
 from clearance.geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
-from clearance.geometry.shapes.dimension import sections_for
 from tests.examples import examples
 from tests.geometry.exact_faces import (
     area_vector,
@@ -145,12 +144,6 @@ def test_the_default_tolerance_is_a_tenth_of_a_millimetre(radius):
         assert 0.0 < shape.excess <= 1e-4
 
 
-def test_a_sphere_needs_fewer_faces_than_an_icosphere():
-    """A geodesic sphere needs 11.6 triangles over (2 excess / radius), this one fewer than 8 faces."""
-    shape = sphere(0.1)
-    assert shape.n_faces < 8.0 / (2.0 * shape.excess / 0.1)
-
-
 PATH = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1.5, 0.7], [0, 1.5, 1.5]])
 
 
@@ -260,7 +253,3 @@ def test_dimensions_that_no_solid_has_are_refused(make, field):
     with pytest.raises(BadDimension) as caught:
         make()
     assert field in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_a_radius_beside_which_the_tolerance_overflows_has_the_fewest_sides():
-    assert sections_for(1e-320, 1e-4, None) == 8

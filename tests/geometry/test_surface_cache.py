@@ -10,7 +10,7 @@ import pytest
 
 from clearance.geometry import surface_cache, tree
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes import box, cylinder
+from clearance.geometry.shapes import cylinder
 from clearance.kernels.mesh.surface import Surface
 
 
@@ -95,17 +95,6 @@ def test_where_nothing_can_be_written_it_is_built_each_time(tmp_path, monkeypatc
     assert build.n_built == 2
 
 
-def test_where_nobody_knows_the_home_it_is_built(monkeypatch):
-    def unknown() -> Path:
-        raise RuntimeError("Could not determine home directory.")
-
-    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    monkeypatch.setattr(surface_cache.Path, "home", unknown)
-    build = Builder()
-    surface_cache.cached_surface(round_one(), build)
-    assert build.n_built == 1
-
-
 def test_the_oldest_goes_where_the_cache_is_too_large(folder, monkeypatch):
     heights = (0.1, 0.2, 0.3, 0.4)
     for age, height in enumerate(heights):
@@ -119,20 +108,3 @@ def test_the_oldest_goes_where_the_cache_is_too_large(folder, monkeypatch):
     for height in (0.5, 0.4, 0.3):
         surface_cache.cached_surface(round_one(height), build)
     assert build.n_built == 2  # 0.5, and 0.3 which was gone
-
-
-def test_a_joined_surface_of_what_was_read_has_the_bits_of_one_that_is_built(folder):
-    shapes = [box((1.0, 1.0, 1.0)), round_one()]
-
-    def joined() -> Surface:
-        tree._built.clear()
-        tree._joined.clear()
-        return tree.join(shapes)
-
-    assert_same_bits(joined(), joined())
-    assert len(list(folder.iterdir())) == 1
-
-
-def test_small_shapes_leave_no_file(folder):
-    tree.join([box((1.0, 1.0, 1.5)), box((1.0, 1.0, 2.5))])
-    assert not folder.exists()

@@ -48,19 +48,3 @@ def test_every_face_is_in_one_leaf_and_every_box_holds_its_faces(shape: Polyhedr
             ]
             away = surface.vertices[corners] - centres[group, :, k]
             assert (np.abs(np.linalg.solve(axes.T, away.T).T) <= half).all()
-
-
-@pytest.mark.parametrize("shape", SHAPES[-3:], ids=lambda shape: str(shape.n_faces))
-def test_few_lanes_are_empty(shape: Polyhedron) -> None:
-    """A third of a group a face is the least possible."""
-    assert len(surface_of(shape).children) / WIDTH <= 0.41 * shape.n_faces
-
-
-def test_lanes_without_a_node_repeat_the_first() -> None:
-    surface = surface_of(SHAPES[2])
-    empty = np.flatnonzero(surface.children[:, 1] < 0)
-    assert len(empty) == 4
-    boxes = surface.boxes.reshape(-1, 12, WIDTH)
-    for node in empty:
-        group, k = divmod(node, WIDTH)
-        assert np.array_equal(boxes[group, :, k], boxes[group, :, 0])

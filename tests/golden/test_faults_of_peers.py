@@ -5,12 +5,7 @@ import pytest
 
 import clearance as cl
 from tests import oracle
-
-
-def shifted(x=0.0, y=0.0, z=0.0):
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
+from tests.made_cases import at
 
 
 @pytest.mark.parametrize("gap", [1e-6, 1e-5])
@@ -29,7 +24,7 @@ def test_a_needle_over_a_small_face_is_not_in_contact(gap, scale):
 
 def test_a_box_inside_another_is_contact_with_a_common_point():
     inner, outer = cl.box((0.2, 0.2, 0.2)), cl.box((1.0, 1.0, 1.0))
-    near = cl.distance(inner, outer, pose_a=shifted(0.1, 0.0, -0.1))
+    near = cl.distance(inner, outer, pose_a=at(0.1, 0.0, -0.1))
     assert near.contact
     assert near.distance == 0.0
     assert np.array_equal(near.point_a, near.point_b)
@@ -46,7 +41,7 @@ def test_a_box_in_the_cavity_of_a_closed_shell_is_not_in_contact():
 
 def test_overlapping_boxes_meet_in_a_point_of_both():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.2, 0.2, 3.0))
-    near = cl.distance(a, b, pose_b=shifted(0.3, -0.2, 0.0))
+    near = cl.distance(a, b, pose_b=at(0.3, -0.2, 0.0))
     assert near.contact
     assert np.array_equal(near.point_a, near.point_b)
     assert np.abs(near.point_a).max() <= 0.5
@@ -59,7 +54,7 @@ def test_a_triangle_without_area_changes_nothing():
         [[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6], [7, 7, 7]], dtype=float
     )
     with_needle = cl.Polyhedron(vertices, [[0, 1, 2], [3, 4, 5]])
-    near = cl.distance(cl.sphere(0.5), with_needle, pose_a=shifted(0.2, 0.2, 2.5))
+    near = cl.distance(cl.sphere(0.5), with_needle, pose_a=at(0.2, 0.2, 2.5))
     assert near.face_b == 0
     assert near.distance == pytest.approx(2.0, abs=2e-4)
 
@@ -79,7 +74,7 @@ def test_a_box_flies_through_a_bore_without_touching():
     box = cl.box((0.1, 0.1, 0.1))
     truth = 0.1 - np.hypot(0.05, 0.05)
     for z in np.linspace(-0.9, 0.9, 19):
-        near = cl.distance(box, bore, pose_a=shifted(z=z))
+        near = cl.distance(box, bore, pose_a=at(z=z))
         assert not near.contact
         if abs(z) <= 0.5:
             assert truth - bore.excess <= near.distance <= truth + 1e-12

@@ -71,14 +71,6 @@ def test_transformed_reversed_chain_and_contours():
     assert set(two.contour) == {0, 1} and two.n_pieces == 5
 
 
-def test_a_far_curve_keeps_its_digits():
-    near = Curve.bspline([[0, 0], [1, 2], [3, 1], [4, 4]])
-    far = Curve.bspline(np.array([[0, 0], [1, 2], [3, 1], [4, 4.0]]) + 2.0**20)
-    offset = (near.origin + 2.0**20) - far.origin
-    rows = near.pieces.control[:, :2] + offset
-    assert np.array_equal(rows, far.pieces.control[:, :2])
-
-
 REFUSED = [
     (lambda: Curve.polyline([[0, 0]]), "points: 1 point(s); at least 2"),
     (lambda: Curve.polyline([[0, 0], [0, 0], [0, 0]]), "zero length"),

@@ -9,9 +9,9 @@ import pytest
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff, within
-from clearance.planar.steady import SteadyCurve, steady
+from clearance.planar.steady import steady
 from tests.oracle import planar_hausdorff as oracle
-from tests.planar.unlike import CASES, CUBIC, reparametrised, warped
+from tests.planar.unlike import CASES, reparametrised, warped
 
 pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
 
@@ -37,43 +37,6 @@ def test_near_coincident_curves_are_closed_in_on(name):
     assert at_witness.max() >= found.lower - slack
 
 
-WEIGHTS = [[1, 1e2, 1e4, 1e6], [1, 1e30, 1e-30, 1], [1e-8, 1, 1e-3, 1e5], [1, 1e-12, 1e12, 1]]
-
-
-@pytest.mark.parametrize("weights", WEIGHTS)
-def test_even_weights_change_no_point_and_keep_parameters(weights):
-    """The same points at the parameters that are told, in extended floats."""
-    curve = Curve.bezier(CUBIC, weights)
-    even = steady(curve)
-    assert (
-        isinstance(even, SteadyCurve)
-        and steady(curve) is even
-        and steady(Curve.bezier(CUBIC)).n_pieces == 1
-    )
-    parts, given = extended(even), extended(curve)[0]
-    u = np.linspace(0, 1, 33).astype(oracle.REAL)
-    for k, rows in enumerate(parts):
-        rest, share = even.maps[k].astype(oracle.REAL) @ np.stack([1 - u, u])
-        there = share / (rest + share)
-        assert (there >= 0).all() and (there <= 1).all()
-        reported = np.array([even.parameter_of(k, float(x)) for x in u])
-        assert np.abs(reported - there.astype(float)).max() <= 1e-15
-        fine = (there < 0.9) & (
-            there >= 0
-        )  # beyond, 1 - t has lost too many digits to compare points by it
-        gap = np.hypot(*(position(rows, u[fine]) - position(given, there[fine])).T)
-        assert not fine.any() or gap.max() <= 1e-14 * curve.size
-    ends = [position(parts[0], u[:1])[0], position(parts[-1], u[-1:])[0]]
-    assert np.allclose(np.array(ends, float), CUBIC[[0, -1]], atol=1e-14)
-    for one, two in joints(parts):
-        assert np.hypot(*(one[-1] - two[0])) <= 1e-14 * curve.size
-
-
-def joints(parts):
-    ends = [position(rows, np.array([0, 1], oracle.REAL)) for rows in parts]
-    return list(zip(ends[:-1], ends[1:], strict=True))
-
-
 @pytest.mark.parametrize("exponent", [3, 6, 9, 12])
 def test_the_limit_decides_near_coincident_curves(exponent):
     """Above and below the distance by a thousandth of it: True and False."""
@@ -86,7 +49,7 @@ def test_the_limit_decides_near_coincident_curves(exponent):
 def test_bounds_hold_for_many_small_changes():
     """Random warps of random curves, 1e-1 to 1e-14 off: no dense sample is beyond the bound."""
     random = np.random.default_rng(7)
-    for k in range(24):
+    for k in range(12):
         n = int(random.integers(3, 6))
         control = np.cumsum(random.normal(size=(n, 2)), axis=0)
         through = [0, *np.round(np.sort(random.uniform(0, 1, int(random.integers(1, 3)))), 3), 1]

@@ -110,13 +110,6 @@ def test_deviation_profile():
     assert tent.percentile(90) == pytest.approx(0.9, abs=2e-3)
 
 
-def test_a_witness_at_a_contours_end_keeps_its_contour():
-    two = Curve.contours([Curve.line([0, 0], [0, 9]), Curve.line([5, 0], [6, 0])])
-    found = hausdorff(two, Curve.line([0, 0], [6, 0]))
-    assert found.point_a == pytest.approx([0, 9])
-    assert two.point(found.parameter_a) == pytest.approx([0, 9], abs=1e-12)
-
-
 @pytest.mark.slow
 def test_compare_prints_and_draws_the_same_bytes(tmp_path):
     pytest.importorskip("matplotlib")

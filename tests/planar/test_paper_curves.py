@@ -5,9 +5,6 @@ import pytest
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
-from clearance.planar.picture import distance_field
-from clearance.planar.systems import paper
-from tests.planar.untrimmed import untrimmed
 
 
 def waves(n, seed):
@@ -29,14 +26,6 @@ def test_the_papers_answer_is_never_below_and_its_bounds_hold(n, seed):
     assert np.hypot(*(published.point_a - published.point_b)) == pytest.approx(published.distance)
 
 
-def test_trimming_leaves_less_to_solve():
-    for n in (10, 15, 30):
-        a, b = waves(n, 0)
-        whole, left = untrimmed(a, b).tally, hausdorff(a, b, method="paper").tally
-        assert left.trimmed_arcs > 0.5 * left.arcs and whole.trimmed_arcs == 0
-        assert left.systems * 1.5 < whole.systems  # 1.87 times as many for n = 10
-
-
 def test_the_greatest_of_all_roots_is_not_the_distance():
     """A bump beside one leg of an arch: its tip has a common normal with the other leg, three times as long."""
     arch = Curve.polyline([[-1, 0], [-1, 4], [1, 4], [1, 0]])
@@ -46,24 +35,3 @@ def test_the_greatest_of_all_roots_is_not_the_distance():
     tip = bump.point(0.5)[0]
     assert true.distance == pytest.approx(tip + 1.0) and published.distance >= 1.0 - tip - 1e-12
     assert published.lower <= true.distance <= published.upper < 0.5
-
-
-def test_the_other_curve_trimmed_as_well_loses_the_answer():
-    """4.3 read to the letter: the foot of the farthest point may lie on a part that trimming took away."""
-    lost = 0
-    for n, seed in PAIRS:
-        a, b = waves(n, seed)
-        true = hausdorff(a, b)
-        found = [one.lower for one in paper(a, b, literal=True)]
-        lost += max(found) < true.lower - 1e-9 * a.size
-        assert max(found) <= true.upper
-    assert lost > 0
-
-
-def test_a_page_shows_depth_and_colour():
-    """The page that the trimming reads: exact distances at the pixels' centres."""
-    circle = Curve.circle([0, 0], 1)
-    xs = np.linspace(-2, 2, 17)
-    depth, colour = distance_field(circle, xs, xs)
-    assert np.allclose(depth, np.abs(np.hypot(*np.meshgrid(xs, xs)) - 1), atol=1e-12)
-    assert len(np.unique(colour)) == len(circle.leaves.arcs)

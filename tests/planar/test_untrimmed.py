@@ -102,22 +102,3 @@ def test_systems_without_end_stop_with_a_true_bound(name):
     assert two.lower <= one.upper and one.lower <= two.upper
     assert two.error_bound <= 0.05 * a.size and two.tally.given_up > 0
     assert two.tally.systems <= 40_000 and two.tally.intervals <= 900_000
-
-
-def test_settled_systems_are_not_solved_again():
-    """Waves, seed 102: 22 million systems for 1,170 intervals, when every half asked for all of them again."""
-    random = np.random.default_rng(102)
-    c = np.stack([np.arange(10) * 1.0, np.cumsum(random.normal(size=10))], axis=1)
-    a, b = Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * random.normal(size=(10, 2)))
-    one, two = hausdorff(a, b), untrimmed(a, b)
-    assert two.tally.systems <= 2 * two.tally.intervals and two.tally.given_up == 0
-    assert abs(one.distance - two.distance) <= 1e-14 * a.size
-
-
-def test_two_feet_in_one_cell_are_found():
-    """A chord far off a shallow arch: both feet start in one cell of B, and no normal is near."""
-    arch = Curve.bezier([[-1, 0], [-1, 4], [1, 4], [1, 0]])
-    across = Curve.bezier([[-0.3, 0.5], [-0.1, 0.6], [0.1, 0.4], [0.3, 0.45]])
-    one, two = (find(across, arch).directed["a_to_b"] for find in (hausdorff, untrimmed))
-    assert two.kind == one.kind == "self_bisector"
-    assert abs(one.distance - two.distance) <= 1e-14 * arch.size

@@ -6,13 +6,9 @@ from click.testing import CliRunner
 
 from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff.state import SearchGoal
 from clearance.planar import hausdorff as searched
 from clearance.planar.curve import Curve
-from clearance.planar.directed import placed
 from clearance.planar.hausdorff import Undecided, hausdorff, within
-from clearance.profiles.compare import compare
-from clearance.profiles.outline_file import DrawnOutline
 from tests.planar.unlike import CUBIC, reparametrised
 
 NEAR = [
@@ -51,29 +47,6 @@ def test_undecided_is_an_error_of_ours_in_one_line(monkeypatch):
         within(a, b, 3e-11)
     assert isinstance(caught.value, ClearanceError) and "\n" not in str(caught.value)
     assert caught.value.lower <= 3e-11 <= caught.value.upper
-
-
-def test_within_does_not_refine_beyond_the_limit():
-    """The same cubic as degree 6: a limit of 1e-3 is settled in a hundredth of what the distance takes."""
-    a, b = NEAR[1]
-    shift, size = placed(a, b)
-    aims = [SearchGoal(2.0**-50 * size, 0.0, np.inf, enough, np.inf, 1e5) for enough in (1e-3, 0.0)]
-    few, many = (int(searched._solve(a, b, shift, aim)[0]["n_cuts"].sum()) for aim in aims)
-    assert few <= 24 and few * 8 < many
-    assert within(a, b, 1e-3) and within(a, b, 1e-9)
-
-
-@pytest.mark.slow
-def test_compare_calls_what_is_undecided_by_its_name(monkeypatch, tmp_path):
-    a, b = NEAR[0]
-    for budget, limit, verdict in [
-        (200_000.0, 1e-10, "within"), (200_000.0, 1e-11, "beyond"), (0.0, 1e-9, "undecided"),
-    ]:  # fmt: skip
-        monkeypatch.setattr(searched, "BUDGET", budget)
-        monkeypatch.setattr(searched, "INTERVALS_A_PIECE", 0.0)
-        found = compare(DrawnOutline("a", a), DrawnOutline("b", b), limit=limit)
-        assert found.verdict == verdict and found.within_limit == (verdict == "within")
-    assert found.found.lower <= 1e-9 < found.found.upper
 
 
 def test_compare_fails_where_the_limit_is_not_decided(tmp_path):

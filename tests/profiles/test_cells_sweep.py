@@ -121,18 +121,6 @@ def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
     )  # the samples' own steps
 
 
-@examples(3)
-@given(st.integers(0, 2**32 - 1))
-def test_what_moves_by_itself_is_swept_where_it_is_named_and_only_there(seed):
-    case, rng = cells.cell(seed), np.random.default_rng(seed)
-    found = cl.swept_profile(case, "xz", links=[], obstacles=["door", "crate"], tolerance=1e-2)
-    for name in ("door", "crate"):
-        assert_contains(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
-    assert set(found.origin.links) == {"door", "crate"}
-    of_robots = {one.label for one in swept_bodies(over_time(case), None, [])}
-    assert of_robots == {*LINKS, "part", "lid"}
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["door", "crate", "right/tool"])
 def test_a_section_holds_every_point_cut(name):
@@ -157,7 +145,7 @@ def test_a_section_holds_every_point_cut(name):
     assert all(inside(point, chosen) for point in on_plane[cut][:60])
 
 
-@examples(20)
+@examples(10)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
 def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, name):
     case = cells.cell(seed)
@@ -185,7 +173,7 @@ def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, n
             assert turned <= knots.turn[k] + 1e-7
 
 
-@examples(10)
+@examples(5)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate"]))
 def test_a_chain_is_where_its_body_is(seed, name):
     case = cells.cell(seed)
@@ -214,27 +202,10 @@ def standing_and_mounted(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_a_robot_on_what_stands_sweeps_what_it_would_standing_there(seed):
     mounted, standing = (cl.swept_profile(case, "xz") for case in standing_and_mounted(seed))
     assert rows(mounted) == rows(standing) and mounted.bound == standing.bound
-
-
-def test_several_robots_sweep_the_union_of_what_each_sweeps():
-    _, one = standing_and_mounted(1)
-    _, two = standing_and_mounted(2)
-    renamed = [
-        replace(c.robots[0], robot=replace(c.robots[0].robot, name=name))
-        for c, name in ((one, "a"), (two, "b"))
-    ]
-    both = cl.swept_profile(Case("made", tuple(renamed), ()), "xz")
-    alone = [cl.swept_profile(case, "xz") for case in (one, two)]
-    union = shapely.union_all([p.region for p in alone])
-    assert both.region.symmetric_difference(union).area <= both.length * (
-        both.bound + alone[0].bound
-    )
-    assert union.buffer(1e-3).covers(both.region) and both.region.buffer(1e-3).covers(union)
-    assert set(both.origin.links) == {"a/boom", "a/tool", "b/boom", "b/tool"}
 
 
 def carrying(**changes):
@@ -258,13 +229,6 @@ def test_a_part_is_swept_only_while_it_is_carried():
     assert truth.buffer(found.bound + 1e-9).covers(found.region)
     whole = cl.swept_profile(carrying(end=1.5), links=[], obstacles=["part"])
     assert whole.area == pytest.approx(0.2 * 0.45, abs=1e-3)
-
-
-def test_steps_of_a_sweep_are_those_of_the_run():
-    found = cl.swept_profile(carrying())
-    makers = [found.maker(i) for i in range(found.n_pieces)]
-    assert {step for name, step in makers if name == "part"} <= {1, 2}
-    assert found.n_steps == 3
 
 
 @pytest.mark.parametrize(("top", "kept"), [(1.15, True), (1.05, False)])

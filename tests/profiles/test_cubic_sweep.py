@@ -21,7 +21,7 @@ from tests.profiles.finely import finely_swept, interpolated, strays, sweeps
 from tests.profiles.moving import Z, joint, moved, rows, slab
 
 
-@examples(6)
+@examples(4)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
 def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
     rng, case = sweeps(seed, bent=True)
@@ -75,7 +75,7 @@ def test_a_bar_that_overshoots_sweeps_the_sector_to_its_turning_point():
 
 
 @pytest.mark.slow
-@examples(10)
+@examples(6)
 @given(st.integers(0, 2**32 - 1))
 def test_a_section_holds_every_point_cut(seed):
     rng, case = sweeps(seed, bent=True)

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 import clearance as cl
 from clearance.case.case_file import load_case
 from clearance.cli.commands import clearance as command
-from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
+from clearance.errors import BadInput, BadSyntax, UnknownLink
 from clearance.profiles.compare import as_data, compare
 from clearance.profiles.gap import ClosedContours, proven_gap
 from clearance.profiles.outline_file import DrawnOutline, read_outline
@@ -66,21 +66,6 @@ def test_geojson_is_a_valid_polygon_with_its_hole(profile, tmp_path):
     assert len(polygon.geoms[0].interiors) == 1
 
 
-def test_svg_has_every_piece(profile, tmp_path):
-    write_profile(profile, tmp_path / "p.svg")
-    text = (tmp_path / "p.svg").read_text()
-    assert text.count("A") + text.count("L") >= profile.n_pieces - 1 and "evenodd" in text
-
-
-def test_area_and_length_of_arcs_are_those_of_fine_chords(profile):
-    ring = profile.contours[0]
-    points = ring.flattened(1e-9)
-    x, y = points.T
-    u, v = np.roll(points, -1, axis=0).T
-    assert ring.area == pytest.approx(0.5 * np.sum(x * v - u * y), rel=1e-7)
-    assert ring.length == pytest.approx(np.hypot(u - x, v - y).sum(), rel=1e-7)
-
-
 @pytest.mark.slow
 def test_compare_agrees_with_the_distance_and_names_the_maker():
     one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.0]))
@@ -101,13 +86,6 @@ def test_compare_agrees_with_the_distance_and_names_the_maker():
         DrawnOutline("one", one.curve, one), DrawnOutline("one", one.curve, one), limit=1e-9
     )
     assert same.found.distance <= 1e-15 and same.gained == 0.0 and not same.beyond
-
-
-def test_open_outlines_can_be_compared_but_have_no_area():
-    open_line = DrawnOutline("line", cl.Curve.line([0, 0], [1, 0]))
-    assert compare(open_line, open_line).gained is None
-    with pytest.raises(BadShape, match="is open"):
-        _ = open_line.region
 
 
 @pytest.mark.slow
@@ -174,16 +152,6 @@ def test_refusals_of_the_commands_are_one_line(arguments, said, tmp_path, monkey
     fault = out.exception
     assert isinstance(fault, BadInput) and said in str(fault) and "\n" not in str(fault)
     assert not (tmp_path / "x.yaml").exists()
-
-
-@pytest.mark.slow
-def test_check_says_how_close_the_sweep_comes_to_its_sketch():
-    kept = cl.check(load_case(SCENES / "profiles" / "keep_in.yaml"))
-    (answer,) = kept.record.profiles
-    assert kept.passed and kept.status == "clear" and answer.contained
-    swept = cl.swept_profile(kept, answer.plane, section=answer.section)
-    zone = kept.record.case.profiles[0].sketch.curves()
-    assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
 
 
 @pytest.mark.slow

@@ -13,7 +13,6 @@ from clearance.profiles.fit import NoFit
 from clearance.profiles.fit_shape import NoFreeDimension, SketchShape
 from clearance.profiles.outline_file import read_outline
 from clearance.profiles.profile import Profile
-from clearance.profiles.sketch_copy import copied
 from tests.oracle.outlines import inside
 from tests.profiles.moving import rows, slab, turning
 
@@ -123,23 +122,6 @@ def test_a_zone_about_a_sweep_contains_it_by_the_oracle():
     assert not any(inside(row[:2], swept) for contour in zone for row in contour)
     assert found.clearance >= 0.01
     assert cl.minimum_distance(found.sketch.curves(), profile.curve).distance >= 0.01 - 1e-9
-
-
-@pytest.mark.slow
-def test_the_same_answer_each_time():
-    outline = cl.Curve.contours([cl.Curve.circle([0.3, 0.1], 0.4)])
-    one, two = (cl.fit(rectangle(1, 1), outline, "outside") for _ in range(2))
-    assert one.dimensions == two.dimensions and one.clearance == two.clearance
-
-
-def test_the_sketch_itself_is_unchanged_and_a_copy_is_the_same():
-    sketch = cl.Sketch.load(SKETCHES / "d_cell.yaml")
-    before = [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
-    cl.fit(sketch, SQUARE, "outside", starts=2)
-    assert before == [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
-    again = copied(sketch)
-    assert list(again.entities) == list(sketch.entities)
-    assert list(again.constraints) == list(sketch.constraints)
 
 
 def contradictory():

@@ -46,13 +46,6 @@ def test_a_bar_turning_about_a_point_sweeps_a_sector_of_an_annulus():
     assert found.n_pieces <= 20  # two arcs, two sides, two ends, and their corners
 
 
-def test_a_sliding_box_sweeps_a_box():
-    found = cl.swept_profile(sliding(slab([0, 0, 0], [0.3, 0.2, 0.1]), [0, 0.1, 0.7]))
-    truth = shapely.box(0, 0, 1.0, 0.2)
-    assert found.region.contains(truth) and strays(found, truth) <= found.bound
-    assert len(found.contours) == 1 and found.n_pieces <= 8
-
-
 def test_a_sphere_on_a_line_sweeps_a_stadium():
     radius, way = 0.1, 0.5
     found = cl.swept_profile(sliding(cl.sphere(radius), [0, way]))
@@ -158,25 +151,6 @@ def test_points_stay_within_the_chord_bound(seed):
     _, case = sweeps(seed)
     motion = kinematic_motion(case.robots[0])
     assert_within_chord_and_turn(case, motion, lambda at: positions_at(motion, at), slack=1e-15)
-
-
-def test_only_the_links_asked_for_and_each_on_its_own():
-    case = moved(
-        [joint(0, JointKind.REVOLUTE, Z)],
-        {0: slab([2, 2, 0], [3, 3, 1]), 1: slab([0, 0, 0], [0.1, 0.1, 0.1])},
-        [[0.0], [0.5]],
-    )
-    alone = cl.swept_profile(case, links=["l1"])
-    both = cl.swept_profile(case, per_link=True)
-    assert len(alone.contours) == 1 and len(both.contours) == 2
-    assert sorted(both.parts) == ["l0", "l1"]
-    assert both.parts["l1"].area == pytest.approx(alone.area, abs=1e-12)
-    assert {both.maker(i)[0] for i in range(both.n_pieces)} == {"l0", "l1"}
-
-
-def test_the_same_profile_each_time():
-    _, case = sweeps(5)
-    assert rows(cl.swept_profile(case)) == rows(cl.swept_profile(case))
 
 
 @pytest.mark.parametrize(

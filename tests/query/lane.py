@@ -1,46 +1,18 @@
-"""A few queries for processes with other compiler settings (`test_lanes`): prints their answers as JSON.
-
-`answers`: polygon pairs as hexadecimal floats. `meetings`: where faces of boxes meet. `rules`: bodies with
-each pruning rule off in turn, which needs functions that can be replaced, hence plain Python.
-"""
-
-import json
-import os
-import sys
+"""Pairs of boxes and their answers, also with each pruning rule off in turn, which needs plain Python."""
 
 import numpy as np
 
-from clearance import Polyhedron, distance, polygon_distance
+from clearance import Polyhedron, distance
 from clearance.compile.calls import KernelFault
 from clearance.compile.declared import Floats
 from clearance.compile.decorators import kernel
-from tests.strategies import BOX_FACES, CUBE_CORNERS, FAMILIES, rotations
-
-NAMES = (
-    "anywhere",
-    "needles",
-    "coplanar",
-    "shared_edge",
-    "vertex_on_face",
-    "parallel_faces",
-    "crossing_plates",
-)
+from tests.strategies import BOX_FACES, CUBE_CORNERS, rotations
 
 
 def reported(near):
     """An answer without its counters, every bit of it."""
     numbers = [near.distance, near.error_bound, *near.point_a, *near.point_b]
     return [float(x).hex() for x in numbers] + [near.face_a, near.face_b, near.contact]
-
-
-def polygon_answers(n):
-    """`n` pairs a family."""
-    pairs = [
-        pair
-        for name in NAMES
-        for pair in zip(*FAMILIES[name](np.random.default_rng(41), n), strict=True)
-    ]
-    return [reported(polygon_distance(p, q)) for p, q in pairs]
 
 
 def body_pairs(n):
@@ -87,26 +59,6 @@ def answers_without_rules(n):
     return found
 
 
-def meetings(n):
-    """Which faces of two boxes meet, straight from the kernels: planes, tree and predicates."""
-    from clearance.geometry.tree import surface_of
-    from clearance.kernels.arithmetic.double_double import frames_of
-    from clearance.kernels.arithmetic.predicates import new_exact_scratch
-    from clearance.kernels.arithmetic.vec3 import rigid
-    from clearance.kernels.features.meeting import meeting
-    from clearance.kernels.features.posed_pair import PosedPair
-
-    exact, found = new_exact_scratch(), []
-    for a, b, pose in body_pairs(n):
-        frames = frames_of(rigid(np.eye(4)), rigid(pose))
-        one, two = surface_of(a), surface_of(b)
-        for i in range(6):
-            for j in range(6):
-                at = meeting(PosedPair(one, i, two, j, frames), exact)
-                found.append([bool(at.found), *(int(x) for x in at[1:])])
-    return found
-
-
 @kernel
 def number_at(numbers: Floats, place: int) -> float:
     """A number of an array, wherever that is."""
@@ -121,27 +73,3 @@ def out_of_bounds_is_seen():
     except (IndexError, KernelFault):
         return True
     return False
-
-
-def main():
-    """Prints what is asked for."""
-    os.environ.setdefault("PYTHONHASHSEED", "0")
-    np.seterr(all="ignore")
-    if sys.argv[1] == "rules":
-        reported_now = {"all": body_answers(12), "without": answers_without_rules(12)}
-    elif sys.argv[1] == "meetings":
-        reported_now = {
-            "meetings": meetings(12),
-            "bounds": out_of_bounds_is_seen(),
-            "compiles": "numba" in sys.modules,
-        }
-    else:
-        reported_now = {
-            "polygons": polygon_answers(int(sys.argv[2])),
-            "bounds": out_of_bounds_is_seen(),
-        }
-    print(json.dumps(reported_now))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,4 +1,4 @@
-"""A small question to each domain of kernels, for processes with other compiler settings (`test_domain_lanes`).
+"""A small question to each domain of kernels, for processes with other compiler settings (`test_lanes`).
 
 `python tests/query/lane_of_domains.py DOMAIN …` prints the answers as JSON, every bit of them: floats are
 hexadecimal. The questions are as small as they can be and still come to the kernels: what takes time is to
@@ -14,7 +14,13 @@ import numpy as np
 
 import clearance as cl
 from tests.made_cases import arm, at, dented, flying
-from tests.query.lane import body_pairs, out_of_bounds_is_seen, reported
+from tests.query.lane import (
+    answers_without_rules,
+    body_answers,
+    body_pairs,
+    out_of_bounds_is_seen,
+    reported,
+)
 
 
 def search() -> list:
@@ -34,7 +40,7 @@ def certify() -> list:
     """The proof for the motion between the steps, of the arm and of a body that turns and flies."""
     found = []
     for case in (_two_links(), _flight()):
-        proof = cl.check(case, certify=True).record.certificate
+        proof = cl.answer(cl.Question(case, certify_gap=2e-2, contact="none")).record.certificate
         found.append([_bits(x) for x in (*proof.lower_bound, *proof.upper_bound, *proof.share)])
     return found
 
@@ -69,6 +75,11 @@ def hausdorff() -> list:
     return found
 
 
+def rules() -> dict:
+    """Answers about boxes, and those without each pruning rule."""
+    return {"all": body_answers(12), "without": answers_without_rules(12)}
+
+
 DOMAINS = {one.__name__: one for one in (search, sweep, certify, polytope, hausdorff)}
 
 
@@ -80,10 +91,13 @@ def _two_links() -> cl.Case:
 
 
 def _flight() -> cl.Case:
-    positions = np.linspace([-0.4, 0.0, 0.02, 0.0, 0.0, 0.0], [0.4, 0.05, 0.0, 0.5, 1.0, 0.3], 5)
+    positions = np.linspace([-0.1, 0.0, 0.02, 0.0, 0.0, 0.0], [0.1, 0.05, 0.0, 0.5, 1.0, 0.3], 5)
     bar = cl.box((0.3, 0.02, 0.02))
     return flying(
-        "flight", bar, [(cl.pipe(inner_radius=0.2, outer_radius=0.25, length=0.1), at())], positions
+        "flight",
+        bar,
+        [(cl.pipe(inner_radius=0.3, outer_radius=0.35, length=0.1, sections=12), at())],
+        positions,
     )
 
 
@@ -95,7 +109,8 @@ def _bits(value: object) -> object:
 def main(domains: list[str]) -> None:
     """Prints the answers of the domains that are named."""
     np.seterr(all="ignore")
-    found = {"bounds": out_of_bounds_is_seen()} | {name: DOMAINS[name]() for name in domains}
+    asked = DOMAINS | {"rules": rules}
+    found = {"bounds": out_of_bounds_is_seen()} | {name: asked[name]() for name in domains}
     print(json.dumps(found))
 
 

@@ -129,23 +129,6 @@ def test_a_cavity_with_a_fault_in_its_wall_stays_outside() -> None:
     assert distance(hollow, CUBE, pose_b=at(0.75, 0.0, 0.0)).contact
 
 
-@pytest.mark.slow
-def test_caps_close_what_they_are_said_to_close() -> None:
-    """Faces as they count, and caps, have winding numbers that the oracle finds whole."""
-    random = np.random.default_rng(7)
-    for fault in FAULTS:
-        outer = faulty(BALL, fault, 5)
-        closing = closing_of(outer)
-        faces = [
-            f[:: int(way)] for f, way in zip(faces_of(outer), closing.turns, strict=True) if way
-        ]
-        corners = np.concatenate([outer.vertices, closing.caps.reshape(-1, 3)])
-        caps = (len(outer.vertices) + np.arange(3 * len(closing.caps))).reshape(-1, 3).tolist()
-        for point in random.uniform(-1.2, 1.2, (5, 3)):
-            number = oracle.winding_number(point, corners, faces + caps)
-            assert number == oracle.winding_number(point, BALL.vertices, faces_of(BALL))
-
-
 def test_depth_and_volume_are_found_of_what_is_almost_closed() -> None:
     deep = contact(faulty(BALL, "missing", 37), CUBE, pose_b=at(0.2, 0.0, 0.0))
     assert deep.penetration > 0.5 and deep.volume >= 0.999e-3
@@ -208,27 +191,6 @@ def test_three_quarters_of_all_directions_are_inside_and_one_quarter_is_outside(
         assert near.inside == inside
         n_of[inside] += 1
     assert min(n_of.values()) > 10
-
-
-def test_what_decides_is_what_is_seen_not_which_caps_close_a_hole() -> None:
-    """Before bent holes whose caps cover more than a quarter one by one, and less where they cancel."""
-    n_cancel = seed = 0
-    while n_cancel < 6:
-        random = np.random.default_rng(seed)
-        seed += 1
-        whole = dented(random, 2, 0.4)
-        outer = without(whole, random.normal(size=3), 3)
-        closing = closing_of(outer)
-        if closing is None:
-            continue
-        for point in closing.caps.mean(axis=(0, 1)) + random.normal(scale=0.1, size=(200, 3)):
-            caps = [abs(winding_number(cap[None], point[None])[0]) for cap in closing.caps]
-            if turns_round(outer, point[None])[0] < 0.751 or sum(caps) < 0.251:
-                continue
-            n_cancel += 1
-            corner = [Fraction(x) for x in point.tolist()]
-            assert oracle.contains(corner, whole.vertices, faces_of(whole))
-            assert distance(outer, box((2.0**-12,) * 3), pose_b=at(*point)).contact
 
 
 @pytest.mark.parametrize("place", [(0.0625, 0.0625), (0.03125, 0.0625), (0.09375, 0.015625)])

@@ -11,7 +11,7 @@ from clearance import PointCloud, Polyhedron, Query, box, distance, sphere
 from tests import oracle
 from tests.examples import examples
 from tests.made_cases import torus
-from tests.strategies import QUARTER_TURNS, boxes, poses, rotations
+from tests.strategies import QUARTER_TURNS, boxes, poses
 
 QUARTERS = st.integers(-12, 12).map(lambda n: n / 4.0)
 RADII = st.sampled_from([2.0**-30, 1e-3, 0.1, 0.7])
@@ -54,7 +54,7 @@ def posed(vertices, pose):
 
 
 @given(points(), RADII, boxes(), poses(), poses())
-@examples(100)
+@examples(60)
 def test_like_the_oracle(given_points, radius, solid, pose_a, pose_b):
     cloud = PointCloud(given_points, radius)
     near = distance(cloud, Polyhedron(*solid), pose_a=pose_a, pose_b=pose_b)
@@ -95,20 +95,6 @@ def test_what_the_clearance_does_not_depend_on(given_points, solid, pose, turn):
     assert abs(moved.distance - near.distance) <= near.error_bound + moved.error_bound
     swapped = distance(solid, PointCloud(given_points, 0.01), pose_a=pose)
     assert abs(swapped.distance - near.distance) <= near.error_bound + swapped.error_bound
-
-
-@given(points(), boxes(), poses(), st.sampled_from([2.0**-20, 0.01, 0.3]))
-@examples(40)
-def test_a_greater_radius_takes_as_much_off(given_points, solid, pose, more):
-    solid = Polyhedron(*solid)
-    small, large = (
-        distance(PointCloud(given_points, r), solid, pose_b=pose) for r in (0.001, 0.001 + more)
-    )
-    if large.contact:
-        assert small.distance <= more + 1e-12
-    else:
-        bounds = small.error_bound + large.error_bound + 1e-16
-        assert abs(small.distance - large.distance - more) <= bounds
 
 
 @pytest.mark.parametrize("gap", [-(2.0**-40), 0.0, 2.0**-51, 2.0**-20])
@@ -174,23 +160,6 @@ def test_points_within_loose_faces_are_in_doubt():
     loose = Polyhedron.merged([Polyhedron(one, [range(len(one))]) for one in each])
     assert distance(loose, PointCloud([[0.1, 0.0, 0.0]], 0.01)).inside == "undecided"
     assert distance(loose, PointCloud([[1.1, 0.0, 0.0]], 0.01)).inside == "no"
-
-
-def test_many_poses_are_as_one_by_one():
-    """What a query carries on from pose to pose changes nothing."""
-    random = np.random.default_rng(9)
-    cloud, ring = PointCloud(random.uniform(-1.0, 1.0, (500, 3)), 0.02), torus(0.5, 0.1, 24, 12)
-    way = np.tile(np.eye(4), (60, 1, 1))
-    way[:, :3, :3] = rotations(random, 1)[0]
-    way[:, 0, 3] = np.linspace(-2.0, 2.5, 60)
-    query = Query(cloud, ring)
-    found = query.distances(worlds_from_b=way)
-    single = [distance(cloud, ring, pose_b=pose) for pose in way]
-    assert found.distances.tolist() == [near.distance for near in single]
-    assert found.points.tolist() == [
-        [near.point_a.tolist(), near.point_b.tolist()] for near in single
-    ]
-    assert 0 < np.count_nonzero(found.distances == 0.0) < 60
 
 
 @pytest.mark.parametrize("order", [1, -1])

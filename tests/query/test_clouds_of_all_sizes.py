@@ -88,7 +88,7 @@ def answer(given_scan, pose):
     st.sampled_from(KINDS),
     st.sampled_from(QUARTER_TURNS),
 )
-@examples(150)
+@examples(80)
 def test_contact_and_distance_are_those_of_all_points(seed, n, kind, turn):
     random = np.random.default_rng(seed)
     pose = np.eye(4)

@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.gjk import LIMIT, VertexGraph, gjk, hill_climb
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
 from tests.examples import some_slow
@@ -28,16 +27,6 @@ def certificate_is_right(bodies, proof) -> bool:
     rows = [bodies[k].half_spaces[f] for k, f in zip(proof.parts, proof.faces, strict=True)]
     total = proof.weights @ np.array(rows)
     return len(rows) <= 4 and np.abs(total[:3]).max() < 1e-12 and total[3] > -1e-12
-
-
-@pytest.mark.parametrize("n", [4, 30, 800])
-def test_hill_climbing_finds_what_looking_at_all_finds(n):
-    body = ball(n, 1)
-    for direction in np.random.default_rng(2).normal(size=(50, 3)):
-        best = (body.vertices @ direction).max()
-        for start in (0, n // 2):
-            found = hill_climb(VertexGraph(body.vertices, *body.vertex_graph), start, *direction)
-            assert body.vertices[found] @ direction == pytest.approx(best, abs=1e-15)
 
 
 @pytest.mark.parametrize("m", some_slow([2, 3, 8, 64], {64}))
@@ -88,18 +77,6 @@ def test_touching_is_neither_overlap_nor_apart(shift):
     assert common_point_paper(a, b).relation == "touch"
 
 
-@pytest.mark.slow
-def test_gjk_never_runs_on():
-    for seed in range(200):
-        rng = np.random.default_rng(seed)
-        flat = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3))
-        other = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3) + rng.integers(-1, 2, 3))
-        for start in (0, 7):
-            graphs = (VertexGraph(body.vertices, *body.vertex_graph) for body in (flat, other))
-            _, n, *_ = gjk(*graphs, start, start, 0.0)
-            assert n < LIMIT // 4
-
-
 def turned(angle: float, shift) -> np.ndarray:
     pose = np.eye(4)
     pose[:3, :3] = Rotation.from_rotvec([0.3 * angle, -angle, 0.5 * angle]).as_matrix()
@@ -131,16 +108,6 @@ def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m)
         seen.add(met.relation)
     assert seen == {"overlap", "apart"}
     assert m > 2 or work[1] < 0.3 * work[0]
-
-
-def test_a_warm_start_from_elsewhere_changes_nothing():
-    rng = np.random.default_rng(4)
-    a, b = ball(40, 1), ball(60, 2, (0.7, 0.2, 0.0))
-    true = common_point([a, b])
-    for _ in range(50):
-        names = tuple((int(rng.integers(2)) << 32) + int(rng.integers(150)) for _ in range(4))
-        met = common_point([a, b], warm=names)
-        assert met.relation == true.relation and met.depth == pytest.approx(true.depth, abs=1e-12)
 
 
 def test_refusals():

@@ -26,10 +26,10 @@ def exact_sq(p, q):
 
 
 def draws(name):
-    """300 pairs of a family or the profile's share; of polygons with many corners those the oracle is quick on."""
+    """100 pairs of a family or the profile's share; of polygons with many corners those the oracle is quick on."""
     if name != "many_sided":
-        return zip(*FAMILIES[name](np.random.default_rng(101), share_of(300)), strict=True)
-    batches = (FAMILIES[name](np.random.default_rng(seed), 12) for seed in range(share_of(100)))
+        return zip(*FAMILIES[name](np.random.default_rng(101), share_of(100)), strict=True)
+    batches = (FAMILIES[name](np.random.default_rng(seed), 12) for seed in range(share_of(40)))
     small = ((p, q) for p, q in batches if p.shape[1] + q.shape[1] < 50)
     return [pair for p, q in small for pair in zip(p, q, strict=True)]
 
@@ -98,7 +98,7 @@ def same(one, other, factor=1.0):
 
 
 @given(polygon_pairs())
-@examples(200)
+@examples(100)
 def test_swapping_the_polygons_swaps_the_answer_bit_for_bit(pair):
     p, q = pair
     near, swapped = polygon_distance(p, q), polygon_distance(q, p)
@@ -109,7 +109,7 @@ def test_swapping_the_polygons_swaps_the_answer_bit_for_bit(pair):
 
 
 @given(polygon_pairs(), st.integers(0, 70), st.integers(0, 70))
-@examples(200)
+@examples(100)
 def test_rotating_the_corners_changes_no_bit(pair, i, j):
     p, q = pair
     turned = polygon_distance(np.roll(p, i, axis=0), np.roll(q, j, axis=0))
@@ -117,7 +117,7 @@ def test_rotating_the_corners_changes_no_bit(pair, i, j):
 
 
 @given(polygon_pairs(), st.integers(-300, 300))
-@examples(200)
+@examples(100)
 def test_scaling_by_a_power_of_two_scales_the_answer_exactly(pair, k):
     p, q = pair
     if np.abs(np.concatenate([p, q]))[np.concatenate([p, q]) != 0.0].min(initial=1.0) < 1e-100:
@@ -128,7 +128,7 @@ def test_scaling_by_a_power_of_two_scales_the_answer_exactly(pair, k):
 
 @pytest.mark.slow
 @given(polygon_pairs())
-@examples(150)
+@examples(80)
 def test_any_pair_of_polygons(pair):
     p, q = pair
     near, sq = polygon_distance(p, q), exact_sq(p, q)
@@ -145,16 +145,3 @@ def test_near_parallel_segments_of_the_field():
     assert oracle.error(near.distance, oracle.segment_distance_sq(*p, *q)) <= Fraction(
         near.error_bound
     )
-
-
-@pytest.mark.parametrize("gap", [1e-6, 1e-5])
-@pytest.mark.parametrize("edge", [1e-4, 1e-5])
-def test_a_needle_over_a_face_is_no_contact(gap, edge):
-    """FCL, Coal and Klampt answer 0 in metres: their triangle kernel has an absolute threshold."""
-    face = edge * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
-    needle = np.array(
-        [[0.0, 0.0, gap], [0.0, edge * 1e-3, gap + edge], [edge * 1e-3, 0.0, gap + edge]]
-    )
-    near = polygon_distance(face, needle)
-    assert not near.contact
-    assert near.distance == gap

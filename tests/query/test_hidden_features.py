@@ -179,7 +179,7 @@ def test_no_distance_is_off_by_more_than_its_bound(name):
     """Found before: every fifth distance was too great, by up to its own size where it was a rounding or two."""
     random = np.random.default_rng(101)
     n_separate = 0
-    for _ in range(150):
+    for _ in range(60):
         a, b, pose_a, pose_b = cases()[name](random)
         one, other = cl.Polyhedron(*a), cl.Polyhedron(*b)
         near = cl.distance(one, other, pose_a=pose_a, pose_b=pose_b)
@@ -190,7 +190,7 @@ def test_no_distance_is_off_by_more_than_its_bound(name):
         assert near.error_bound <= 1e-15 + 1e-9 * near.distance
         kept = cl.Query(one, other).distance(pose_a, pose_b)
         assert (kept.distance, kept.error_bound) == (near.distance, near.error_bound)
-    assert n_separate > 100
+    assert n_separate > 40
 
 
 @pytest.mark.parametrize("gap", first_fast([2.0**-40, 2.0**-30, 2.0**-20], 1))

@@ -103,7 +103,7 @@ def test_order_and_threads_change_nothing_beyond_1e_14(m, n):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("m", "n"), [(2, 4), (2, 50), (2, 5000), (5, 300), (64, 50)])
+@pytest.mark.parametrize(("m", "n"), [(2, 4), (2, 50), (5, 300), (64, 50)])
 def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
     from scipy.spatial import ConvexHull, HalfspaceIntersection
 

@@ -7,10 +7,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from clearance import Polyhedron, distance, polygon_distance, polygon_distances
+from clearance import Polyhedron, distance, polygon_distance
 from tests.examples import examples
 from tests.strategies import (
-    FAMILIES,
     QUARTER_TURNS,
     boxes,
     lattice_polygons,
@@ -112,18 +111,6 @@ def test_between_two_steps_the_distance_changes_by_no_more_than_the_motion(a, b,
     assert abs(first.distance - second.distance) <= allowed
 
 
-@given(lattice_polygons(), lattice_polygons(), st.integers(0, 6), st.integers(0, 6))
-@examples(100)
-def test_swapped_and_rotated_at_once_on_degenerate_input(p, q, i, j):
-    near = polygon_distance(p, q)
-    other = polygon_distance(np.roll(q, j, axis=0), np.roll(p, i, axis=0))
-    assert (near.distance, near.error_bound, near.contact) == (
-        other.distance,
-        other.error_bound,
-        other.contact,
-    )
-
-
 def _bytes(near):
     return (
         near.distance.hex(),
@@ -153,20 +140,6 @@ def test_the_same_bytes_from_several_threads(n_threads):
     alone = [answer(task) for task in asked]
     with ThreadPoolExecutor(n_threads) as pool:
         assert list(pool.map(answer, asked)) == alone
-
-
-@pytest.mark.parametrize("n_threads", [2, 4])
-def test_batches_give_the_same_bytes_from_several_threads(n_threads):
-    batches = [
-        FAMILIES[name](np.random.default_rng(22), 40)
-        for name in sorted(FAMILIES)
-        if name != "many_sided"
-    ]
-    alone = [polygon_distances(*batch).tobytes() for batch in batches]
-    with ThreadPoolExecutor(n_threads) as pool:
-        assert [
-            d.tobytes() for d in pool.map(lambda batch: polygon_distances(*batch), batches)
-        ] == alone
 
 
 def _some_boxes(random):

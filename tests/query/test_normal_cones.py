@@ -3,8 +3,6 @@
 Half a minute in the full run: which faces are nearest is asked of rational arithmetic for every pair of faces.
 """
 
-import itertools
-
 import numpy as np
 import pytest
 from hypothesis import example, given
@@ -20,7 +18,6 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
-from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.joint_motion_bound import AT_REST
 from clearance.kernels.motion.twist import Twist
@@ -177,7 +174,7 @@ def anywhere(random, reach):
 
 
 @pytest.mark.slow
-@examples(60)
+@examples(20)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
 @example(2, "copied", "thin shell", 2.0, 0.0)
@@ -224,7 +221,7 @@ def all_turned_away_while(
 
 
 @pytest.mark.slow
-@examples(30)
+@examples(10)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
     st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.floats(0.0, 0.25), st.floats(0.0, 0.3),
@@ -255,18 +252,6 @@ def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(
     assert not of_b[holds].any()
 
 
-def test_much_is_turned_away_while_moving_a_little():
-    """A twentieth of a radian and of the distance: not much less than at rest."""
-    a = surface_of(ball(1.0, 3))
-    here, there = np.eye(4), at(3.0)
-    at_rest, moving, farther = np.zeros((3, 2, len(a.children), len(a.children)), dtype=bool)
-    all_turned_away_while(a, a, here, there, 0.0, 0.0, *at_rest)
-    all_turned_away_while(a, a, here, there, 0.05, 0.05, *moving)
-    all_turned_away_while(a, a, here, there, 0.24, 1.0, *farther)
-    assert 0 < farther.sum() < moving.sum() < at_rest.sum()
-    assert moving.sum() > 0.8 * at_rest.sum()
-
-
 def asked(a, b, poses):
     """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
     numbers, points, counts = answer_rows(len(poses))
@@ -282,7 +267,7 @@ def bare(surface):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@examples(12)
+@examples(6)
 @given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(KINDS)))
 def test_cones_change_no_bit(kind, seed, other):
     random = np.random.default_rng(seed)
@@ -292,75 +277,3 @@ def test_cones_change_no_bit(kind, seed, other):
     found, _ = asked(a, b, poses)
     expected, _ = asked(bare(a), bare(b), poses)
     assert found == expected
-
-
-def test_bodies_beyond_single_precision_have_no_radius_and_no_warning(recwarn):
-    far = cl.distance(ball(1e39, 0), ball(1e39, 0), pose_b=at(0.0, 0.0, 3e39))
-    assert far.distance == pytest.approx(1.2986983832959202e39) and not recwarn.list
-
-
-def test_cones_leave_out_most_of_two_rings():
-    shape = torus(1.0, 0.25, 32, 16)
-    one = surface_of(shape)
-    tilt = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-    poses = np.array([at(1.0 + 0.02 * k, 0.03, -0.02, tilt) for k in range(4)])
-    found, (n_nodes, n_faces) = asked(one, one, poses)
-    expected, (n_nodes_bare, n_faces_bare) = asked(bare(one), bare(one), poses)
-    assert found == expected
-    assert 1.2 * n_nodes < n_nodes_bare
-    assert 3 * n_faces < n_faces_bare
-
-
-def test_a_cone_holds_the_normals_round_what_its_faces_own():
-    shape = dented(np.random.default_rng(3), 2, depth=0.1)
-    surface = surface_of(shape)
-    rows = surface.cones.reshape(-1, CONE_ROWS, WIDTH).astype(np.float64)
-    at_vertex = {}
-    for face, (i, j) in enumerate(itertools.pairwise(surface.face_starts)):
-        for v in surface.face_vertices[i:j]:
-            at_vertex.setdefault(int(v), []).append(face)
-    n_cones = 0
-    for node, below in enumerate(faces_below(surface)):
-        axis, cosine, sine = (
-            rows[node // WIDTH, :3, node % WIDTH],
-            *rows[node // WIDTH, 3:5, node % WIDTH],
-        )
-        if sine == np.float32(NO_CONE):
-            continue
-        n_cones += bool(below)
-        for face in below:
-            assert surface.normals[face] @ axis >= cosine
-            for v in surface.owned_vertices[
-                surface.vertex_starts[face] : surface.vertex_starts[face + 1]
-            ]:
-                assert (surface.normals[at_vertex[int(v)]] @ axis >= cosine).all()
-    assert n_cones > shape.n_faces
-
-
-def test_a_face_that_hardly_turns_at_a_corner_has_no_cone():
-    """A diagonal of its fan can stand out of it there, and what is nearest lie along no normal."""
-    n = 7
-    vertices = [(x, y, 0.0) for y in range(n + 1) for x in range(n + 1)] + [(4.0, 3.5, 0.0)]
-    faces = []
-    for y in range(n):
-        for x in range(n):
-            corner = y * (n + 1) + x
-            faces.append([corner, corner + 1, corner + n + 2, corner + n + 1])
-    left, right = 3 * n + 3, 3 * n + 4
-    faces[left].insert(2, len(vertices) - 1)
-    faces[right].append(len(vertices) - 1)
-    surface = surface_of(Polyhedron(np.array(vertices), faces))
-    sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
-    of_face = {
-        int(first): node for node, (first, count) in enumerate(surface.children) if count == 0
-    }
-    without = {face for face, node in of_face.items() if sines[node] == np.float32(NO_CONE)}
-    assert {left, right} <= without
-    assert n + 1 not in without and 5 * n + 5 not in without
-
-
-def test_where_faces_do_not_meet_two_by_two_there_are_no_cones():
-    corners = np.random.default_rng(1).normal(size=(5, 3))
-    three_an_edge = Polyhedron(corners, list(itertools.combinations(range(5), 3)))
-    cones = surface_of(three_an_edge).cones.reshape(-1, CONE_ROWS, WIDTH)
-    assert (cones[:, 4] == np.float32(NO_CONE)).all()

@@ -6,10 +6,9 @@ import weakref
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-import pytest
 
 import clearance as cl
-from clearance.query.one_pair import MOST_PAIRS, cached_pair
+from clearance.query.one_pair import cached_pair
 from tests.made_cases import at, ball
 from tests.strategies import rotations
 
@@ -49,16 +48,6 @@ def test_threads_do_not_disturb_each_other():
 
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(ask, range(4))) == [alone] * 4
-
-
-@pytest.mark.slow
-def test_more_pairs_than_are_held_are_answered():
-    boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(MOST_PAIRS + 3)]
-    for _ in range(2):
-        found = [cl.distance(boxes[0], other, pose_b=at(0.0, 0.0, 3.0)).distance for other in boxes]
-        assert np.allclose(
-            found, [2.0 - 0.0005 * i for i in range(len(boxes))], rtol=0.0, atol=1e-15
-        )
 
 
 def test_a_solid_that_is_let_go_takes_its_arrays_along():

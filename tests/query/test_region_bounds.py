@@ -10,13 +10,10 @@ import clearance as cl
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import convex_parts
-from clearance.geometry.envelope import envelope, is_clearly_concave
-from clearance.geometry.polytope import Polytope
+from clearance.geometry.envelope import envelope
 from clearance.query.contact import BodyPair
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.region_bounds import ball_depth, thickness, ways_through
-from clearance.query.solid_near import LARGE
-from tests.examples import first_fast
 from tests.simulate.test_contact_modes import channel
 
 needs_manifold = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
@@ -59,7 +56,7 @@ def test_the_thinnest_way_comes_first_and_pieces_count_by_themselves():
 
 
 @needs_manifold
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.cold
 def test_rough_bounds_hold_those_of_cut_bodies_apart(seed):
     """Both enclose the same depth, so that neither's lower bound is above the other's upper one."""
@@ -82,44 +79,7 @@ def test_rough_bounds_hold_those_of_cut_bodies_apart(seed):
     assert cl.distance(a, b, pose_a=moved).distance > 0.0
 
 
-@needs_manifold
-@pytest.mark.parametrize("seed", first_fast(range(8), 2))
-def test_a_large_solid_cut_down_shares_the_same(seed):
-    ball, other = _dented_ball(60), cl.box((0.2, 0.3, 0.4))
-    assert ball.n_triangles > LARGE and is_clearly_concave(ball, ball.vertices)
-    pair = BodyPair(other, ball, convex_parts(other, rough=True), convex_parts(ball, rough=True))
-    pose = posed(seed, 0.4)
-    near = pair.near(pose[None])
-    assert near.near_b is not None and near.near_b.solid.num_tri() < 0.9 * ball.n_triangles
-    assert near.shared(pose).volume == pytest.approx(pair.shared(pose).volume, rel=1e-9, abs=1e-15)
-    far = pose.copy()
-    far[0, 3] += 3.0  # beyond what was cut out: the whole solid is asked
-    assert near.shared(far).is_empty == pair.shared(far).is_empty
-
-
-@pytest.mark.slow
-@needs_manifold
-def test_no_hull_is_made_of_a_large_concave_body(monkeypatch):
-    """Its hull would take seconds, its faces against all triangles minutes."""
-    made = []
-    real = Polytope.__init__
-    monkeypatch.setattr(
-        Polytope, "__init__", lambda self, points: made.append(len(points)) or real(self, points)
-    )
-    ball, other, pose = _dented_ball(110), cl.box((0.2, 0.3, 0.4)), np.eye(4)
-    assert len(ball.vertices) > 20_000
-    pose[0, 3] = 0.45
-    near = cl.distance(other, ball, pose_a=pose)
-    found = cl.contact(other, ball, pose_a=pose)
-    rough = BodyPair(other, ball, convex_parts(other), convex_parts(ball, rough=True)).contact(
-        pose, near.point_b
-    )
-    assert max(made) < 10_000
-    for one in (found, rough):
-        assert 0.0 < one.penetration_at_least <= one.penetration < 0.3
-
-
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(5))
 def test_an_envelope_holds_its_points(seed):
     points = np.random.default_rng(seed).normal(size=(300, 3)) * [1.0, 0.3, 0.01] + [
         10.0,
@@ -130,7 +90,7 @@ def test_an_envelope_holds_its_points(seed):
     assert (points @ rows[:, :3].T + rows[:, 3]).max() <= 1e-11
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(5))
 def test_bounds_alone_are_bounds(seed):
     a, b, pose = cl.box((0.3, 0.2, 0.5)), cl.box((1.0, 0.4, 0.6)), posed(seed, 0.2)
     near = cl.distance(a, b, pose_a=pose)
@@ -144,35 +104,3 @@ def test_bounds_alone_are_bounds(seed):
     moved = pose.copy()
     moved[:3, 3] += reported.penetration * (1.0 + 1e-9) * reported.direction
     assert cl.distance(a, b, pose_a=moved).distance > 0.0
-
-
-@pytest.mark.cold
-def test_notes_call_only_the_depth_a_bound_where_volumes_are_exact():
-    """A body that is not cut has the volumes of its own mesh."""
-    body = channel()
-    for is_rough in (True, False):
-        note = convex_parts(body, rough=is_rough).note
-        assert "depth" in note and "volumes shared with a closed body are of its own mesh" in note
-
-
-def _dented_ball(n):
-    """A ball of 0.5 m with a belt pressed in by 0.15: closed, smooth, concave; 4 n (n - 1) triangles."""
-    u = np.linspace(0.0, 2.0 * np.pi, 2 * n, endpoint=False)
-    v = np.linspace(-np.pi / 2, np.pi / 2, n + 1)[1:-1]
-    radius = 0.5 - 0.15 * np.exp(-((v / 0.3) ** 2))
-    ring = np.stack([np.cos(u), np.sin(u)], axis=1)
-    levels = zip(radius, v, strict=True)
-    rows = [
-        np.column_stack([r * np.cos(t) * ring, np.full(2 * n, r * np.sin(t))]) for r, t in levels
-    ]
-    points = np.concatenate([*rows, [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]])
-    k, south, north = np.arange(2 * n), len(points) - 2, len(points) - 1
-    ahead = (k + 1) % (2 * n)
-    faces = [np.stack([ahead, k, np.full(2 * n, south)], 1)]
-    for i in range(n - 2):
-        low, high = 2 * n * i, 2 * n * (i + 1)
-        faces.append(np.stack([low + k, low + ahead, high + ahead], 1))
-        faces.append(np.stack([low + k, high + ahead, high + k], 1))
-    last = 2 * n * (n - 2)
-    faces.append(np.stack([last + k, last + ahead, np.full(2 * n, north)], 1))
-    return cl.Polyhedron.from_triangles(points, np.concatenate(faces)).outward()

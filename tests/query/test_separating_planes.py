@@ -14,12 +14,6 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.posed_pair import PosedPair
-from clearance.kernels.search.front import (
-    forget_front,
-    is_worth_separating,
-    no_fronts,
-    note_separating_planes,
-)
 from clearance.kernels.search.scratch import new_scratch
 from clearance.kernels.search.separating_planes import separate
 from clearance.kernels.search.support import high_corner, top_of
@@ -108,11 +102,11 @@ def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind_b", SHAPES)
-@pytest.mark.parametrize("kind_a", ["ball", "dented", "box", "pipe"])
+@pytest.mark.parametrize("kind_a", ["dented", "pipe"])
 def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> None:
     random = np.random.default_rng([*map(ord, kind_a + kind_b)])
     a, b = SHAPES[kind_a](random), SHAPES[kind_b](random)
-    n = 40
+    n = 25
     places = random.normal(size=(n, 3))
     places *= (
         random.choice([1.2, 1.8, 2.2, 2.5, 4.0], (n, 1)) / np.linalg.norm(places, axis=1)[:, None]
@@ -129,7 +123,7 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
     separate_all(surface_of(a), surface_of(b), poses, points, limits, out, waiting)
     for i, near in enumerate(truths):
         floor, beyond, margin = out[i]
-        if i < 4:
+        if i < 2:
             exact = oracle.polyhedron_distance_sq(
                 a.vertices, faces_of(a), b.vertices, faces_of(b), None, poses[i]
             )
@@ -169,25 +163,3 @@ def test_hulls_as_far_apart_as_their_bodies_are_separated(
     assert (
         out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)
     ) == are_separated
-
-
-def sought(founds, asked):
-    """Fills (n,) whether planes are sought, where each search that seeks them finds them as said."""
-    fronts = no_fronts(1, 0)
-    fronts.spans[0, 1] = 1000
-    for i in range(len(founds)):
-        asked[i] = is_worth_separating(fronts, 0)
-        if asked[i]:
-            note_separating_planes(fronts, 0, founds[i], 1)
-    forget_front(fronts, 0)
-    asked[-1] = is_worth_separating(fronts, 0)
-
-
-def test_what_was_not_found_is_sought_less_and_less_often() -> None:
-    founds, asked = np.zeros(40, dtype=np.bool_), np.zeros(40, dtype=np.bool_)
-    sought(founds, asked)
-    assert np.flatnonzero(asked).tolist() == [0, 2, 6, 14, 30]
-    founds[6:] = True
-    sought(founds, asked)
-    assert asked[6:-1].all()
-    assert not asked[-1]  # a short front is gone on from

@@ -14,7 +14,7 @@ from clearance.record.replay import load_replay
 from clearance.record.wording import contact_text, depth_mm, least_cm3, volume_cm3
 from clearance.report.model import PageContent
 from clearance.report.topics.contact import sections
-from clearance.simulate.replay import contact as replay_contact
+from clearance.simulate.replay import replay as replay_contact
 from tests.report.browser import chromium, executable
 from tests.report.made import page_of, replay_of, summary_of, write
 from tests.report.records import record, with_contacts

@@ -67,10 +67,9 @@ def trajectory_of(path: Path) -> tuple[list[str], np.ndarray]:
 @pytest.fixture(scope="module")
 def remade(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("remade")
-    for script in ("make_robot.py", "make_scenes.py"):
-        subprocess.run(
-            [sys.executable, ROOT / "scripts" / script, "--out", out], check=True, timeout=120
-        )
+    for maker in ("robot", "scenes"):
+        command = [sys.executable, "-m", f"scripts.makers.{maker}", "--out", out]
+        subprocess.run(command, check=True, timeout=120, cwd=ROOT)
     return out
 
 

@@ -71,7 +71,7 @@ def exact_errors(case: cl.Case, steps: range) -> Iterator[float]:
 
 
 @pytest.mark.parametrize("origin", first_fast([NEAR_ORIGIN, FAR_OFF], 1))
-@pytest.mark.parametrize("seed", first_fast(range(4), 1))
+@pytest.mark.parametrize("seed", first_fast(range(2), 1))
 def test_two_robots_of_needles_and_slabs_are_as_far_apart_as_is_exact(seed, origin):
     """Of rounding, far from the origin, there is some 2^-52 of the coordinates in each of a few sums."""
     random = np.random.default_rng(seed)
@@ -129,7 +129,7 @@ def test_parallel_slabs_that_both_slide_keep_their_exact_gap(gap):
     assert (run.certificate.lower_bound <= run.record.clearances).all()
 
 
-@pytest.mark.parametrize("seed", first_fast(range(3), 1))
+@pytest.mark.parametrize("seed", [0])
 def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed):
     """36 joints between, of which some follow others; each adds its rounding of coordinates of some metres."""
     random = np.random.default_rng(seed)
@@ -150,7 +150,7 @@ def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed)
     assert max(exact_errors(case, range(0, N_STEPS, 12))) < 2e-13
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_body_and_a_part_carried_on_its_own_tree_are_as_far_apart_as_is_exact(seed):
     case = carrying(seed)
     run = cl.check(case, certify=False)

@@ -14,16 +14,14 @@ from clearance.world.forest import link_poses_at
 from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
 from clearance.world.pairs import measured_pairs
-from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, dented
 from tests.simulate.hostile_actors import (
     CUBE,
-    every,
     is_rigid,
 )
-from tests.simulate.wandering import N_STEPS, case_of, every_distance, poses_of
+from tests.simulate.wandering import N_STEPS, case_of
 from tests.strategies import rotations
 
 
@@ -65,7 +63,7 @@ def rootless(case: cl.Case) -> cl.Case:
 
 
 @pytest.mark.parametrize("turns", [False, True])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_gluing_the_world_to_another_base_changes_no_answer(seed, turns):
     """Neither to one that stands askew nor to one that turns all the while."""
     case = rootless(case_of(seed, 2))
@@ -87,19 +85,7 @@ def test_gluing_the_world_to_another_base_changes_no_answer(seed, turns):
     ]
 
 
-def test_gluing_the_world_to_an_obstacle_that_stands_changes_no_answer():
-    case = rootless(case_of(2, 2))
-    pose = at(0.4, -0.3, 1.1, turned=rotations(np.random.default_rng(3), 1)[0])
-    slab = cl.Obstacle(
-        Body("slab", box((0.1, 0.1, 0.1))), at(40.0, 0.0, 0.0, turned=pose[:3, :3].T)
-    )
-    on_slab = glued(case, "slab", pose)
-    on_slab = replace(on_slab, obstacles=(*on_slab.obstacles, slab), allow=(("*", "slab"),))
-    one, other = cl.check(case), cl.check(on_slab)
-    assert one.record.clearances == pytest.approx(other.record.clearances, abs=1e-9)
-
-
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_swapping_the_names_of_two_robots_changes_only_names(seed):
     case = case_of(seed, 2)
     new = {"r0": "r1", "r1": "r0"}
@@ -124,16 +110,6 @@ def test_swapping_the_names_of_two_robots_changes_only_names(seed):
             for side in sides_in(list(row)):
                 row[side] = renamed(row[side])
         assert rows == others
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_the_order_of_two_robots_changes_no_answer(seed):
-    case = case_of(seed, 2)
-    turned = replace(case, robots=case.robots[::-1])
-    one, other = (cl.check(each) for each in (case, turned))
-    assert one.record.clearances == pytest.approx(other.record.clearances, abs=1e-12)
-    gap = one.certificate.gap
-    assert one.certificate.lower_bound == pytest.approx(other.certificate.lower_bound, abs=gap)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -173,32 +149,7 @@ def test_what_rides_on_a_link_stays_as_far_from_it_and_from_what_is_rigid_with_i
     assert np.ptp(apart) < 1e-14 and min(apart) > 0.0
 
 
-@pytest.mark.parametrize("need", ["steps", "pairs"])
-def test_what_moves_by_itself_exactly_with_a_link_has_constant_clearance_to_it(need):
-    """The link turns about an axis and the obstacle's pose table turns about the same one at the same rate."""
-    axis, base = np.array([0.0, 0.0, 1.0]), at(0.2, 0.1, 0.3)
-    spin = Joint("spin", JointKind.CONTINUOUS, "base", "wheel", np.eye(4), axis)
-    rigid = Joint("weld", JointKind.FIXED, "wheel", "tip", at(0.3), axis)
-    bodies = (Body("wheel", box((0.2, 0.2, 0.1))), Body("tip", box((0.05, 0.05, 0.3))))
-    robot = Robot("wheel", ("base", "wheel", "tip"), (spin, rigid), bodies)
-    times = np.linspace(0.0, 3.0, 25)
-    angles = 2.0 * times
-    half = 0.5 * angles
-    quaternions = np.stack([0.0 * half, 0.0 * half, np.sin(half), np.cos(half)], axis=1)
-    table = PoseTable(times, np.tile(base[:3, 3], (25, 1)), quaternions)
-    shape = dented(np.random.default_rng(1), 1, depth=0.2, radius=0.1).transformed(
-        at(0.0, 0.4, 0.1)
-    )
-    wheel = PlacedRobot(robot, Trajectory(times, ("spin",), angles[:, None]), base)
-    case = cl.Case("wheel", (wheel,), (cl.Obstacle(Body("moon", shape), moves=table),))
-    run = cl.check(case, need=need)
-    assert np.ptp(every(case), axis=0) == pytest.approx(0.0, abs=1e-14)
-    assert np.ptp(run.record.clearances) < 1e-14
-    assert (run.certificate.lower_bound >= run.record.clearances - run.certificate.gap).all()
-    assert (run.certificate.lower_bound <= run.record.clearances).all()
-
-
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_part_on_a_link_is_as_near_as_if_it_were_of_the_link(seed):
     """To the scene and to another robot, at every step and between."""
     random = np.random.default_rng(seed)
@@ -226,14 +177,3 @@ def test_a_part_on_a_link_is_as_near_as_if_it_were_of_the_link(seed):
     assert one.record.clearances == pytest.approx(other.record.clearances, abs=1e-12)
     gap = one.certificate.gap
     assert one.certificate.lower_bound == pytest.approx(other.certificate.lower_bound, abs=gap)
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_single_questions_agree_where_a_robot_stands_on_another(seed):
-    """The second robot's base rides on the first one's last link."""
-    case = case_of(seed, 2)
-    lower, upper = case.robots
-    mount = Mount(f"r0/{lower.robot.link_names[-1]}", at(0.0, 0.0, 0.5))
-    case = replace(case, robots=(lower, replace(upper, world_from_base=np.eye(4), mount=mount)))
-    assert poses_of(case).shape[0] == N_STEPS
-    assert every(case) == pytest.approx(every_distance(case), abs=1e-9)

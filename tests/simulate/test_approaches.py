@@ -5,7 +5,6 @@ import pytest
 
 import clearance as cl
 from clearance.simulate.answers.approaches import approaches
-from clearance.simulate.answers.point_motion import moves_with_obstacle, moves_with_robot
 from tests.cells import cell
 
 STEP = 1e-6
@@ -40,7 +39,7 @@ def moved_by(case, approach, row, column):
     return found
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_joints_change_clearances_as_exact_differences_do(seed):
     _, rows = near_rows(cell(seed))
     compared = 0
@@ -55,15 +54,3 @@ def test_joints_change_clearances_as_exact_differences_do(seed):
                 assert low <= by_columns[row, column] <= high
                 compared += 1
     assert compared > 3
-
-
-def test_what_moves_with_what():
-    case = cell(0)
-    names = [obstacle.name for obstacle in case.obstacles]
-    pairs = {body for one in near_rows(case, 5.0)[1] for body in one.pair}
-    for body in pairs:
-        if body.is_obstacle:
-            assert moves_with_obstacle(case, body, body.i_body)
-        else:
-            assert moves_with_robot(case, body, body.i_robot)
-    assert len(names) == len(set(names))

@@ -25,7 +25,6 @@ from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, p
 from clearance.world.kinematics import (
     all_links,
     floating_links,
-    links_alone,
     poses_by_link,
     rates_by_link,
     seen_from,
@@ -33,7 +32,7 @@ from clearance.world.kinematics import (
     values_by_link,
 )
 from clearance.world.slerp import aligned, arcs_between
-from tests.examples import examples, first_fast
+from tests.examples import examples
 from tests.made_cases import at, dented
 from tests.simulate import floating
 from tests.simulate.floating import Scene, chain, orientations, two_floating
@@ -60,7 +59,7 @@ SCENES = {"two that float": two_floating, "an arm below": arm_below}
 
 @pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
 @pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_a_sweep_finds_what_single_questions_find(seed, make, turn):
     scene = make(np.random.default_rng(seed), 40, turn)
     rows, _ = floating.swept(scene)
@@ -72,7 +71,7 @@ def test_a_sweep_finds_what_single_questions_find(seed, make, turn):
 
 
 @pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_steps_are_passed_over_and_nothing_is_missed(seed, make):
     """Slowly turning: bodies are looked at when their columns have changed enough."""
     random = np.random.default_rng(seed)
@@ -91,7 +90,7 @@ def test_steps_are_passed_over_and_nothing_is_missed(seed, make):
 
 @pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
 @pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("seed", first_fast(range(3), 1))
+@pytest.mark.parametrize("seed", range(1))
 def test_no_bound_is_above_samples_a_thousand_times_finer(seed, make, turn):
     scene = make(np.random.default_rng(seed), 4, turn)
     bounds = floating.certified(scene)
@@ -132,7 +131,7 @@ def ways_in(surface, world, positions):
 KINDS = st.lists(st.sampled_from([FIXED, TURNING, SLIDING, BALL]), max_size=4)
 
 
-@examples(150)
+@examples(60)
 @given(
     st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]),
     st.sampled_from([1.0, 1.0 - 1e-6, 0.5]),
@@ -154,18 +153,6 @@ def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, le
     assert (moved <= ways_in(surface_of(body), scene.world, positions)).all()
 
 
-def test_the_bound_by_columns_is_not_idle():
-    """About an axis across the farthest corner, all in one column, to first order."""
-    links = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, np.eye(4)))
-    speck = cl.box((1e-6, 1e-6, 1e-6)).transformed(at(1.0))
-    turn = 0.01
-    positions = np.array(
-        [[0, 0, 0, 0, 0, 0, 1.0], [0, 0, 0, 0, 0, np.sin(turn / 2), np.cos(turn / 2)]]
-    )
-    scene = Scene(links, [speck], [4], np.empty((0, 2), np.int64), positions)
-    assert ways_in(surface_of(speck), scene.world, positions)[1] == pytest.approx(turn, rel=0.01)
-
-
 def bound_about(surface, links, link, balls, middle):
     place_by_link(links, middle.positions, middle.poses)
     pose, box = rigid(middle.poses[link]), box_of(surface, 0)
@@ -176,7 +163,7 @@ def bound_about(surface, links, link, balls, middle):
     return motion_bound_of_box(box, loosened(bound, rounding)), rounding
 
 
-@examples(100)
+@examples(50)
 @given(st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.1]))
 def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     """Every ball joint turns about an axis of its own, the others move linearly."""
@@ -215,7 +202,7 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     assert np.abs(placed[0] - room[link]).max() <= 1e-14
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
     """The same motion about the axis of the arc: the same bounds but for rounding."""
     random = np.random.default_rng(seed)
@@ -278,29 +265,6 @@ def test_two_bodies_on_one_base_stay_as_far_apart():
     assert np.ptp(floating.certified(scene).lower[:-1]) <= 1e-9
     in_world = scene._replace(frames=[6, 7, 8])
     assert np.abs(floating.swept(in_world)[0].clearance - rows.clearance).max() < 1e-12
-
-
-def test_a_joint_on_the_base_is_seen_from_it():
-    scene, _ = on_one_base()
-    scene = scene._replace(pairs=[(0, 2), (1, 2)])
-    world = floating.distances(scene._replace(frames=[6, 7, 8]), scene.positions).min(axis=1)
-    assert np.abs(floating.swept(scene)[0].clearance - world).max() < 1e-12
-
-
-def test_a_ball_joint_between_two_links_is_on_the_way_of_what_is_seen():
-    scene, seen = on_one_base()
-    placed = poses_by_link(scene.links, scene.positions)
-    from_slide = np.linalg.inv(placed[:, 1]) @ placed[:, 7]
-    assert np.abs(placed[:, seen[1, 7]] - from_slide).max() < 1e-14
-
-
-def test_links_alone_are_where_they_are_among_all():
-    scene, _ = on_one_base()
-    placed = poses_by_link(scene.links, scene.positions)
-    for wanted in ([7], [6, 8, 1], [8, 0, 7]):
-        links, places = links_alone(scene.links, np.array(wanted))
-        assert len(links.parents) < len(scene.links.parents)
-        assert (poses_by_link(links, scene.positions)[:, places] == placed[:, wanted]).all()
 
 
 def test_floating_links_are_where_their_columns_say():

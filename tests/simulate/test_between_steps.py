@@ -114,18 +114,6 @@ def test_every_need_is_certified(need, height, status):
     assert (run.worst["link"], run.worst["obstacle"], run.worst["step"]) == ("fore", "post", 1)
 
 
-@pytest.mark.parametrize("need", ["limit", "minimum"])
-def test_what_is_far_is_clear_and_proven_as_far_as_was_asked(need):
-    case = sweeping([[-1.0, 0.0], [-0.9, 0.1], [-0.8, 0.0]])
-    run, truth = cl.check(case, need=need), cl.check(case)
-    assert (run.status, run.verdict.basis) == ("clear", "motion")
-    least = truth.record.clearances.min()
-    bound = run.certificate.lower_bound
-    assert (bound <= truth.certificate.upper_bound).all()
-    assert bound.min() >= (LIMITS.warn if need == "limit" else least - run.certificate.gap)
-    assert bound.min() >= least - run.certificate.gap
-
-
 def test_status_and_between_tell_the_motion_where_it_is_worse_than_both_steps():
     case = sweeping([[-1.2, 0.0], *THROUGH, [1.2, 0.0]])
     steps = cl.check(case).steps.to_pylist()
@@ -136,18 +124,6 @@ def test_status_and_between_tell_the_motion_where_it_is_worse_than_both_steps():
     steps = cl.check(ends).steps.to_pylist()  # the middle step is in contact itself
     assert [row["status"] for row in steps] == ["clear", "contact", "clear"]
     assert not any(row["between"] for row in steps)
-
-
-def test_a_step_below_a_limit_makes_no_other_step_of_a_minimum_violated():
-    case = sweeping([[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [1.1, 0.0]], PAST)
-    run = cl.check(case, need="minimum")
-    assert run.status == "violated"
-    assert [row["status"] == "violated" for row in run.steps.to_pylist()] == [
-        False,
-        True,
-        False,
-        False,
-    ]
 
 
 def test_the_replay_stops_at_the_moment_with_the_right_bodies():
@@ -185,7 +161,7 @@ def test_two_robots_name_the_one_that_comes_near():
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-@pytest.mark.parametrize("longest", [1, 3, 256])
+@pytest.mark.parametrize("longest", [1, 256])
 def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch):
     monkeypatch.setattr(parts, "LONGEST_PART", longest)
     assert measure.parts is parts.parts
@@ -199,11 +175,6 @@ def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch)
         again.clearance,
         again.point_link,
     )
-
-
-def test_a_paper_run_is_of_the_samples():
-    run = cl.answer(cl.Question(sweeping(THROUGH), method="paper"))
-    assert (run.verdict.basis, run.certificate) == ("samples", None)
 
 
 def test_a_gap_below_rounding_ends_and_says_what_it_became():
@@ -244,9 +215,3 @@ def test_the_deepest_between_is_told_where_a_step_is_less_deep():
     record = cl.check(sweeping([[-1.0, 0.0], [0.05, 0.0]])).record
     assert record.worst_sample.depth.penetration < record.worst.depth.penetration
     assert record.worst.between and record.worst.depth.penetration > 0.044
-
-
-def test_steps_that_are_many_tell_the_depth_themselves():
-    angles = np.linspace(-0.1, 0.1, 41)
-    record = cl.check(sweeping(np.column_stack([angles, 0.0 * angles]))).record
-    assert record.worst is record.worst_sample

@@ -169,17 +169,6 @@ def test_a_mimic_joint_follows_in_every_pose(tmp_path):
     assert np.allclose(angle, -1.5 * motion.positions[:, 0] + 0.25, atol=1e-12)
 
 
-def test_the_same_question_gives_the_same_motion(tmp_path):
-    first, second = (simulated_motion(cart(tmp_path)) for _ in range(2))
-    assert np.array_equal(first.positions, second.positions)
-
-
-def test_nothing_is_printed(tmp_path, capfd):
-    simulated_motion(cart(tmp_path))
-    printed = capfd.readouterr()
-    assert (printed.out, printed.err) == ("", "")
-
-
 def test_what_is_assumed_is_said(tmp_path):
     assert simulated_motion(cart(tmp_path)).notes == ()
     placed = cart(tmp_path, effort=0.0)

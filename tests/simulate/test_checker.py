@@ -8,7 +8,6 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure, SuspectInput
-from clearance.world.plausibility import notices_of
 from clearance.world.robot import Mimic
 from tests.examples import first_fast
 from tests.made_cases import arm, at, ball, faces_of, flying
@@ -98,11 +97,6 @@ def test_what_cannot_be_told_is_said():
     assert found.undecided.any() and not found.undecided[0]
     for row, undecided in zip(way, found.undecided, strict=True):
         assert checker.distance(row).undecided == (tuple(checker.pairs) if undecided else ())
-
-
-def test_what_is_suspect_about_the_case_is_at_hand():
-    case = swaying()
-    assert cl.Checker(case).notices == notices_of(case)
 
 
 def test_threads_may_share_a_checker():

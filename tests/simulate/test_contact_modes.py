@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.query.contact import BodyPair
+from clearance.simulate.answers.contact import contacts as contact_work
 from clearance.simulate.answers.contact import events as contact_events
-from clearance.simulate.answers.contact import work as contact_work
 from clearance.simulate.answers.contact.events import events_of, rated_places
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 
-ROOT = Path(__file__).parents[2]
 WAY = np.array([0.5, 0.75, 0.8, 0.85, 0.9, 0.82, 0.6, 0.5, 0.79, 0.78, 0.5])
 """Two events: rows 2 to 5 (a wall from 0.9, a cube of 0.2: at 0.9 it is 0.1 deep), and 8 alone; 0.78 is apart."""
 
@@ -119,17 +116,6 @@ def test_the_other_rows_are_worked_out_by_the_session(asked, shape):
     assert found.penetration_at_least <= every.penetration * (1.0 + 1e-12)
 
 
-@pytest.mark.slow
-def test_the_answers_do_not_depend_on_what_is_worked_out():
-    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
-    runs = [cl.check(case, contact=how) for how in ("none", "events", "every")]
-    tables = [run.record.steps.drop_columns(["penetration", "volume"]) for run in runs]
-    assert tables[0].equals(tables[1]) and tables[1].equals(tables[2])
-    assert [run.status for run in runs] == ["contact"] * 3
-    contacts = [[(row.step, row.link) for row in run.record.contacts] for run in runs]
-    assert contacts[0] == contacts[1] == contacts[2]
-
-
 def test_the_steps_say_how_deep_only_where_all_is_worked_out():
     run = cl.check(sliding(wall()))
     depths = run.steps["penetration"].to_pylist()
@@ -138,14 +124,6 @@ def test_the_steps_say_how_deep_only_where_all_is_worked_out():
     assert run.steps["volume"].to_pylist()[4] == pytest.approx(0.115 * 0.04, rel=1e-9)
     none = cl.check(sliding(wall()), contact="none").steps
     assert none["penetration"].null_count == none["volume"].null_count == none.num_rows
-
-
-@pytest.mark.slow
-def test_the_deepest_moment_of_the_shelf_is_that_of_all_its_steps():
-    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
-    events, every = (cl.check(case, contact=how).record.deepest for how in ("events", "every"))
-    assert (events.step, events.link) == (every.step, every.link)
-    assert events.known.penetration == pytest.approx(every.known.penetration, rel=1e-3)
 
 
 @pytest.mark.cold
@@ -163,13 +141,6 @@ def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
     assert any("beyond the work allowed" in note for note in runs[0].record.contact_notes)
 
 
-def test_progress_is_told_event_by_event():
-    told = []
-    resources = cl.Resources(progress=lambda done, total: told.append((done, total)))
-    cl.check(sliding(wall()), resources=resources)
-    assert told[-2:] == [(1, 2), (2, 2)]
-
-
 def test_a_way_that_is_not_known_is_refused():
     with pytest.raises(BadInput, match="contact"):
         cl.check(sliding(wall()), contact="all")
@@ -183,7 +154,7 @@ def test_events_are_unbroken_stretches_of_one_pair():
     assert list(events_of(steps[:0], pairs[:0])) == []
 
 
-@pytest.mark.parametrize("top", [0, 1, 17, 333, 998, 999])
+@pytest.mark.parametrize("top", [0, 333, 999])
 def test_the_deepest_of_many_is_found_among_few(top):
     looked = []
 
@@ -197,7 +168,7 @@ def test_the_deepest_of_many_is_found_among_few(top):
     assert len(looked) <= 2 * contact_events.MOST_RATED + 3
 
 
-@pytest.mark.parametrize("first", [-0.2, -0.13, -0.05])
+@pytest.mark.parametrize("first", [-0.13])
 def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all(first):
     """A few directions rate hulls, none of them the way out of a ball: the best rated step is not the deepest."""
     turn = Joint("turn", JointKind.REVOLUTE, "ground", "bar", np.eye(4), np.array([0.0, 0.0, 1.0]))

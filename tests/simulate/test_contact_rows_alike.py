@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,6 @@ from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-from tests.shared_cases import shared_case
 from tests.simulate.test_contact_modes import channel
 
 ROOT = Path(__file__).parents[2]
@@ -71,39 +69,6 @@ def test_every_row_before_in_and_after_contact_is_that_of_its_step_alone(need):
         alone = measured(case, motion, np.array([step]), need)
         assert alone.clearance[0] == whole.clearance[step]
         assert np.array_equal(alone.points[0], whole.points[step])
-
-
-def test_rows_of_a_real_robot_are_those_of_sweeps_that_start_there():
-    case = cl.load_case(shared_case("fetch_cage_planned"))
-    front = next(i for i, obstacle in enumerate(case.obstacles) if obstacle.name == "side_frontA")
-    pose = case.obstacles[front].world_from_body.copy()
-    pose[:3, 3] += [-0.03, -0.01, 0.03]
-    others = list(case.obstacles)
-    others[front] = Obstacle(case.obstacles[front].body, pose)
-    case = replace(case, obstacles=tuple(others))
-    motion = kinematic_motion(case.robots[0])
-    whole = measured(case, motion, np.arange(motion.n_steps))
-    touching = np.flatnonzero(whole.clearance == 0.0)
-    assert len(touching) > 30
-    for step in touching:
-        assert np.array_equal(
-            measured(case, motion, np.array([step])).points[0], whole.points[step]
-        )
-
-
-def test_the_point_of_a_contact_is_that_of_a_single_question():
-    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
-    motion = kinematic_motion(case.robots[0])
-    found, pairs = measured(case, motion, np.arange(motion.n_steps)), measured_pairs(case)[0]
-    for step in np.flatnonzero(found.clearance == 0.0):
-        pair = pairs[found.pair[step]]
-        poses = motion.poses(step, step + 1)
-        (a, pose_a), (b, pose_b) = (
-            (body.shape_in(case), body.poses_in(case, poses)[0]) for body in (pair.a, pair.b)
-        )
-        alone = cl.distance(a, b, pose_a=pose_a, pose_b=pose_b)
-        assert alone.contact
-        assert np.allclose(found.points[step], [alone.point_a, alone.point_b], rtol=0.0, atol=1e-12)
 
 
 def test_of_several_pairs_in_contact_the_least_is_named():

@@ -12,17 +12,11 @@ from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
-from clearance.record.names import pair_names
-from clearance.simulate.answers.contact import contacts as contact
-from clearance.simulate.answers.contact import rows as contact_rows
-from clearance.simulate.answers.contact.contacts import find_contacts
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-from tests.report.browser import chromium, executable
-from tests.report.records import moved, record, with_contacts
+from tests.report.records import moved
 from tests.shared_cases import shared_case
 
 ROOT = Path(__file__).parents[2]
@@ -112,30 +106,6 @@ def test_a_run_without_contact_does_not_look(monkeypatch):
     assert run.steps["penetration"].null_count == run.steps.num_rows
 
 
-def test_a_pose_that_repeats_is_asked_once(monkeypatch):
-    import clearance.simulate.answers.contact.contacts as room
-
-    run = record()
-    pairs = measured_pairs(run.case)[0]
-    step = int(np.flatnonzero(run.clearances == 0.0)[0])
-    still = run.motions[0].__class__(
-        run.motions[0].placed,
-        np.arange(5.0),
-        np.tile(run.motions[0].positions[step], (5, 1)),
-        np.zeros(5),
-    )
-    deep = with_contacts(run).contacts[0]
-    named = list(zip(*pair_names(run.case, pairs), strict=True))
-    nearest = np.full(5, named.index((deep.link, deep.obstacle)))
-    asked = []
-    monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
-    found = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest, "every").rows
-    assert [row.step for row in found] == sorted(row.step for row in found)
-    assert len(found) == 5 * len([row for row in found if row.step == 0])
-    assert len(asked) <= len(pairs)
-    assert len([row for row in found if row.step == 0]) == 1
-
-
 def test_a_touch_that_rounding_parts_in_another_frame_is_a_contact_of_depth_0():
     """A slider that ends exactly at a wall: contact in the world, whatever the wall's own frame says."""
     turned = np.eye(4)
@@ -191,41 +161,3 @@ def test_a_real_case_pushed_into_an_obstacle(pushed):
         confirm(run, row)
     in_contact = {row.step for row in run.record.contacts}
     assert in_contact == set(np.flatnonzero(run.record.clearances == 0.0).tolist())
-
-
-@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
-def test_the_page_of_the_pushed_case_shows_the_region(pushed, tmp_path):
-    run, step, _, _ = pushed
-    run.save(tmp_path / "out")
-    with chromium() as page:
-        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
-        page.run("document.getElementById('readout').style.display = 'none'")
-        page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
-        page.run("document.getElementById('camera-gap').click()")
-        page.settle()
-        pixels = page.pixels("#pane").astype(int)
-        drawn = page.run("window.clearance.state().contacts")
-        assert page.errors == []
-    red = (pixels[..., 0] > 170) & (pixels[..., 1] < 90) & (pixels[..., 2] < 90)
-    assert red.sum() > 200
-    assert len(drawn) == len([row for row in run.record.contacts if row.step == step])
-
-
-@pytest.mark.slow
-def test_regions_that_were_not_kept_are_found_again(
-    shelf: cl.Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(contact_rows, "MOST_REGIONS", 3)
-    monkeypatch.setattr(contact, "MOST_KNOWN", 2)
-    few = cl.check(shelf.record.case, contact="every")
-    assert few.steps.equals(shelf.steps)
-    assert len(few.record.contacts) == len(shelf.record.contacts) > 3
-    for kept, again in zip(shelf.record.contacts, few.record.contacts, strict=True):
-        assert (kept.step, kept.link, kept.obstacle) == (again.step, again.link, again.obstacle)
-        first, other = shelf.session.overlap(kept), few.session.overlap(again)
-        assert repr(first) == repr(other)
-        assert (first.region.vertices == other.region.vertices).all()
-    assert not few.record.contacts[3].has_region
-    deepest = few.record.deepest
-    assert deepest.penetration == max(row.penetration for row in few.record.contacts)
-    assert (few.record.contacts.steps == [row.step for row in few.record.contacts]).all()

@@ -6,15 +6,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.answers.contact.events import hull_depths
 from clearance.world.rules import Rule
-from tests.made_cases import flying
-
-
-def at(x: float, y: float = 0.0) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:2, 3] = x, y
-    return pose
+from tests.made_cases import at, flying
 
 
 def block(name: str, pose: np.ndarray, **more) -> cl.Obstacle:
@@ -89,9 +82,3 @@ def test_a_cloud_has_no_depth_and_a_body_that_has_is_worse():
     assert alone.worst["obstacle"] == "a scan" and alone.worst["penetration"] is None
     both = cl.check(passing([0.0, 0.01], cloud, block("b", at(0.2))))
     assert told(both)[:2] == (1, "b")
-
-
-def test_no_more_steps_than_were_rated_have_no_more_depths():
-    """All steps near the best one may be rated already."""
-    cube = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
-    assert hull_depths(cube, cube, np.eye(3), np.empty((0, 4, 4))).shape == (0,)

@@ -38,7 +38,7 @@ def drifts(surface, chain, link, poses, swing, bend, direction):
     return motion_bound_of_box(box_of(surface, 0), drift), along
 
 
-@examples(60)
+@examples(40)
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(1, 7),

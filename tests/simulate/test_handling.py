@@ -18,7 +18,7 @@ from clearance.world.mount import Mount
 from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
-from tests.report.cells import box, cell, slider, sliding
+from tests.report.cells import box, cell, sliding
 
 UP = np.array([[0.0, 0, -1, 0], [0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
 """What slides along x slides up."""
@@ -78,10 +78,6 @@ def test_fingers_that_hold_a_part_before_they_carry_it_are_named_too():
     assert told == [("left/tool", 0.0, 2.0), ("right/tool", 0.0, 2.0)]
 
 
-def test_a_run_without_carried_parts_has_no_such_hint():
-    assert handling_hints(cl.check(cell((), carries=())).record) == []
-
-
 def test_pairs_in_contact_whenever_they_are_measured_are_named_over_all_phases():
     """A cart rides on the robot, in contact with a second one's tool that moves with it all the time."""
     robots = (
@@ -107,11 +103,3 @@ def test_pairs_in_contact_whenever_they_are_measured_are_named_over_all_phases()
     assert rest.endswith(f"add to its rows of allow: {json.dumps(found[1])}")
     excused = tuple(Allowance(pair) for pair in found)
     assert standing_hint(cl.check(cell((), robots, obstacles, carries, allow=excused)).record) == []
-
-
-def test_a_link_that_moves_through_what_stands_is_what_a_run_looks_for():
-    robots = (sliding("left", [(0, 0), (4, 0.01)]), sliding("right", [(0, 3), (4, 3)]))
-    record = cl.check(cell((), robots, (box("post", (0.5, 0.5, 2)),), ())).record
-    assert record.worst.touches
-    assert standing_hint(record) == []
-    assert slider("left").name == "left"

@@ -10,7 +10,6 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.measure import inside
 from clearance.simulate.measure.sections import section_plan
 from clearance.world.notice import Severity
-from tests.examples import some_slow
 from tests.made_cases import WORST, at, ball, faces_of, flying
 
 BALL = ball(2.0, 2)
@@ -67,10 +66,7 @@ def test_larger_holes_make_it_suspect_and_sheets_do_not() -> None:
 
 @pytest.mark.parametrize(
     "name",
-    some_slow(
-        ["linked_tori", "nested_shells", "everything_equidistant", "facing_plates"],
-        {"linked_tori", "nested_shells", "everything_equidistant"},
-    ),
+    ["nested_shells", "facing_plates"],
 )
 def test_closed_and_open_surfaces_have_no_notices(name: str) -> None:
     case = WORST[name]()

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import pyarrow as pa
-import pytest
 
-from clearance.record.row_status import status_counts
 from clearance.simulate.answers import intervals as room
 from clearance.simulate.answers.intervals import events, extent, intervals, not_listed
 from tests.report.made import run_of as made_run
-from tests.report.made import verdict_of
 from tests.report.records import record, with_steps
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
 LETTERS = "c n v x x v n c n"
-GAP_OF = {"c": 0.1, "n": 0.03, "v": 0.003, "x": 0.0}
 WORDS = {"c": "clear", "n": "near", "v": "violated", "x": "contact"}
 
 
@@ -71,25 +67,11 @@ def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepes
     ]
 
 
-@pytest.mark.parametrize(
-    ("letters", "expected"),
-    [("c c", "clear"), ("c n", "near"), ("n v", "violated"), ("x c", "contact")],
-)
-def test_the_verdict_is_the_worst_status(letters, expected):
-    gaps = [GAP_OF[letter] for letter in letters.split()]
-    assert verdict_of(session_of(letters, gaps).record).status == expected
-
-
 def test_events_tell_the_least_until_the_level_is_left():
     told = {(event.step, event.what): event.least for event in events(session_of(LETTERS, GAPS))}
     assert told[1, "warn limit entered"] == told[2, "fail limit entered"] == 0.0
     assert told[8, "warn limit entered"] == 0.015
     assert told[7, "warn limit left"] is None
-
-
-def test_counts():
-    counts = status_counts(session_of(LETTERS, GAPS).record)
-    assert counts == {"clear": 2, "near": 3, "violated": 2, "contact": 2}
 
 
 def test_a_run_that_never_rests_lists_its_first_intervals_and_says_how_many_more(monkeypatch):

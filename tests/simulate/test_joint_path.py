@@ -30,7 +30,7 @@ def hermite(path, at):
     return sum(w * c for w, c in zip(weights, controls, strict=True))
 
 
-@examples(150)
+@examples(60)
 @given(st.integers(0, 2**32 - 1), SIZES, SIZES, st.integers(0, 30))
 def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
     rng = np.random.default_rng(seed)

@@ -11,7 +11,7 @@ import clearance as cl
 from clearance.record.record import PairMinimum
 from clearance.report.topics.pairs import PairJudge
 from clearance.simulate.answers import motion_minima as room
-from clearance.simulate.answers.pairs_alone import least_between, near_alone
+from clearance.simulate.answers.pairs_alone import near_alone
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from tests.made_cases import at
@@ -66,15 +66,6 @@ def test_the_least_of_the_nearest_pair_is_that_of_the_run(fail):
     assert nearest.proven <= nearest.clearance < nearest.proven + 2e-4
 
 
-def test_the_first_few_are_those_of_all():
-    session = cl.check(sweeping(TWICE, PAST)).session
-    every = session.motion_minima()
-    assert [one.clearance for one in every] == sorted(one.clearance for one in every)
-    for most in (1, 2, 3):
-        few = session.motion_minima(most)
-        assert [(a.link, a.obstacle) for a in few] == [(a.link, a.obstacle) for a in every[:most]]
-
-
 def test_what_is_proven_of_each_pair_is_never_above_many_samples():
     case = sweeping(TWICE, 0.47)
     session, dense = cl.check(case).session, cl.check(finer(case, 2000), certify=False)
@@ -119,12 +110,6 @@ def test_a_pair_alone_has_the_certificate_of_the_rule_where_it_is_the_nearest():
             answer.certificate.upper_bound[own], rule.certificate.upper_bound[own]
         )
         assert (answer.certificate.lower_bound >= rule.certificate.lower_bound).all()
-
-
-def test_a_pair_that_is_not_nearer_than_asked_has_no_moment():
-    rule = cl.check(two_posts()).session.rules[0]
-    for proven, moment in least_between(rule, {0: 0.001, 1: 0.001}).values():
-        assert moment is None and proven > 0.0009
 
 
 @pytest.mark.parametrize(("padding", "off"), [(0.018, 4.042974363421338e-08), (0.003, 1e-8)])

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-import clearance as cl
 from clearance.compile.declared import Floats, Floats2
 from clearance.compile.decorators import inline, kernel
 from clearance.geometry.polyhedron import Polyhedron
@@ -191,7 +190,7 @@ def is_at_most(bound, distance_sq):
 
 
 @pytest.mark.slow
-@examples(60)
+@examples(25)
 @example(0, "far", "needles", 1e5, True)
 @example(1, "no area", "no area", 1.0, False)
 @given(
@@ -225,7 +224,7 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(
             assert is_at_most(found.faces[f, g], truth[f][g])
 
 
-@examples(120)
+@examples(50)
 @example(0, "far", "needles", 1e5, 0.0)
 @example(1, "tiny", "far", 1e-7, 4e-7)
 @given(
@@ -246,33 +245,6 @@ def test_no_bound_of_two_bodies_is_above_the_exact_distance(seed, kind_a, kind_b
     assert by_boxes >= by_balls
 
 
-def test_balls_are_enough_over_a_board():
-    """A small body high over a large flat one: what its ball takes from the bound is its own size."""
-    board, small = cl.box((10.0, 10.0, 0.1)), cl.box((0.2, 0.2, 0.2))
-    over = np.eye(4)
-    over[:3, 3] = 4.0, -3.0, 2.15
-    poses = np.array([np.eye(4), over])
-    surface, world = (
-        join([board, small]),
-        standing_world(poses),
-    )
-    assert body_bound_of(surface, world, 1.8) == pytest.approx(2.1 - 0.1 * 3**0.5, abs=1e-4)
-    assert body_bound_of(surface, world, 1.95) == pytest.approx(2.0, abs=1e-4)
-
-
-def test_bounds_are_not_idle():
-    """Two lone triangles along the line of sight: the bounds come near the distance."""
-    random = np.random.default_rng(2)
-    a, b = triangles(random, 3, "flat"), triangles(random, 3, "flat")
-    above = np.eye(4)
-    above[2, 3] = 5.0
-    one, two = surface_of(a), surface_of(b)
-    found = new_bounds(one, two)
-    fill_bounds(one, two, np.eye(4), above, np.array([0.0, 0.0, 1.0]), np.inf, found)
-    for bounds in (found.boxes, found.in_sight, found.of_a, found.of_b, found.faces):
-        assert bounds.min() == pytest.approx(5.0, rel=1e-5)
-
-
 def test_edges_that_cross_are_told_apart_across_both():
     """Two upright triangles, point on point but for their edges that cross: no plane of either parts them."""
     a = Polyhedron([[-1, 0, 0], [1, 0, 0], [0, 0.1, -1]], [(0, 1, 2)])
@@ -283,7 +255,7 @@ def test_edges_that_cross_are_told_apart_across_both():
     assert found.faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
-@examples(100)
+@examples(40)
 @given(
     st.integers(0, 2**32 - 1),
     st.sampled_from(KINDS),
@@ -304,7 +276,7 @@ def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
         assert moved_sq <= Fraction(bound) ** 2
 
 
-@examples(20)
+@examples(10)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS[:5]), st.sampled_from(KINDS[:5]),
     st.sampled_from([0.0, 1e-3, 0.1, 3.0]), st.sampled_from(["minimum", "limit"]),

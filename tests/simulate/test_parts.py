@@ -2,26 +2,11 @@
 
 import os
 import signal
-import threading
 import time
 
 import pytest
 
-from clearance.simulate.measure import parts
 from clearance.simulate.measure.parts import in_order
-
-
-def test_few_results_wait_ahead() -> None:
-    started: list[int] = []
-
-    def work(span: slice) -> int:
-        started.append(span.start)
-        return span.start
-
-    results = in_order(work, [slice(i, i + 1) for i in range(1000)], 2)
-    assert [next(results) for _ in range(10)] == list(range(10))
-    assert len(started) <= 10 + 2 * parts.WAITING
-    assert list(results) == list(range(10, 1000))
 
 
 def test_nothing_is_worked_on_any_more_when_no_more_is_wanted() -> None:
@@ -48,20 +33,6 @@ def test_a_process_forked_after_a_run_on_threads_runs_on_threads_of_its_own() ->
         signal.alarm(20)
         os._exit(0 if list(in_order(lambda span: span.start, spans, 2)) == [0, 1, 2, 3] else 1)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-
-
-@pytest.mark.parametrize("jobs", [2, 3])
-def test_the_caller_is_one_of_the_threads(jobs) -> None:
-    threads = set()
-
-    def work(span: slice) -> int:
-        threads.add(threading.get_ident())
-        time.sleep(0.002)
-        return span.start
-
-    assert list(in_order(work, [slice(i, i + 1) for i in range(50)], jobs)) == list(range(50))
-    assert threading.get_ident() in threads
-    assert 1 < len(threads) <= jobs
 
 
 @pytest.mark.parametrize("fails", [0, 1, 7, 19])

@@ -34,19 +34,6 @@ def test_a_long_run_keeps_the_least_of_every_stretch(max_frames):
         assert run.clearances[near].min() <= run.clearances[start : start + stretch].min()
 
 
-def test_frames_are_the_rows_of_the_table():
-    run = record(n_steps=700)
-    replay = replay_of(run, max_frames=100)
-    rows = run.steps.take(replay.steps).to_pylist()
-    for i, row in enumerate(rows):
-        names = [replay.bodies[k].name for k in replay.nearest[i]]
-        assert names == [row["link"], row["obstacle"]]
-        assert replay.times[i] == row["time"]
-        assert replay.lines[i].tolist() == [
-            row[f"{body}_{axis}"] for body in ("link", "obstacle") for axis in "xyz"
-        ]
-
-
 def test_poses_put_the_shapes_where_kinematics_puts_them():
     from scipy.spatial.transform import Rotation
 
@@ -60,15 +47,6 @@ def test_poses_put_the_shapes_where_kinematics_puts_them():
         true = expected[:, i, :3, :3] @ body.shape.vertices.T + expected[:, i, :3, 3, None]
         assert np.abs(drawn - true).max() < 1e-6
     assert replay.poses[0].shape == (1, 7), "the base stands still"
-
-
-def test_equal_shapes_are_stored_once():
-    replay = replay_of(record(n_robots=2))
-    assert [body.name for body in replay.bodies if body.kind == "link"][::4] == [
-        "arm_0/base",
-        "arm_1/base",
-    ]
-    assert len(replay.shapes) == 4 + 3
 
 
 def test_a_saved_replay_comes_back(tmp_path):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.record.replay import load_replay
 from clearance.simulate.replay.bodies import FramePlace, bodies_of, placed_bodies
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
@@ -86,15 +85,6 @@ def test_the_replay_knows_who_holds_what_and_what_judges_each_frame(replay):
     assert replay.rules[replay.rule[replay.i_worst]].name == "fence"
     kinds = {body.name: body.kind for body in replay.bodies}
     assert (kinds["part"], kinds["door"], kinds["crate"]) == ("part", "moving", "moving")
-
-
-def test_it_comes_back_from_its_file(replay, tmp_path):
-    replay.save(tmp_path / "replay.npz")
-    back = load_replay(tmp_path / "replay.npz")
-    assert (back.rules, back.carries, back.bodies) == (replay.rules, replay.carries, replay.bodies)
-    for name in ("rule", "times_b", "nearest", "status"):
-        assert np.array_equal(getattr(back, name), getattr(replay, name), equal_nan=True), name
-    assert all(map(np.array_equal, back.shown, replay.shown))
 
 
 def test_the_line_ends_on_the_bodies_drawn(record, replay):

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.answers.approaches import approach_at
-from clearance.simulate.answers.sensitivity import n_joint_columns
 from clearance.world.robot import Joint, JointKind
 from tests.gains.gantries import along_x, gantry, slot, standing
 
@@ -87,18 +85,6 @@ def test_a_turn_is_as_differences_say(tilt):
     _, rates = rates_of(case)
     turn = rates["joint", "spinner", "turn"]
     assert (turn.more, turn.less) == pytest.approx(one_sided(case, turned), abs=1e-5)
-
-
-def test_rates_are_the_rows_of_the_nearest_points():
-    case = spinner(tilt=0.2)
-    run = cl.check(case, certify=False)
-    rule = run.session.rules[0]
-    (section,) = (one.section for one in rule.pairs.answers)
-    pair = next(one for one in section.pairs if one.b.name_in(case) == "post")
-    row = approach_at(rule, section, pair, np.array([run.record.worst_step])).by_columns()[0]
-    found = run.session.sensitivity
-    assert found.rates[0].more == pytest.approx(row[0], abs=1e-7)
-    assert n_joint_columns(case) == len(row) == 1
 
 
 def test_two_that_touch_have_none():

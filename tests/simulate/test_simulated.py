@@ -46,13 +46,6 @@ def post(**changes) -> Obstacle:
     return Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), moved(0.0, 0.0, 3.0), **changes)
 
 
-def test_one_robot_moves_as_ever(tmp_path):
-    placed = cart(tmp_path)
-    (found,) = simulated_motions(Case("one", (placed,), (post(),)))
-    assert np.array_equal(found.positions, simulated_motion(placed).positions)
-    assert found.notes == () and found.placed is placed
-
-
 def test_each_of_several_robots_moves_by_its_own_table_as_it_would_alone(tmp_path):
     one, two = cart(tmp_path), cart(tmp_path, effort=0.0)
     slow = Trajectory(np.array([0.0, 2.0]), ("rail",), np.array([[0.0], [0.3]]))
@@ -137,12 +130,6 @@ def test_a_robot_without_a_trajectory_stands_and_that_is_told(tmp_path):
     still = named(cart(tmp_path), "still", trajectory=None, world_from_base=moved(0.0, 2.0))
     _, found = simulated_motions(Case("made", (cart(tmp_path), still), (post(),)))
     assert found.n_steps == 1 and "stands as given and is not simulated" in found.notes[0]
-
-
-def test_a_robot_that_leaves_does_not_stay_to_settle(tmp_path):
-    gone = replace(cart(tmp_path), timing=Timing(after="absent"))
-    (found,) = simulated_motions(Case("made", (gone,), (post(),)))
-    assert found.times[-1] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("kind", ["robots", "rides", "moves", "carried", "loops"])

@@ -44,7 +44,3 @@ def test_a_link_that_stands_because_its_joint_rests_is_standing_too(run):
     resting = replace(run.record.case, robots=(replace(placed, trajectory=asked),))
     found = standing_contacts(check(resting).record)
     assert ("upper", "collar") in found
-
-
-def test_no_contact_no_hint(tmp_path):
-    assert standing_hint(check(load_case(write_case(tmp_path))).record) == []

@@ -10,7 +10,6 @@ import pytest
 
 import clearance as cl
 from clearance.record.levels import LEVELS
-from clearance.simulate.answers import stretches
 from clearance.simulate.answers.stretches import joined_spans
 from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
@@ -94,12 +93,6 @@ def test_what_is_left_between_two_steps_below_is_left():
     assert turn / np.pi < found["contact"][0, 1] < 0.1
 
 
-def test_many_steps_below_are_taken_whole(monkeypatch):
-    monkeypatch.setattr(stretches, "MOST_LOOKS", 99)
-    found = spans_of(sweeping([[0.0, 0.0], [2.0 * np.pi, 0.0]], 1.0))
-    assert found["contact"].tolist() == [[0.0, 2.0]]
-
-
 @pytest.mark.slow
 def test_cubics_are_followed():
     velocities = np.array([[0.0, 0.0], [3.0, 0.0]])
@@ -167,7 +160,7 @@ def test_a_body_that_goes_wholly_into_another_stays_in_contact():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["door_and_arm", "turntable_cell", "panda_shelf"])
+@pytest.mark.parametrize("scene", ["turntable_cell"])
 def test_moments_of_cells_that_are_below_lie_in_the_stretches(scene):
     """Doors and turntables that move by tables, parts that are carried, rules; samples that are far apart."""
     case = cl.load_case(SCENES / scene / "case.yaml")

@@ -118,7 +118,7 @@ def test_the_pieces_hold_the_links_between_the_samples(within):
     assert greatest_escape(pieces_of(motion, within), motion, 20) <= 0.0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     """Velocities that have nothing to do with the positions: joints swing far beyond their samples."""
     motion = kinematic_motion(swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6).robots[0])
@@ -129,15 +129,6 @@ def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     assert greatest_escape(pieces_of(motion, 0.01), on_cubics, 100) > 0.0
 
 
-@pytest.mark.parametrize("share", [0.0, 1.0])
-def test_the_velocities_of_linear_motion_change_nothing(share):
-    motion = kinematic_motion(swinging("arm", np.eye(4), n_steps=2).robots[0])
-    slope = np.diff(motion.positions, axis=0) / np.diff(motion.times)[:, None]
-    on_cubics = dataclasses.replace(motion, velocities=share * np.tile(slope, (2, 1)))
-    linear, cubic = (max(p.leaves for p in pieces_of(m, 0.01)) for m in (motion, on_cubics))
-    assert cubic == pytest.approx(linear, rel=1e-12) if share else cubic > 1.2 * linear
-
-
 def test_a_slider_on_a_cubic_swings_beyond_its_samples():
     """Both ends at 0 with velocities 8 and -8: half way it stands at 2, its chord at 0; leaves = 16 / 8."""
     case = slider("one", (1, 0, 0), 0.0, 0.0, n_steps=2)
@@ -146,15 +137,6 @@ def test_a_slider_on_a_cubic_swings_beyond_its_samples():
     (piece,) = pieces_of(motion, 0.01)
     assert piece.leaves == pytest.approx(2.0, rel=1e-12)
     assert greatest_escape([piece], motion, 100) <= 0.0
-
-
-def test_finer_stretches_are_shorter_and_never_leave_a_gap():
-    motion = kinematic_motion(swinging("arm", np.eye(4)).robots[0])
-    for within in (1e-5, 5e-3, 0.5):
-        pieces = [p for p in pieces_of(motion, within) if p.link == "gripper"]
-        assert pieces[0].first == 0 and pieces[-1].last == motion.n_steps - 1
-        assert all(a.last == b.first for a, b in zip(pieces, pieces[1:], strict=False))
-    assert len(pieces_of(motion, 1e-5)) > len(pieces_of(motion, 0.5))
 
 
 @pytest.mark.slow
@@ -188,14 +170,6 @@ def test_concave_links_can_be_taken_by_their_parts():
     two = slider("two", (0, 0, 1), -1.0, 1.0, base=(0.235, 0.235, 0.0))
     assert shared_workspace([one, two]).volume > 1e-6
     assert shared_workspace([one, two], cut_concave=True).region.is_empty
-
-
-@WITH_MANIFOLD
-def test_excluded_links_are_left_out_and_told():
-    two = swinging("right", moved(0.2, 1.0), excluded=("gripper",))
-    found = shared_workspace([swinging("left", np.eye(4)), two], within=0.05)
-    assert found.excluded == ("right/gripper",)
-    assert "gripper" not in {pair.link_b for pair in found.links}
 
 
 @WITH_MANIFOLD

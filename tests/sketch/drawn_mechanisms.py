@@ -17,38 +17,6 @@ def four_bar():
     return s
 
 
-def four_bar_over_fixed_ends():
-    """The two fixed ends have their distance already."""
-    s = four_bar()
-    p = of_kind(s, "point")
-    s.distance(p[0], p[3], 5.0, name="base")
-    return s
-
-
-def slider_crank():
-    s = Sketch()
-    o, c, b = s.point(0, 0), s.point(1, 1), s.point(4, 0.1)
-    rail = s.line((0, 0), (1, 0))
-    s.fix(o), s.fix(rail), s.distance(o, c, 1.5), s.distance(c, b, 3.5), s.incident(b, rail)
-    return s
-
-
-def scissors():
-    """Two equal bars that cross in their middles."""
-    s = Sketch()
-    a, b, c, d = (s.point(*q) for q in ((0, 0), (3, 2), (0, 2), (3, 0.1)))
-    m = s.point(1.5, 1)
-    s.midpoint(m, a, b), s.midpoint(m, c, d), s.distance(a, b, 3.6), s.distance(c, d, 3.6)
-    return s
-
-
-def scissors_whose_feet_are_level_as_well_as_the_tops():
-    s = scissors()
-    p = of_kind(s, "point")
-    s.horizontal(p[0], p[3]), s.horizontal(p[2], p[1], name="tops")
-    return s
-
-
 def peaucellier():
     """The inversor: seven bars of three lengths; its point runs on a straight line."""
     s = Sketch()
@@ -93,10 +61,6 @@ def belt(apart=5.0):
     return s
 
 
-def belt_with_a_free_distance():
-    return belt(None)
-
-
 def chain_of_arcs():
     """An S of two arcs that meet in a point with one tangent: their centres and the joint lie in line."""
     s = Sketch()
@@ -121,14 +85,6 @@ def planets():
     return s
 
 
-def planets_of_equal_radius():
-    """Their radius follows from sun and ring."""
-    s = planets()
-    c = of_kind(s, "circle")[2:]
-    s.equal_radius(c[0], c[1], name="alike")
-    return s
-
-
 def incircle():
     s = Sketch()
     p, e = ring(s, [(0, 0), (4, 0.1), (1.2, 2.6)])
@@ -144,29 +100,6 @@ def incircle_too_large():
     s = incircle()
     c = of_kind(s, "circle")[0]
     s.radius(c, 1.5, name="too_large")
-    return s
-
-
-def hexagon():
-    """On a circle, all sides alike: six points have six turns; one places it, five equal sides."""
-    s = Sketch()
-    c = s.circle((0, 0), 2.0)
-    p = []
-    for k in range(6):
-        t = math.pi * k / 3.0 + 0.05 * (-1) ** k
-        p.append(s.point(2.0 * math.cos(t), 2.0 * math.sin(t)))
-        s.incident(p[-1], c)
-    e = [s.segment(p[k], p[(k + 1) % 6]) for k in range(6)]
-    for k in range(1, 6):
-        s.equal_length(e[0], e[k])
-    return s
-
-
-def hexagon_whose_sides_are_the_radius():
-    s = hexagon()
-    p = of_kind(s, "point")
-    c = of_kind(s, "circle")[0]
-    s.radius(c, 2.0), s.distance(p[1], p[2], 2.0, name="side")
     return s
 
 
@@ -207,22 +140,6 @@ def two_pieces():
     return s
 
 
-def parallel_rails():
-    """Five parallel lines at equal given gaps, and the outer distance again."""
-    s = Sketch()
-    e = [s.line((0, k), (5, k + 0.05 * k)) for k in range(5)]
-    for k in range(4):
-        s.distance(e[k], e[k + 1], 1.0)
-    s.distance(e[0], e[4], 4.0, name="outer")
-    return s
-
-
-def parallel_rails_with_a_wrong_outer_distance():
-    s = parallel_rails()
-    s.set("outer", 4.5)
-    return s
-
-
 def truss():
     """A triangulated girder of eight bays, top and bottom chord level."""
     s = Sketch()
@@ -232,14 +149,6 @@ def truss():
         s.distance(a, b, 1.0), s.horizontal(a, b)
     for k, h in enumerate(high):
         s.distance(h, low[k], 1.0), s.distance(h, low[k + 1], 1.0)
-    return s
-
-
-def truss_with_a_level_top():
-    s = truss()
-    p = of_kind(s, "point")
-    for k in range(7):
-        s.horizontal(p[9 + k], p[10 + k])
     return s
 
 

@@ -1,6 +1,5 @@
 """Sketches where constraints only touch: held, though not in the first order. Their truth is by construction."""
 
-import itertools
 import math
 from pathlib import Path
 
@@ -8,8 +7,6 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
-from clearance.sketch.effort import TimeLimit
-from clearance.sketch.mobility import Equations
 
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 
@@ -161,37 +158,3 @@ def test_circles_that_touch_in_a_row():
     assert c[1].radius == pytest.approx(1.0)
     s.radius(c[1], 1.0, name="again")
     assert verdict(s)[:2] == ("over", 0)
-
-
-def rounded_comb(n, width=None):
-    """Straight teeth joined by n half turns of radius 1 that touch both sides; `width` across each."""
-    s, last = Sketch(), None
-    at = s.point(0.0, 0.01)
-    for k in range(n):
-        x, up = 2.0 * k, k % 2 == 0
-        top, far = (s.point(x + across, 3.0 * up) for across in (0.01, 2.0))
-        tooth, center = s.segment(at, top), s.point(x + 1.0, 3.0 * up)
-        arc = s.arc(center, far, top) if up else s.arc(center, top, far)
-        s.distance(at, top, 3.0), s.tangent(tooth, arc), s.radius(arc, 1.0)
-        if last is not None:
-            s.tangent(tooth, last)
-        if width is not None:
-            s.distance(top, far, width)
-        last, at = arc, far
-    return s
-
-
-def test_contacts_that_are_regular_as_they_are_asked_need_no_walks(monkeypatch):
-    """No constraint follows from others, as each takes a freedom of the regular equations."""
-    result = rounded_comb(6).solve()
-    monkeypatch.setattr(Equations, "walked", None)
-    assert (result.status, result.freedom, result.redundant) == ("under", 6, [])
-
-
-def test_what_follows_from_what_is_asked_no_longer_than_a_solve_may_take():
-    """Two ends a diameter apart are no regular contact; what walks do not tell in time the count does."""
-    result = rounded_comb(3, width=2.0).solve()
-    times, asked = itertools.chain([0.0] * 9, itertools.repeat(3600.0)), []
-    result._problem.limit = TimeLimit(10.0, lambda: asked.append(1) or next(times))
-    assert (result.solved, result.redundant) == (True, [])
-    assert 9 < len(asked) < 20 and result.freedom >= 0

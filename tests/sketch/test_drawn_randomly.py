@@ -15,7 +15,7 @@ def solved(seed):
     return d, s, p, s.solve()
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(24))
 def test_drawings_are_solved_and_contacts_are_closed_to_the_last_digits(seed):
     d, s, p, result = solved(seed)
     assert result.solved, result.reason
@@ -30,7 +30,7 @@ def test_drawings_are_solved_and_contacts_are_closed_to_the_last_digits(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(0, 60, 4))
+@pytest.mark.parametrize("seed", range(0, 24, 4))
 def test_freedom_is_that_of_the_equations_which_are_regular_at_contacts(seed):
     d, s, p, result = solved(seed)
     points = np.array([q.position for q in p])
@@ -40,7 +40,7 @@ def test_freedom_is_that_of_the_equations_which_are_regular_at_contacts(seed):
 
 
 @pytest.mark.parametrize("sizes", [1e4, 1e8])
-@pytest.mark.parametrize("seed", range(0, 24, 2))
+@pytest.mark.parametrize("seed", range(0, 12, 2))
 def test_a_shift_changes_nothing(seed, sizes):
     """The drawn places are rounded so that they shift exactly; then every number is the same bit for bit
     as counted from the first place, hence every coordinate right to half a unit of its last digit."""

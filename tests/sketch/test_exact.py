@@ -10,7 +10,7 @@ from clearance.sketch.equations import Lengths, Linear
 from clearance.sketch.graph.graph import DIRECTION
 from scripts.makers.point_sketches import flipped, patch
 from tests.examples import some_slow
-from tests.sketch.patterns import distances, irreducible, prism, shaken, truth
+from tests.sketch.patterns import distances, irreducible, shaken
 
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 FILES = (
@@ -39,7 +39,7 @@ def scaled(s, factor):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("power", [-20, -3, 1, 17, 1015])
+@pytest.mark.parametrize("power", [-20, 1015])
 @pytest.mark.parametrize("name", FILES)
 def test_scaling_by_a_power_of_two_is_exact(name, power):
     s, t = (Sketch.load(SKETCHES / f"{name}.yaml") for _ in range(2))
@@ -47,17 +47,6 @@ def test_scaling_by_a_power_of_two_is_exact(name, power):
     assert s.solve().solved and t.solve().solved
     factor = np.where(np.array(s._lists.roles) == DIRECTION, 1.0, 2.0**power)
     assert (np.array(t._lists.numbers) == factor * np.array(s._lists.numbers)).all()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("power", [-9, 6])
-def test_scaling_of_patterns_is_exact(power):
-    points, edges = irreducible(36, 2)
-    for maker in (lambda k: distances(k * points, k * shaken(points, 0.1, 5), edges)[0],
-                  lambda k: truth(40, 3, missing=2, scale=k)[0]):  # fmt: skip
-        s, t = maker(1.0), maker(2.0**power)
-        assert s.solve().solved and t.solve().solved
-        assert (np.array(t._lists.numbers) == 2.0**power * np.array(s._lists.numbers)).all()
 
 
 NAMES = [*FILES, "bar_length", "midship_b", "midship_c", "midship_e"]
@@ -90,11 +79,3 @@ def test_irreducible_clusters_off_by_20_percent(seed):
         assert np.linalg.norm(x[a] - x[b]) == pytest.approx(span, abs=1e-11)
     before = list(s._lists.numbers)
     assert s.solve().solved and s._lists.numbers == before
-
-
-def test_a_large_prism_is_solved_on_a_band():
-    points, edges = prism(60, 1)
-    s, _ = distances(points, shaken(points, 0.1, 2), edges)
-    result = s.solve()
-    assert result.solved and result.residual <= 1e-12 * 20.0
-    assert any(step.method == "numeric" for step in result.plan)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
-from clearance.sketch.picture import svg_of
 
 
 def slot():
@@ -52,11 +51,6 @@ def test_dimensions_given_as_numpy_numbers_are_saved(tmp_path, driven):
     assert t.constraint("span").driven == driven and t.value("w") == 2.5
     assert t.value("span") == s.value("span") and t.entity("c").radius == s.entity("c").radius
     assert t.value("gap") == pytest.approx(s.value("gap"), rel=1e-14)
-
-
-def test_picture_names_every_part():
-    text = svg_of(slot(), title="slot")
-    assert text.count("<path") == 4 + 1 and text.count("<circle") == 6  # and one distance of points
 
 
 def test_curves_are_one_closed_contour():

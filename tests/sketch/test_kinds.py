@@ -9,8 +9,7 @@ import pytest
 from clearance.sketch import Sketch
 from clearance.sketch.constraints import KINDS, measured
 from clearance.sketch.equations import Rows
-from clearance.sketch.problem import problem_of, tables_of
-from clearance.sketch.solve.columns import Columns
+from clearance.sketch.problem import tables_of
 
 
 def entities(s, takes):
@@ -69,42 +68,6 @@ def test_derivatives_match_differences(kind, k):
         down[i] -= h
         ahead, behind = (rows.errors(y) for y in (up, down))
         assert np.abs((ahead - behind) / (2 * h) - analytic[:, i]).max(initial=0.0) < 1e-8
-
-
-def bent(s, x):
-    """The second derivative of the sum of all equations, assembled, and by differences of the first."""
-    problem = problem_of(tables_of(s), x)
-    rows = np.flatnonzero(problem.fate == 0)
-    columns = Columns(problem.system, np.arange(1, problem.system.kind.size), rows)
-    n = columns.n
-    i, j, value = columns.bend(x, np.ones(rows.size))
-    assembled = np.zeros((n, n))
-    np.add.at(assembled, (i, j), value)
-    differences, h = np.zeros((n, n)), 1e-5
-    for k, e in enumerate(np.eye(n)):
-        for sign in (1.0, -1.0):
-            slope = columns.matrix(columns.moved(x, sign * h * e)).sum(axis=0)
-            differences[k] += sign * slope / (2.0 * h)
-    return assembled, differences
-
-
-@pytest.mark.parametrize(("kind", "k"), CASES)
-def test_second_derivatives_match_differences(kind, k):
-    s, _c, _ = made(kind, k)
-    assert s.solve().solved  # merged numbers agree
-    assembled, differences = bent(s, np.array(s._lists.numbers))
-    assert assembled == pytest.approx(differences, abs=1e-6)
-
-
-def test_second_derivatives_of_lengths_that_share_a_point():
-    s = Sketch()
-    p = [s.point(*q) for q in ((0, 0), (2, 0.3), (2.7, 1.9))]
-    s.equal_length(s.line(p[0], p[1]), s.line(p[1], p[2]))
-    s.midpoint(s.point(1, 1), p[0], p[2])
-    assert s.solve().solved
-    assembled, differences = bent(s, np.array(s._lists.numbers))
-    assert np.abs(differences).max() > 0.1
-    assert assembled == pytest.approx(differences, abs=1e-6)
 
 
 PAPER = {

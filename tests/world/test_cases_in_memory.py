@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-import trimesh
 
 import clearance as cl
 from clearance.errors import (
@@ -19,8 +18,6 @@ from clearance.errors import (
     UnknownJoint,
     UnknownRobot,
 )
-from clearance.world.motion import kinematic_motion
-from clearance.world.timeline import timeline_of
 
 KUKA = "pybullet_data:kuka_iiwa/model.urdf"
 
@@ -93,18 +90,6 @@ def test_what_is_no_trajectory_is_refused(given, times, positions, options, faul
         given.with_trajectory(times, positions, **options)
 
 
-def test_meshes_of_trimesh_are_bodies():
-    mesh = trimesh.creation.icosphere(subdivisions=2, radius=0.2)
-    body = cl.Body("ball", mesh)
-    assert isinstance(body.shape, cl.Polyhedron)
-    mesh.invert()
-    assert cl.Body("ball", mesh).shape.volume == pytest.approx(body.shape.volume)
-    with pytest.raises(cl.BadInput, match="body 'word'"):
-        cl.Body("word", "a word")
-    with pytest.raises(cl.BadInput, match="an obstacle of a"):
-        cl.Obstacle(mesh)
-
-
 def test_places_are_rigid_motions():
     with pytest.raises(BadPose, match="'post'"):
         cl.Obstacle(cl.Body("post", cl.box((1, 1, 1))), 2.0 * np.eye(4))
@@ -145,12 +130,6 @@ def test_a_case_that_no_table_could_tell_apart_is_refused():
     for name in ("left", "left/lbr_iiwa_link_0"):
         with pytest.raises(cl.BadInput, match="another name for the obstacle"):
             cl.Case("names", (still("left"), still("right")), posts(name))
-
-
-def test_robots_may_be_asked_at_different_times():
-    case = cl.Case("clocks", (still("left"), still("right", (0.5, 2.0))), posts("post"))
-    motions = [kinematic_motion(placed) for placed in case.robots]
-    assert timeline_of(case, motions).times.tolist() == [0.0, 0.5, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("name", ["post\x1b[31m", "post\nCLEAR", "post\uffff"])

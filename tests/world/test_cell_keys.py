@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.world.case import Limits
-from clearance.world.cell import Cell, cell_of, once_a_cell
+from clearance.world.cell import once_a_cell
 from clearance.world.rules import Rule
 from tests.formats.making_case import load_small
 
@@ -67,14 +67,3 @@ def test_an_error_is_no_answer(case):
     for _ in range(2):
         with pytest.raises(ValueError):
             answer(case)
-
-
-def test_values_that_are_no_key_have_a_cell_of_their_own():
-    held = [object()]
-    assert cell_of(held, ([1],)) != cell_of(held, ([1],))
-    assert cell_of(held, (1,)) is cell_of(held, (1,))
-
-
-def test_an_object_is_distinguished_from_one_that_comes_to_lie_in_its_place():
-    cells = [Cell([object()], None) for _ in range(100)]
-    assert len(set(cells)) == 100

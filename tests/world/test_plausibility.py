@@ -15,17 +15,12 @@ from clearance.world.notice import Notice, Severity
 from clearance.world.plausibility import notices_of
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
-
-
-def moved(x: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
+from tests.made_cases import at
 
 
 def arm(size: float = 0.3, origin: str = "arm.stl", **joint) -> Robot:
     """A base and an upper arm half a metre on."""
-    elbow = Joint("elbow", JointKind.REVOLUTE, "base", "upper", moved(0.0, 0.0, 0.5))
+    elbow = Joint("elbow", JointKind.REVOLUTE, "base", "upper", at(0.0, 0.0, 0.5))
     bodies = (
         Body("base", box((0.3, 0.3, 0.3)), "box"),
         Body("upper", box((size, size, size)), origin),
@@ -39,7 +34,7 @@ def case_of(
     asked = Trajectory(np.array(times), ("elbow",), np.array(positions)[:, None])
     body = Body("block", obstacle or box((0.2, 0.2, 0.2)))
     placed = PlacedRobot(robot or arm(), asked)
-    return Case("made", (placed,), (Obstacle(body, moved(1.5) if pose is None else pose),), **more)
+    return Case("made", (placed,), (Obstacle(body, at(1.5) if pose is None else pose),), **more)
 
 
 def reported(case: Case) -> list[tuple[str, str]]:
@@ -55,10 +50,10 @@ def test_a_good_case_tells_nothing():
     [
         ({"obstacle": box((600.0, 400.0, 20.0))}, "obstacle 'block' is 600 m long"),
         ({"obstacle": box((2e-4, 2e-4, 3e-4))}, "obstacle 'block' is 0.0003 m long"),
-        ({"pose": moved(30.0, 30.0)}, "obstacle 'block' stands 42.3 m away"),
+        ({"pose": at(30.0, 30.0)}, "obstacle 'block' stands 42.3 m away"),
         ({"robot": arm(3e-4)}, "link 'upper' is 0.0003 m long"),
         ({"robot": arm(300.0)}, "link 'upper' is 300 m long"),
-        ({"robot": arm(parent_from_joint=moved(50.0))}, "joint 'elbow' stands 50 m away"),
+        ({"robot": arm(parent_from_joint=at(50.0))}, "joint 'elbow' stands 50 m away"),
         ({"positions": (0.0, 45.0)}, "joint 'elbow' goes to 45 rad"),
         ({"times": (0.0, 1000.0)}, "is this milliseconds?"),
         ({"limits": Limits(5.0, 20.0)}, "limits.fail is 5 m and limits.warn is 20 m"),
@@ -75,7 +70,7 @@ def test_a_small_box_of_a_robot_is_a_sensor():
 
 def test_a_mesh_is_also_held_against_the_other_obstacles():
     """60 m beside blocks of 0.2 m, where the robot reaches 0.8 m: under 200 times the reach, over 200 blocks."""
-    fence = Obstacle(Body("fence", box((60.0, 0.1, 40.0)), "fence.stl"), moved(2.0))
+    fence = Obstacle(Body("fence", box((60.0, 0.1, 40.0)), "fence.stl"), at(2.0))
     case = case_of()
     case = replace(case, obstacles=(*case.obstacles, fence))
     assert reported(case) == [("suspect", "units")]
@@ -103,7 +98,7 @@ def test_joints_beyond_their_limits():
 
 
 def test_a_robot_that_need_not_move_is_checked_too():
-    far = case_of(pose=moved(30.0, 30.0))
+    far = case_of(pose=at(30.0, 30.0))
     resting = replace(far.robots[0], trajectory=None)
     assert reported(replace(far, robots=(resting,))) == [("suspect", "units")]
 
@@ -119,7 +114,7 @@ def test_what_loading_reported_is_kept_and_the_worst_comes_first():
 
 
 def test_a_run_carries_the_notices_of_its_case():
-    run = check(case_of(pose=moved(0.0, 0.0, 90.0)))
+    run = check(case_of(pose=at(0.0, 0.0, 90.0)))
     assert [notice.kind for notice in run.record.case.notices] == ["units"]
     run = check(case_of(), limits=Limits(0.8, 0.9))
     assert ["limits.fail is 0.8 m" in notice.text for notice in run.record.case.notices] == [True]
@@ -164,7 +159,7 @@ def test_joints_that_follow_each_other_in_memory_are_refused():
 @pytest.mark.parametrize("mimic", [{"offset": 1e160}, {"multiplier": 1e8}, {"offset": -2e6}])
 def test_a_link_that_follows_out_of_the_world_is_refused(mimic):
     asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
-    obstacle = Obstacle(Body("block", box((1.0, 1.0, 1.0))), moved(3.0))
+    obstacle = Obstacle(Body("block", box((1.0, 1.0, 1.0))), at(3.0))
     case = Case("made", (PlacedRobot(chain(2, **mimic), asked),), (obstacle,))
     with pytest.raises(BadDimension, match=r"link 'l2': it reaches .* m from the origin"):
         check(case)
@@ -178,7 +173,7 @@ def test_a_turn_that_follows_out_of_the_world_is_refused():
     case = Case(
         "made",
         (PlacedRobot(robot, asked),),
-        (Obstacle(Body("b", box((1.0, 1.0, 1.0))), moved(3.0)),),
+        (Obstacle(Body("b", box((1.0, 1.0, 1.0))), at(3.0)),),
     )
     with pytest.raises(BadDimension, match=r"joint 'j1' stands 1e\+160 rad beyond"):
         check(case)

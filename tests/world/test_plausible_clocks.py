@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from clearance.world.case import Clock
 from clearance.world.plausibility import notices_of
 from tests.formats.making_cell import load_cell
 
@@ -61,12 +60,6 @@ def test_a_table_between_two_ties_them(tmp_path):
     between = PATH.format(0.5, 3.5)
     found = cell(tmp_path, 3.0, *right, right__csv=between)
     assert not reported(found)
-
-
-def test_clocks_that_are_not_tied_may_be_any(tmp_path):
-    case = cell(tmp_path, EPOCH)
-    assert not reported(replace(case, clock=Clock(float("inf"))))
-    assert reported(replace(case, clock=Clock(0.5)))
 
 
 def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
@@ -125,8 +118,3 @@ def test_a_recording_begins_when_the_case_says(tmp_path, start):
         f"trajectory: {{file: path.csv, start: {start}}}}}\nscene",
     )
     assert not reported(two_recordings(tmp_path, 3.25, *said))
-
-
-def test_a_recording_that_is_shifted_keeps_its_clock(tmp_path):
-    (asked, _) = (one.given_trajectory for one in two_recordings(tmp_path, 0.0).robots)
-    assert asked.shifted(2.0).began == EPOCH - 2.0

@@ -39,7 +39,7 @@ def poses_in(phase, link_poses):
     ]
 
 
-@pytest.mark.parametrize("seed", first_fast(range(40), 4))
+@pytest.mark.parametrize("seed", first_fast(range(16), 4))
 def test_bodies_are_where_their_tables_and_hands_say(seed):
     case = cell(seed)
     line = timeline(case)
@@ -59,7 +59,7 @@ def test_bodies_are_where_their_tables_and_hands_say(seed):
             assert np.allclose(poses_in(phase, between), expected, rtol=0.0, atol=1e-9), t
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(5))
 def test_steps_are_all_samples_and_the_ends_of_windows(seed):
     case = cell(seed)
     times = timeline(case).times
@@ -87,16 +87,6 @@ def test_a_part_that_changes_hands_does_not_jump():
                 changes = before.carried.get("part") is not after.carried.get("part")
                 if (changes and "part" in before.carried) or held[0] == WORLD:
                     assert np.allclose(*ends, rtol=0.0, atol=1e-9)
-
-
-def test_one_robot_alone_keeps_its_own_arrays():
-    case = cell(3)
-    alone = replace(case, robots=(case.robots[0],), obstacles=(case.obstacles[0],), carries=())
-    motion = kinematic_motion(alone.robots[0])
-    line = timeline_of(alone, [motion])
-    assert len(line.phases) == 1
-    assert line.motions[0] is motion
-    assert line.phases[0].case is alone
 
 
 def test_what_is_absent_and_all_on_it_is_gone_before_and_after():

@@ -15,22 +15,17 @@ from clearance.world.notice import Severity
 from clearance.world.plausibility import notices_of
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.timing import Timing
+from tests.made_cases import at
 
 Z = np.array([0.0, 0.0, 1.0])
 
 
-def moved(x=0.0, y=0.0, z=0.0):
-    pose = np.eye(4)
-    pose[:3, 3] = x, y, z
-    return pose
-
-
 def spinner(kind=JointKind.CONTINUOUS) -> Robot:
     """A bar from the hub to 1 m along x, which turns about z; a second above it, half as fast."""
-    bars = [Body(name, box((1.0, 0.02, 0.02)).transformed(moved(0.5))) for name in ("bar", "upper")]
+    bars = [Body(name, box((1.0, 0.02, 0.02)).transformed(at(0.5))) for name in ("bar", "upper")]
     joints = (
         Joint("spin", kind, "hub", "bar", np.eye(4), Z),
-        Joint("half", kind, "hub", "upper", moved(z=1.0), Z, mimic=Mimic("spin", 0.5)),
+        Joint("half", kind, "hub", "upper", at(z=1.0), Z, mimic=Mimic("spin", 0.5)),
     )
     return Robot("spinner", ("hub", "bar", "upper"), joints, tuple(bars))
 
@@ -44,8 +39,8 @@ def case_of(positions, wrap=None, velocities=None, robot=None, timing=None, **mo
     placed = PlacedRobot(robot or spinner(), asked, timing=timing or Timing())
     post = box((0.1, 0.1, 0.1))
     posts = (
-        Obstacle(Body("ahead", post), moved(1.35)),
-        Obstacle(Body("behind", post), moved(-1.15)),
+        Obstacle(Body("ahead", post), at(1.35)),
+        Obstacle(Body("behind", post), at(-1.15)),
     )
     return Case("spin", (placed,), posts, **more)
 
@@ -82,7 +77,7 @@ def test_a_step_of_more_than_half_a_turn_is_suspect_and_both_readings_are_measur
 
 def test_both_readings_say_contact_where_it_is():
     case = case_of([2.9, -2.9])
-    wall = Obstacle(Body("wall", box((0.1, 0.1, 0.1))), moved(-0.9))
+    wall = Obstacle(Body("wall", box((0.1, 0.1, 0.1))), at(-0.9))
     (one,) = check(replace(case, obstacles=(*case.obstacles, wall))).verdict.suspects
     assert one.text.endswith("the shortest way: contact")
 
@@ -159,7 +154,7 @@ def test_by_the_shortest_way_a_table_goes_as_the_one_unwrapped_by_hand(made):
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(turned(), st.booleans())
 def test_the_answers_are_those_of_the_table_unwrapped_by_hand_and_of_the_table_as_it_is(
     made, cubic

@@ -1,22 +1,25 @@
 """Makes the drawing data of a record: every step or a choice of them, with the moments between.
 
-Not for: measuring, and the data itself (`record.replay`).
+The motion before a change is drawn by the bodies that were elsewhere, at the same times.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.record.contact import StepContact
 from clearance.record.moment import Moment
 from clearance.record.record import Record
-from clearance.record.replay import LINK, DrawnBody, DrawnRule, Replay
+from clearance.record.replay import LINK, DrawnBody, DrawnContact, DrawnRule, EarlierBody, Replay
 from clearance.record.row_status import rule_places
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 from clearance.simulate.answers.measured_run import MeasuredRun
 from clearance.simulate.replay.bodies import (
+    FramePlace,
     bodies_of,
     carries_of,
     kind_of,
@@ -24,11 +27,13 @@ from clearance.simulate.replay.bodies import (
     placed_bodies,
     shape_index,
 )
-from clearance.simulate.replay.contact import drawn_contacts
 from clearance.simulate.replay.curve_moments import curve_moments
 from clearance.simulate.replay.frames import ReplayFrames, least_of
 from clearance.world.case import Case
 from clearance.world.pairs import BodyIndex
+
+if TYPE_CHECKING:
+    from clearance.query.contact import Contact
 
 MAX_FRAMES = 3000
 """Most frames kept: at 20 links these are 1.7 MB of poses, and no screen is wider in pixels."""
@@ -141,3 +146,95 @@ def _drawn_bodies(case: Case, indices: Sequence[BodyIndex]) -> tuple[tuple, tupl
         for body in indices
     )
     return bodies, tuple(shapes)
+
+
+MOST_CONTACTS = 600
+"""Most overlaps drawn: each is an object of its own in the viewer."""
+
+MOST_TRIANGLES = 200_000
+"""Most triangles of all regions together: about 5 MB on the page."""
+
+
+def drawn_contacts(
+    run: MeasuredRun, kept: np.ndarray
+) -> tuple[tuple[DrawnContact, ...], tuple[tuple[np.ndarray, np.ndarray], ...]]:
+    """The overlaps that the run works out of the steps `kept`, and the region of each: vertices (n, 3) float32,
+    triangles (m, 3) int32.
+
+    Beyond `MOST_CONTACTS` or `MOST_TRIANGLES`, every second, third, … contact; always the deepest.
+    """
+    frames = {int(step): i for i, step in enumerate(kept)}
+    rows = [row for row in run.record.worked_out if row.step in frames]
+    chosen = _thinned(run, rows)
+    return (
+        tuple(_drawn(row, found, frames[row.step]) for row, found in chosen),
+        tuple(
+            (found.region.vertices.astype(np.float32), found.region.triangles.astype(np.int32))
+            for _, found in chosen
+        ),
+    )
+
+
+def _thinned(run: MeasuredRun, rows: Sequence[StepContact]) -> list[tuple[StepContact, Contact]]:
+    every, deepest = max(1, -(-len(rows) // MOST_CONTACTS)), run.record.deepest
+    while True:
+        chosen = [row for i, row in enumerate(rows) if i % every == 0 or _same(row, deepest)]
+        if len(chosen) <= MOST_CONTACTS:
+            found = [(row, run.overlap(row)) for row in chosen]
+            n_triangles = sum(len(one.region.triangles) for _, one in found)
+            if len(chosen) <= 2 or n_triangles <= MOST_TRIANGLES:
+                return found
+        every += 1
+
+
+def _same(row: StepContact, other: StepContact | None) -> bool:
+    return other is not None and (row.step, row.link, row.obstacle) == (
+        other.step,
+        other.link,
+        other.obstacle,
+    )
+
+
+def _drawn(row: StepContact, found: Contact, frame: int) -> DrawnContact:
+    return DrawnContact(
+        frame=frame,
+        link=row.link,
+        obstacle=row.obstacle,
+        penetration=found.penetration,
+        penetration_at_least=found.penetration_at_least,
+        volume=found.volume,
+        volume_at_least=found.volume_at_least,
+        exact=bool(found.exact[0]),
+        volume_exact=bool(found.exact[1]),
+        start=tuple(found.centroid.tolist()),
+        direction=tuple(found.direction.tolist()),
+    )
+
+
+APART = 1e-6
+"""[m] and, of unit quaternions, [-]: a body that was off by less is not drawn twice."""
+
+
+def earlier_motion(earlier: Record, replay: Replay) -> list[EarlierBody]:
+    """The bodies of a replay that were elsewhere at some frame.
+
+    Args:
+        earlier: a run of the same bodies.
+    """
+    frames = [_place(earlier.timeline.times, time) for time in replay.times]
+    drawn = placed_bodies(earlier, bodies_of(earlier.case), frames)
+    was = [packed(poses) for poses in drawn.poses]
+    return [
+        EarlierBody(i, before, shown.astype(np.uint8))
+        for i, (before, after, shown) in enumerate(zip(was, replay.poses, drawn.shown, strict=True))
+        if (np.abs(before - after) > APART).any()
+    ]
+
+
+def _place(times: np.ndarray, time: float) -> FramePlace:
+    """When a time [s] is in a run, at the nearest of its ends where it is beyond."""
+    step = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(times) - 1))
+    share = 0.0
+    if step + 1 < len(times):
+        share = float(np.clip((time - times[step]) / (times[step + 1] - times[step]), 0.0, 1.0))
+    return FramePlace(step, share, None, (None, None))

@@ -38,11 +38,6 @@ def test_what_a_case_names_is_told_what_it_is(tmp_path, case, says, files):
     assert says in str(caught.value)
 
 
-def test_a_trajectory_is_named_by_its_path_alone(tmp_path):
-    case = load_small(tmp_path, changed("trajectory: {file: path.csv}", "trajectory: path.csv"))
-    assert case.robots[0].trajectory.n_steps == 3
-
-
 def test_a_case_without_a_name_has_that_of_its_file_or_folder(tmp_path):
     unnamed = changed("name: small\n", "")
     folder = tmp_path / "welding_cell"

@@ -4,12 +4,11 @@ import os
 
 import pytest
 
-from clearance.case.case_file import load_case
 from clearance.errors import MissingFile
 from clearance.formats.files.input_files import InputFiles, read_bytes
 from clearance.profiles.outline_file import read_outline
 from clearance.sketch import Sketch
-from tests.formats.making import PATH, write_case
+from tests.formats.making import PATH
 
 
 @pytest.mark.parametrize("name", ["/dev/zero", "pipe"])
@@ -24,14 +23,6 @@ def test_pipes_and_devices_are_refused_without_waiting(tmp_path, name):
     ):
         with pytest.raises(MissingFile, match="is a pipe or a device; a path to a file on disk"):
             read()
-
-
-def test_a_trajectory_from_a_pipe_is_refused_with_its_field(tmp_path):
-    case = write_case(tmp_path)
-    (tmp_path / "path.csv").unlink()
-    os.mkfifo(tmp_path / "path.csv")
-    with pytest.raises(MissingFile, match=r"trajectory\.file: 'path\.csv' is a pipe or a device"):
-        load_case(case)
 
 
 def test_files_and_links_to_them_are_read(tmp_path):

@@ -81,14 +81,6 @@ def test_a_file_of_the_same_name_stands_in_as_suspect_input_that_names_both(tmp_
     )
 
 
-def test_the_package_itself_comes_before_a_file_of_the_same_name(tmp_path):
-    given = tmp_path / "given"
-    part(given / "meshes" / "part.stl", tmp_path / "arms" / "meshes" / "part.stl")
-    found = load_urdf(tmp_path, ASKED, [given])
-    assert found.bodies[0].origin == "arms/meshes/part.stl"
-    assert found.notices == ()
-
-
 def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", "/opt/ws/src")
     (tmp_path / "given").mkdir()
@@ -110,10 +102,8 @@ def package(folder, name="arms"):
 
 WORKSPACES = [
     ("ws", "ws/src/robots/arm_files"),
-    ("ws/src", "ws/src/robots/arm_files"),
     ("ws", "ws/install/arms/share/arms"),
     ("ws/install", "ws/install/arms/share/arms"),
-    ("ws/install", "ws/install/share/arms"),
     ("ws", "ws/a/b/c/d/arms"),
 ]
 
@@ -165,19 +155,6 @@ def test_a_folder_that_is_only_called_as_on_another_machine_is_suspect(tmp_path)
     (notice,) = load_urdf(tmp_path, asked).notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "package")
     assert "file:///home/jane/arms/meshes/part.stl is taken from meshes/part.stl" in notice.text
-
-
-def test_a_whole_workspace_of_another_machine_is_one_here(tmp_path):
-    """The first folder of that path which is here is the workspace's, and the package lies in it."""
-    asked = robot(link(collision('<mesh filename="/home/jane/ws/src/arms/meshes/part.stl"/>')))
-    part(tmp_path / "ws" / "src" / "arms" / "meshes" / "part.stl")
-    (tmp_path / "ws" / "src" / "arms" / "package.xml").write_text(
-        "<package><name>arms</name></package>"
-    )
-    folder = tmp_path / "case"
-    folder.mkdir()
-    found = load_urdf(folder, asked, [tmp_path / "ws"])
-    assert found.notices == () and found.bodies[0].origin == "../ws/src/arms/meshes/part.stl"
 
 
 @pytest.mark.parametrize("given", ["arms", "."])

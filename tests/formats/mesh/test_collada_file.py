@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from clearance.errors import BadDimension, BadInput, BadPolygon, BadSyntax, EmptyMesh, NotFinite
+from clearance.errors import BadInput, BadSyntax
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh.mesh_file import mesh_from_bytes, read_mesh
 from clearance.formats.mesh_store import MeshStore
@@ -55,7 +55,6 @@ SHARED = '<input semantic="VERTEX" source="#v" offset="0"/>'
     [
         (Z_UP, [1, 2, 3], [0, 0, 0]),
         ('<unit name="inch" meter="0.0254"/>' + Z_UP, [0.0254, 0.0508, 3 * 0.0254], [0, 0, 0]),
-        ('<unit meter="0.001"/>' + Z_UP, [0.001, 0.002, 0.003], [0, 0, 0]),
         ("<up_axis>Y_UP</up_axis>", [1, 0, 2], [0, -3, 0]),
         ("", [1, 0, 2], [0, -3, 0]),  # the specification's default is y up, in metres
         ("<up_axis>X_UP</up_axis>", [0, 0, 1], [-2, -3, 0]),
@@ -91,12 +90,6 @@ def test_a_store_keeps_both_ways_apart(tmp_path):
     assert read_mesh(tmp_path / "m.dae", up_axis="ros").bounds[1].tolist() == [1, 2, 3]
 
 
-def test_scale_comes_on_top_of_the_unit():
-    mesh = load('<unit meter="0.01"/>' + Z_UP, scale=(100, -100, 100))
-    assert mesh.shape.bounds.tolist() == [[0, -2, 0], [1, 0, 3]]
-    assert signed_volume(mesh.shape) == pytest.approx(1)
-
-
 def test_positions_keep_double_precision():
     value = 0.1234567890123456
     mesh = load(Z_UP, vertices=f"0 0 0 {value!r} 0 0 0 2 0 0 0 3")
@@ -110,10 +103,8 @@ def test_positions_keep_double_precision():
         ("<translate>1 2 3</translate>", [2, 4, 6]),
         ("<translate>1 0 0</translate><scale>2 2 2</scale>", [3, 4, 6]),
         ("<rotate>0 0 1 90</rotate>", [0, 1, 3]),
-        ("<rotate>0 0 2 -270</rotate><rotate>1 0 0 0</rotate>", [0, 1, 3]),
         ("<matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>", [6, 2, 3]),
         ("<scale>1 1 -1</scale>", [1, 2, 0]),
-        ("<scale>0.1 0.1 0.1</scale>", [0.1, 0.2, 3 * 0.1]),
     ],
 )
 def test_node_transforms_are_applied_in_order_and_keep_faces_outward(transforms, upper):
@@ -159,56 +150,6 @@ def test_triangle_strips_turn_every_other_triangle():
     mesh = load(Z_UP, primitives=strip.format("0 2 1 3") + strip.format("1 3 0 2"))
     assert mesh.shape.closed and mesh.shape.oriented
     assert signed_volume(mesh.shape) == pytest.approx(1)
-
-
-def test_missing_textures_and_materials_do_not_matter():
-    images = '<library_images><image id="i"><init_from>no.png</init_from></image></library_images>'
-    nodes = (
-        '<node><instance_geometry url="#g"><bind_material><technique_common>'
-        '<instance_material symbol="m" target="#none"/></technique_common></bind_material>'
-        "</instance_geometry></node>"
-    )
-    assert load(Z_UP, nodes=nodes, more=images).n_triangles == 4
-
-
-SHORT = (
-    '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
-    "<vcount>4</vcount><p>0 1 2</p></polylist>"
-)
-OUTSIDE = (
-    '<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 9</p></triangles>'
-)
-
-
-@pytest.mark.parametrize(
-    ("data", "fault"),
-    [
-        (b"", BadSyntax),
-        (b"<COLLADA", BadSyntax),
-        (b"<robot/>", BadSyntax),
-        (document(Z_UP, nodes="<node/>"), EmptyMesh),
-        (
-            document(Z_UP).replace(b"<scene>", b"<extra>").replace(b"</scene>", b"</extra>"),
-            EmptyMesh,
-        ),
-        (document(Z_UP, vertices="nan 0 0 1 0 0 0 2 0 0 0 3"), NotFinite),
-        (document(Z_UP, vertices="x 0 0 1 0 0 0 2 0 0 0 3"), BadSyntax),
-        (document('<unit meter="0"/>' + Z_UP), BadDimension),
-        (document('<unit meter="-1"/>' + Z_UP), BadDimension),
-        (document(Z_UP, primitives=SHORT), BadSyntax),
-        (document(Z_UP, primitives=OUTSIDE), (BadSyntax, BadPolygon)),
-        (document(Z_UP, nodes='<node><instance_geometry url="#no"/></node>'), BadSyntax),
-        (
-            document(Z_UP, nodes='<node><skew>1</skew><instance_geometry url="#g"/></node>'),
-            BadSyntax,
-        ),
-    ],
-)
-def test_each_fault_is_one_line_with_the_file(data, fault):
-    with pytest.raises(fault) as caught:
-        mesh_from_bytes(data, "m.dae")
-    assert str(caught.value).startswith("m.dae: ")
-    assert "\n" not in str(caught.value)
 
 
 def with_accessor(accessor: str, numbers: str, **kwargs) -> bytes:
@@ -267,81 +208,33 @@ NODE = '<instance_geometry url="#g"/>'
             with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE),
             "stride 2",
         ),
-        (
-            with_accessor(f'<accessor source="#pa" count="-4" stride="3">{XYZ}</accessor>', WEDGE),
-            "count -4",
-        ),
-        (
-            with_accessor(
-                '<accessor source="#pa" count="4" stride="3"><param name="S"/></accessor>', WEDGE
-            ),
-            "S",
-        ),
         (document(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
-        (
-            document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'),
-            "its count is 5",
-        ),
-        (
-            document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")),
-            "count is 2",
-        ),
-        (document(Z_UP, primitives=primitive("polygons", 2, "<p>0 1 2</p>")), "its count is 2"),
+        (document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'), "its count is 5"),
+        (document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")), "count is 2"),
         (document(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 -1</p>")), "vertex -1"),
-        (
-            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 4294967298</p>")),
-            "vertex 4294967298",
-        ),
-        (
-            document(Z_UP, primitives=primitive("triangles", 1, f"<p>0 1 {2**64}</p>")),
-            "whole number",
-        ),
-        (
-            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")),
-            "'1_0' is not a whole number",
-        ),
-        (
-            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")),
-            "<p> holds <b>",
-        ),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")), "'1_0' is not a whole number"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")), "<p> holds <b>"),
         (
             document(
                 Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")
             ),
             "holes (<ph>)",
         ),
-        (document(Z_UP, vertices=WEDGE.replace("3", "3_0")), "'3_0' is not a number"),
         (document('<unit meter="0,01"/>' + Z_UP), "<unit meter='0,01'> is given"),
-        (document('<unit meter="inch"/>' + Z_UP), "<unit meter='inch'> is given"),
         (document('<unit name="inch"/>' + Z_UP), "<unit name='inch'> is given"),
         (document("<up_axis>W_UP</up_axis>"), "<up_axis> is 'W_UP'; X_UP, Y_UP, Z_UP"),
-        (
-            document(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'),
-            "units of 1 and 0.5 m",
-        ),
+        (document(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'), "units of 1 and 0.5 m"),
         (
             document(
                 Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"
             ),
             "<matrix>: the last row is [0.0, 0.0, 0.0, 2.0]; 0 0 0 1",
         ),
-        (
-            document(Z_UP, nodes=f"<node><translate>1 0</translate>{NODE}</node>"),
-            "<translate>: 2 numbers; 3",
-        ),
         (document(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
-        (document(Z_UP, nodes=f"<node><rotate>0 0 0 9</rotate>{NODE}</node>"), "a direction"),
-        (
-            document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1),
-            "entities",
-        ),
-        (
-            document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"),
-            "nested more than 100 deep",
-        ),
+        (document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1), "entities"),
+        (document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"), "nested more than 100 deep"),
     ],
-)
+)  # fmt: skip
 def test_what_would_be_another_surface_is_refused(data, says):
     with pytest.raises(BadInput) as caught:
         mesh_from_bytes(data, "m.dae")

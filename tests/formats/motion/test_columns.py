@@ -5,14 +5,10 @@ import io
 import numpy as np
 import pytest
 
-import clearance as cl
-from clearance.case.case_file import load_case
-from clearance.case.recorded_run import with_recorded
-from clearance.cli import run
 from clearance.errors import BadInput, BadPose, BadShape, BadSyntax, MissingKey, UnknownJoint
 from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, read_trajectory
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
-from tests.formats.making import ARM, PATH, write_case
+from tests.formats.making import ARM
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
 TURNS = {"shoulder": True, "lift": False}
@@ -29,9 +25,7 @@ def read(text, turns=TURNS, **choice):
 WAYS = [
     ("Time,shoulder,lift\n0,1,2\n1,3,4\n", []),
     ("t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
-    ("Timestamp,shoulder,lift\n0,1,2\n1,3,4\n", ["column 'Timestamp' is taken for time"]),
     ("t_ms,shoulder,lift\n0,1,2\n1000,3,4\n", ["column 't_ms' is taken for time", "read in milliseconds: 'time'"]),
-    ("T [s],shoulder,lift\n0,1,2\n1,3,4\n", ["column 'T [s]' is taken for time"]),
     (
         "timestamp_ns,shoulder,lift\n0,1,2\n1000000000,3,4\n",
         ["column 'timestamp_ns' is taken for time", "read in nanoseconds: 'time'"],
@@ -39,9 +33,7 @@ WAYS = [
     ("time_us,shoulder,lift\n0,1,2\n1000000,3,4\n", ["read in microseconds: 'time'"]),
     ("% time shoulder lift\n0 1 2\n1 3 4\n", ["columns are separated by tabs or blanks"]),
     ("# time,shoulder,lift\n0,1,2\n1,3,4\n", []),
-    ("#t,shoulder,lift\n0,1,2\n1,3,4\n", ["column 't' is taken for time"]),
     ("time,shoulder/position,lift/position\n0,1,2\n1,3,4\n", []),
-    ("time,shoulder/position [rad],lift\n0,1,2\n1,3,4\n", []),
     ("time\tshoulder\tlift\n0\t1\t2\n1\t3\t4\n", ["columns are separated by tabs or blanks"]),
     ("time shoulder   lift\n0 1 2\n 1 3 4 \n\n", ["columns are separated by tabs or blanks"]),
     (
@@ -54,7 +46,6 @@ WAYS = [
     ),
     ("time,shoulder,lift,\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
     ("time,shoulder,lift\n0,1,2,\n1,3,4,\n", ["the empty column at the end is left out"]),
-    ("time,shoulder,lift,\n0,1,2\n1,3,4\n", []),
 ]  # fmt: skip
 
 
@@ -67,13 +58,6 @@ def test_headers_of_other_programs_are_taken(text, notes):
     assert list(told) == [f"path.csv: {note}" for note in notes]
 
 
-def test_velocities_go_with_positions_that_are_called_so():
-    text = "time,shoulder/position,shoulder/velocity\n0,1,5\n1,3,7\n"
-    trajectory, _ = read(text)
-    assert trajectory.joint_names == ("shoulder",)
-    assert trajectory.velocities.tolist() == [[5], [7]]
-
-
 def test_a_joint_that_is_called_t_is_no_time():
     with pytest.raises(MissingKey, match="no column 'time'"):
         read("t,shoulder\n0,1\n", {"t": True, "shoulder": True})
@@ -84,11 +68,8 @@ def test_a_joint_that_is_called_t_is_no_time():
     [
         ("t,timestamp,shoulder\n0,1,2\n", MissingKey, "'t', 'timestamp' could each be it; did you mean 't'?"),
         ("0,1,2\n1,3,4\n", MissingKey, "'0,1,2', begins with a number: there is no header; joints: [the names"),
-        ("17,base,elbow,0.0,0.0\n", MissingKey, "begins with a number: there is no header"),
         (",time,shoulder\n0,0,1\n", BadSyntax, "column 1 of the header has no name"),
-        ("0\t1\t2\n", MissingKey, "the columns beside time, in order] (--joints)"),
         ("time,shoulder,\n0,1,\n1,2\n", BadShape, "line 3: 2 columns; the header has 3"),
-        ("T [deg],shoulder\n0,1\n", BadInput, "column 'T [deg]' is a time, not in deg"),
     ],
 )  # fmt: skip
 def test_what_could_be_meant_otherwise_is_refused(text, fault, says):
@@ -113,11 +94,6 @@ def test_a_log_of_other_columns_is_taken_by_columns(tmp_path):
     assert trajectory.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
     told = "path.csv: columns not read: 'status', 'target_q_0', 'target_q_1', 'current'"
     assert told in made.notes
-
-
-def test_a_first_row_with_a_unit_behind_a_blank_is_one_column():
-    with pytest.raises(MissingKey, match="no column 'time' in the header 'elbow'"):
-        read("elbow [deg]\n1\n")
 
 
 def test_the_error_on_a_log_can_be_pasted(tmp_path):
@@ -174,9 +150,7 @@ def test_columns_that_are_renamed_keep_the_unit_that_they_end_in():
     [
         ("[time, sholder]", MissingKey, "'sholder', which `columns` names; did you mean 'shoulder'"),
         ("[shoulder]", MissingKey, "`columns` names no 'time'"),
-        ("{time: time, elbow: shoulder}", UnknownJoint, "unknown joint 'elbow'"),
         ("[]", BadInput, "trajectory.columns: [] is given; 1 values are needed"),
-        ("3", BadInput, "trajectory.columns: 3 is given"),
     ],
 )  # fmt: skip
 def test_columns_that_are_not_there_are_refused(tmp_path, columns, fault, says):
@@ -220,18 +194,6 @@ def test_a_column_of_a_joint_that_follows_is_taken_where_it_agrees(tmp_path):
         load_small(tmp_path, urdf=FINGERS, trajectory=alone)
 
 
-def test_a_message_with_accelerations_may_tell_of_a_joint_that_follows(tmp_path):
-    """Its own points are those of the joints that are left, as the samples between them are."""
-    point = "{positions: %s, velocities: [0, 0], accelerations: [0.1, -0.2], time_from_start: %d}"
-    points = [point % ([0.01 * i, 0.01 - 0.02 * i], i) for i in range(2)]
-    text = f"joint_names: [lift, other]\npoints: [{', '.join(points)}]\n"
-    case = changed("path.csv", "path.yaml")
-    made = load_small(tmp_path, case, urdf=FINGERS, path__yaml=text).robots[0].trajectory
-    assert made.joint_names == ("lift",) and made.positions.shape == (made.n_steps, 1)
-    assert made.written.positions.tolist() == [[0.0], [0.01]]
-    assert made.written.accelerations.tolist() == [[0.1], [0.1]]
-
-
 FREE = ARM.replace('type="revolute"', 'type="floating"')
 WAY = [
     (0.0, [0, 0, 1], [0, 0, 0, 1]),
@@ -266,17 +228,6 @@ def test_a_free_base_may_be_logged_with_a_quaternion(tmp_path):
     assert any("quaternions of 'shoulder' are read as yaw, pitch and roll" in n for n in made.notes)
 
 
-def test_a_free_base_of_other_names_is_taken_by_columns(tmp_path):
-    names = ["px", "py", "pz", "qx", "qy", "qz", "qw"]
-    pairs = dict(zip(["time", *PARTS], ["t", *names], strict=True))
-    told = ", ".join(f"{part}: {name}" for part, name in pairs.items())
-    case = changed("path.csv", f"path.csv, columns: {{{told}}}")
-    made = load_small(tmp_path, case, urdf=FREE, trajectory=logged(",".join(["t", *names])))
-    straight = load_small(tmp_path, urdf=FREE, trajectory=logged(",".join(["time", *PARTS])))
-    one, other = (case.robots[0].trajectory for case in (made, straight))
-    assert one.joint_names == other.joint_names and np.array_equal(one.positions, other.positions)
-
-
 def test_quaternions_of_a_base_that_say_no_angles_are_refused(tmp_path):
     header = ",".join(["time", *PARTS])
     with pytest.raises(BadPose, match="line 2: the quaternion"):
@@ -284,39 +235,3 @@ def test_quaternions_of_a_base_that_say_no_angles_are_refused(tmp_path):
     up = np.array([0.0, 0.5**0.5, 0.0, 0.5**0.5])
     with pytest.raises(BadInput, match=r"line 2: 'shoulder' is pitched by 90\.0 degrees"):
         load_small(tmp_path, urdf=FREE, trajectory=logged(header, lambda q: up))
-
-
-def test_a_recorded_log_is_taken_by_columns(tmp_path):
-    path = write_case(
-        tmp_path, trajectory=PATH, log__csv="t,q0,volts\n0,0,48\n0.5,0.251,48\n1,0.5,4\n"
-    )
-    columns = {"time": "t", "shoulder": "q0"}
-    case = with_recorded(load_case(path), tmp_path / "log.csv", columns=columns)
-    assert case.robots[0].trajectory.positions[:, 0].tolist() == [0, 0.251, 0.5]
-    how = {"motion": "recorded", "recorded": tmp_path / "log.csv", "certify": False}
-    again = cl.check(path, **how, recorded_columns=columns)
-    assert again.record.case.robots[0].trajectory.positions[1, 0] == 0.251
-
-
-def test_new_takes_columns_and_writes_what_they_are(tmp_path, monkeypatch, capsys):
-    post = "obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}, pose: {xyz: [2, 0, 0]}}]\n"
-    write_case(tmp_path, urdf=TWO_JOINTS, trajectory=LOG, scene__yaml=post)
-    monkeypatch.chdir(tmp_path)
-    words = [
-        "new",
-        "out",
-        "--robot",
-        "arm.urdf",
-        "--scene",
-        "scene.yaml",
-        "--trajectory",
-        "path.csv",
-    ]
-    words.append("--columns")
-    assert run([*words, "time=timestamp,shoulder=actual_q_0,lift=actual_q_1"]) == 0
-    assert "columns not read: 'status'" in (tmp_path / "out" / "case.yaml").read_text()
-    made = load_case(tmp_path / "out" / "case.yaml").robots[0].trajectory
-    assert made.positions.tolist() == [[0.1, 0.02], [0.2, 0.03]]
-    capsys.readouterr()
-    assert run([*words, "time=,shoulder"]) == 2
-    assert "'time=,shoulder' is given; columns such as time,elbow=q3" in capsys.readouterr().err

@@ -7,7 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from clearance.errors import BadInput
+from clearance.errors import (
+    BadInput,
+    BadPose,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+    UnknownKey,
+)
 from clearance.formats.motion.pose_file import PoseRequest, read_poses
 from clearance.formats.motion.pose_table_file import parse_pose_table
 from clearance.formats.text.file_start import POSE_COLUMNS
@@ -85,3 +95,31 @@ def test_quaternions_of_three_digits_are_made_of_length_one_with_a_note(name, te
     bad = text.replace("0.707", "0.7").encode()
     with pytest.raises(BadInput, match=r"0\.98994"):
         read_poses(PoseRequest(lambda: io.BytesIO(bad), len(bad)), name)
+
+
+HEADER = "time,x,y,z,qx,qy,qz,qw\n"
+FIRST = HEADER + "0,0,0,0,0,0,0,1\n"
+
+
+@pytest.mark.parametrize(
+    ("table", "fault", "says"),
+    [
+        ("", BadSyntax, "the file is empty"),
+        (HEADER, BadShape, "there are no rows"),
+        (HEADER.replace(",qw", ""), MissingKey, "there is no column 'qw'"),
+        (FIRST.replace("time", "when"), MissingKey, "there is no column 'time'"),
+        (FIRST.replace("\n", ",w\n", 1), UnknownKey, "column 'w' is not of a table of poses"),
+        (FIRST.replace("y", "x", 1), DuplicateName, "column 'x' is there twice"),
+        (FIRST + "\n1,0,0,0,0,0,0.1,1\n", BadPose, "line 4: the quaternion [0.0, 0.0, 0.1, 1.0] has"),
+        (HEADER + "0,0,0,0,1e200,0,0,1\n", BadPose, "line 2: the quaternion"),
+        (FIRST + "0,0,0,0,0,0,0,1\n", BadTime, "line 3: time 0.0 follows 0.0"),
+        (HEADER + "0,0,0,nan,0,0,0,1\n", NotFinite, "line 2: nan in column 'z'"),
+        (HEADER + "0,0,0,1e160,0,0,0,1\n", BadPose, "line 2: a position is 1e+160 m away"),
+        (HEADER + "0,0,0,0,0,0,0\n", BadShape, "line 2: 7 columns; the header has 8"),
+        (HEADER + "0,0,0,a,0,0,0,1\n", BadSyntax, "line 2: 'a' in column 'z' is not a number"),
+    ],
+)  # fmt: skip
+def test_faults_name_file_and_row(table, fault, says):
+    with pytest.raises(fault) as caught:
+        parse_pose_table(table.encode(), "door.csv")
+    assert str(caught.value).startswith(f"door.csv: {says}")

@@ -115,20 +115,6 @@ def test_pauses_as_short_as_slow_recordings_have_throughout_are_no_holes(times):
     assert not read(states(times, "shoulder")).trajectory.holes
 
 
-def test_a_gripper_told_of_ten_times_a_second_beside_a_fast_arm_has_no_holes():
-    arm = states(0.002 * np.arange(460), "shoulder")
-    finger = states(0.005 + 0.1 * np.arange(10), "finger", ("finger",))
-    assert not read(sorted(arm + finger)).trajectory.holes
-
-
-def test_a_slow_joint_that_begins_late_by_several_of_its_intervals_leaves_that_not_measured():
-    arm = states(0.002 * np.arange(3000), "shoulder")
-    finger = states(0.5 + 0.1 * np.arange(55), "finger", ("finger",))
-    (start,) = read(sorted(arm + finger)).trajectory.holes
-    assert (start.joints, start.means) == (("finger",), "not_measured")
-    assert (start.start, start.end) == pytest.approx((-0.5, 0.0))
-
-
 def test_a_joint_that_holds_moves_within_a_usual_interval_before_its_next_message():
     messages = states(with_hole(), "shoulder", swing=lambda t: 0.0 if t <= 1.0 else 0.4)
     trajectory, _ = read(messages, "hold")
@@ -151,23 +137,11 @@ def test_a_joint_that_is_told_of_once_holds_to_the_end():
     assert trajectory.times[-1] == pytest.approx(99 * STEP - 0.0101)
 
 
-def test_the_usual_jitter_and_messages_that_are_lost_in_a_row_are_no_holes():
-    rng = np.random.default_rng(7)
-    times = np.cumsum(rng.uniform(0.005, 0.035, 500))
-    kept = np.delete(times, np.arange(200, 206))
-    assert not read(states(kept, "shoulder")).trajectory.holes
-
-
 LOG = "time,shoulder,lift\n" + "".join(f"{t},0,0\n" for t in with_hole())
 
 
 def suspects(case):
     return [n for n in notices_of(case) if n.severity == "suspect"]
-
-
-def test_a_planned_table_with_waypoints_far_apart_is_none(tmp_path):
-    case = load_case(write_case(tmp_path, urdf=TWO_JOINTS, trajectory=LOG))
-    assert not suspects(case)
 
 
 def test_a_table_is_a_recording_where_it_is_given_as_one(tmp_path):

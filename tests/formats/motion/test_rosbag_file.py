@@ -6,7 +6,7 @@ import pytest
 
 from clearance import check
 from clearance.cli import run
-from clearance.errors import BadInput, BadShape, BadTime, ClearanceError, NotFinite
+from clearance.errors import BadInput, BadShape, BadTime, NotFinite
 from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.timed_files import load_trajectory
 from tests.formats.making import write_case
@@ -115,13 +115,6 @@ def test_a_bag_without_definitions_is_read_by_ours(tmp_path):
     assert trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
 
 
-def test_recorded_velocities_are_said_not_to_be_followed(tmp_path):
-    moving = [state(i, [0.1 * i, 0.0], velocities=[0.1, 0.0]) for i in range(3)]
-    trajectory, notes = read(write_bag(tmp_path, "mcap", {"/joint_states": moving}))
-    assert trajectory.velocities is None
-    assert any("recorded velocities are not followed" in note for note in notes)
-
-
 @pytest.mark.parametrize("container", CONTAINERS)
 def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, container):
     """Each joint has its own samples exactly, and lies straight between them at the other's times."""
@@ -154,20 +147,6 @@ def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
         )
         with pytest.raises(BadShape, match="message 1: 2 positions of shoulder, "):
             read(bag)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("container", CONTAINERS)
-def test_a_bag_cut_off_is_refused_in_one_line_or_is_read(tmp_path, container):
-    path = write_bag(tmp_path, container, {"/joint_states": STATES})
-    file = max(path.iterdir(), key=lambda one: one.stat().st_size) if path.is_dir() else path
-    data = file.read_bytes()
-    for end in range(0, len(data), max(1, len(data) // 150)):
-        file.write_bytes(data[:end])
-        try:
-            assert read(path).trajectory.n_steps <= 3
-        except ClearanceError as error:
-            assert "\n" not in str(error)
 
 
 def test_a_case_names_a_bag(tmp_path, capsys):

@@ -13,7 +13,6 @@ from clearance.formats.motion.trajectory_file import Choice, TrajectoryRequest, 
 from clearance.world.cubic import positions_along
 from clearance.world.plausibility import notices_of
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
-from tests.formats.making_messages import ROS2
 
 SRDF = (
     '<robot name="arm"><group_state name="home" group="arm"><joint name="shoulder" value="-0.5"/>'
@@ -74,10 +73,6 @@ def test_a_table_of_one_row_is_a_single_pose(tmp_path, capsys, time):
     assert "CLEAR at a single pose" in capsys.readouterr().out
 
 
-def test_a_motion_is_none(tmp_path):
-    assert check(load_small(tmp_path)).verdict.text() == "clear"
-
-
 def test_a_goal_without_a_start_is_suspect_in_whatever_format(tmp_path):
     says = (
         "the trajectory of robot 'arm' has one sample, at 4 s: the motion to this goal is not measured; give its "
@@ -131,12 +126,6 @@ def test_a_start_in_the_case_makes_it_a_motion(tmp_path):
     assert named.robots[0].trajectory.positions.tolist() == asked.positions.tolist()
 
 
-def test_with_velocities_it_starts_from_rest(tmp_path):
-    goal = plan(point(4.0, 1.0, velocities=[0.5]))
-    asked = load(tmp_path, goal, ", start_state: {shoulder: 0}").robots[0].trajectory
-    assert asked.velocities.tolist() == [[0.0], [0.5]]
-
-
 def test_with_accelerations_it_goes_on_a_quintic_from_rest(tmp_path):
     """From rest to rest the quintic is s^3 (10 - 15 s + 6 s^2): at a quarter 0.103516 of the way."""
     goal = plan(point(4.0, 1.0, velocities=[0.0], accelerations=[0.0]))
@@ -180,12 +169,6 @@ def test_the_start_of_a_message_is_used():
     )
     moving = displayed(plan(point(4.0, 1.0, velocities=[0.0])), state({"shoulder": -0.5}, [0.25]))
     assert read(moving).trajectory.velocities.tolist() == [[0.25], [0.0]]
-
-
-def test_so_it_is_where_the_first_of_several_points_is_later():
-    message = displayed(plan(point(0.5, 0.1), point(1.0, 0.2)), state({"shoulder": 0.0}))
-    assert read(message).trajectory.times.tolist() == [0.0, 0.5, 1.0]
-    assert read(displayed(plan(point(0.5, 0.1)), {"is_diff": True})).trajectory.n_steps == 1
 
 
 def test_what_the_start_says_of_other_joints_and_another_place_is_told():
@@ -258,16 +241,6 @@ def test_what_aliases_repeat_is_looked_at_once():
     assert read_trajectory(request, "path.yaml").notes == ()
 
 
-def test_what_a_start_state_says_beside_its_joints_is_named():
-    box = {"link_name": "tip", "object": {"id": "box"}}
-    start = state({"shoulder": 0.0}, attached_collision_objects=[box], is_diff=True)
-    notes = read(displayed(plan(point(0.0, 0.0), point(1.0, 0.1)), start)).notes
-    said = (
-        "path.json: fields beside the points, not read: trajectory_start.attached_collision_objects"
-    )
-    assert notes == (said,)
-
-
 @pytest.mark.parametrize("key", ["multi_dof_joint_trajectory", "multi_dof_trajectory"])
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_what_a_base_does_beside_is_refused_at_any_depth(key, depth):
@@ -279,33 +252,3 @@ def test_what_a_base_does_beside_is_refused_at_any_depth(key, depth):
     where = "goal." * depth
     with pytest.raises(BadInput, match=rf"{where}{key}: 1 points of joints with several degrees"):
         read(message)
-
-
-def test_a_new_case_of_a_goal_proposes_its_start(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    load(tmp_path, plan(point(4.0, 1.0)))
-    (tmp_path / "scene.yaml").write_text("obstacles: [{name: post, box: {size: [0.1, 0.1, 1]}}]\n")
-    words = [
-        "new",
-        "out",
-        "--robot",
-        "arm.urdf",
-        "--trajectory",
-        "path.json",
-        "--scene",
-        "scene.yaml",
-    ]
-    assert run(words) == 0
-    path = tmp_path / "out" / "case.yaml"
-    assert kinds(load_case(path)).count("start") == 1
-    (line,) = [one for one in path.read_text().splitlines() if "start_state" in one]
-    taken = line.removeprefix("# ").partition("  #")[0]
-    assert taken == "trajectory: {file: trajectory.csv, start_state: {shoulder: 0.0}}"
-    path.write_text(path.read_text().replace("trajectory: trajectory.csv  #", f"{taken}  #"))
-    case = load_case(path)
-    assert "start" not in kinds(case) and case.robots[0].trajectory.times.tolist() == [0.0, 4.0]
-
-
-def test_the_frame_of_a_message_stands_in_the_notes_of_the_case(tmp_path):
-    case = load_small(tmp_path, changed("path.csv", "path.yaml"), urdf=TWO_JOINTS, path__yaml=ROS2)
-    assert "path.yaml: fields beside the points, not read: header.frame_id 'base'" in case.notes

@@ -1,11 +1,9 @@
 """Which way round continuous joints go by what files say: a table asks, a recording goes the shortest way."""
 
-import json
-
 import numpy as np
 import pytest
 
-from clearance import check, load_case
+from clearance import load_case
 from clearance.case.recorded_run import with_recorded
 from clearance.cli import run
 from clearance.errors import BadInput
@@ -14,7 +12,6 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.plausibility import notices_of
 from tests.formats.making import ARM
 from tests.formats.making_case import changed, load_small
-from tests.formats.robot.test_compound_joints import FREE
 
 SPINS = ARM.replace('type="revolute"', 'type="continuous"').replace("<limit", "<unused")
 AROUND = "time,shoulder\n0,2.6\n1,3.1\n2,-2.8\n3,-2.6331853\n"
@@ -56,13 +53,6 @@ def test_a_turntable_that_goes_round_and_round_is_not_in_degrees(tmp_path):
     assert course(case) == pytest.approx(angles) and kinds(case) == []
     rows = "".join(f"{t},{d}\n" for t, d in enumerate([*range(100, 181), *range(-179, -100)]))
     assert kinds(load(tmp_path, ", wrap: shortest", "time,shoulder\n" + rows)) == ["units"]
-
-
-def test_the_yaw_of_a_floating_base_wraps_too(tmp_path):
-    path = "time,root/yaw,shoulder\n0,3,0\n1,-3,0\n"
-    case = load(tmp_path, trajectory=path, urdf=FREE)
-    assert kinds(case) == ["wrap"] and "in one step, from 3 to -3 rad" in notices_of(case)[0].text
-    assert course(load(tmp_path, ", wrap: shortest", path, FREE))[1] == pytest.approx(2 * np.pi - 3)
 
 
 def states(times, angles, name="shoulder"):
@@ -141,14 +131,6 @@ def test_a_new_case_proposes_the_key(tmp_path, monkeypatch, capsys):
     text = text.replace("trajectory: trajectory.csv  #", f"{taken}  #")
     (tmp_path / "out" / "case.yaml").write_text(text)
     assert "wrap" not in kinds(load_case(tmp_path / "out" / "case.yaml"))
-
-
-def test_the_summary_has_both_answers(tmp_path, capsys):
-    load(tmp_path)
-    assert run(["check", str(tmp_path / "case.yaml"), "--json"]) == 2
-    (one,) = json.loads(capsys.readouterr().out)["suspects"]
-    assert one["kind"] == "wrap" and "least clearance as written: " in one["text"]
-    assert check(load(tmp_path, ", wrap: shortest"), need="minimum").verdict.status != "suspect"
 
 
 def test_a_table_that_is_said_to_be_recorded_goes_the_shortest_way(tmp_path):

@@ -85,16 +85,6 @@ def test_where_both_shapes_turn_together_the_joints_tell(tmp_path):
         assert load(tmp_path, "ros", visual=visual, bar__dae=dae(BAR)).notices == ()
 
 
-def test_shapes_that_agree_neither_way_say_nothing(tmp_path):
-    other = binary_stl((BAR * 0.1 + [3.0, 0.0, 0.0])[CUBE_TRIANGLES])
-    assert load(tmp_path, "ros", seen__stl=other, bar__dae=dae(CUBE)).notices == ()
-
-
-def test_pictures_are_not_read_where_no_tag_turns_a_file(tmp_path):
-    found = load(tmp_path, visual="no.stl", bar__dae=dae(BAR, "Z_UP"))
-    assert found.notices == ()
-
-
 def test_a_case_chooses_the_way(tmp_path):
     urdf = robot(
         link(shape("collision", "bar.dae"), "base"),

@@ -6,10 +6,9 @@ import pytest
 from clearance.errors import BadInput, DuplicateName
 from clearance.formats.robot.compound_joints import COMPOUND, chained
 from clearance.geometry.pose import pose_from_rpy
-from clearance.simulate.physics.model import write_physics_urdf
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
-from tests.formats.making_case import changed, load_small
+from tests.formats.making_case import load_small
 from tests.formats.making_urdf import BOX, joint, link, load_urdf, robot
 
 UP = '<axis xyz="0 0 1"/>'
@@ -70,14 +69,6 @@ def test_what_cannot_be_read_is_refused(tmp_path, urdf, fault, words):
         load_urdf(tmp_path, urdf)
 
 
-def test_its_motion_cannot_be_simulated(tmp_path):
-    placed = PlacedRobot(
-        load_urdf(tmp_path, moving("floating")), urdf_path=str(tmp_path / "arm.urdf")
-    )
-    with pytest.raises(BadInput, match="motion with the floating joint 'free' cannot be simulated"):
-        write_physics_urdf(placed, tmp_path, False)
-
-
 FREE = robot(
     link(BOX, "world"), link(BOX, "upper"), link(BOX, "base"), joint("shoulder", "base", "upper"),
     joint("root", "world", "base", "floating"),
@@ -91,11 +82,3 @@ def test_a_floating_joint_that_nobody_places_is_refused_with_the_ways_out(tmp_pa
         "case.yaml: robot.joints: floating joint 'root' is given no place; {root/x: 0} where it stays at 0, or "
         "columns of the trajectory (root/x, root/y, root/z, root/yaw, root/pitch, root/roll)"
     )
-
-
-def test_one_part_that_is_given_places_a_floating_joint(tmp_path):
-    text = changed("arm.urdf", "arm.urdf, joints: {root/z: 0.5}")
-    case = load_small(tmp_path, text, urdf=FREE)
-    assert any("stay at 0: root/x, root/y, root/yaw" in note for note in case.notes)
-    case = load_small(tmp_path, urdf=FREE, trajectory="time,shoulder,root/x\n0,0,1\n1,0.5,2\n")
-    assert case.robots[0].trajectory.joint_names == ("shoulder", "root/x")

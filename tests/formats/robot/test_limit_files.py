@@ -5,7 +5,7 @@ import math
 import pytest
 
 from clearance import check, load_case
-from clearance.errors import BadInput, ClearanceError, MissingKey, UnknownJoint, UnknownKey
+from clearance.errors import BadInput, MissingKey, UnknownJoint, UnknownKey
 from clearance.formats.robot.limit_files import parse_controllers, parse_joint_limits
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.notice import Severity
@@ -241,16 +241,3 @@ def test_files_of_another_robot_are_refused(tmp_path):
         load(tmp_path, others)
     with pytest.raises(MissingKey, match="no controller in it has 'joints' or 'constraints'"):
         load(tmp_path, None, LIMITS)
-
-
-@pytest.mark.parametrize(
-    "whole, parse", [(LIMITS, parse_joint_limits), (CONTROLLERS, parse_controllers)]
-)
-@pytest.mark.slow
-def test_a_file_cut_off_anywhere_is_read_or_refused_in_one_line(whole, parse):
-    """YAML has no end, so what is cut off between two lines is a shorter file."""
-    for end in range(len(whole)):
-        try:
-            parse(whole[:end].encode())
-        except ClearanceError as error:
-            assert "\n" not in str(error)

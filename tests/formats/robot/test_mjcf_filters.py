@@ -8,8 +8,6 @@ import pytest
 
 import clearance as cl
 from clearance.formats.robot.mjcf.robot import BITS, EXCLUDE, PARENT
-from clearance.profiles.swept_bodies import swept_bodies
-from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 from clearance.world.collision_matrix import ADJACENT
 from clearance.world.self_pairs import RIGID, self_pairs
 from tests.formats.making_mjcf import BALL, load_mjcf, mjcf
@@ -52,13 +50,6 @@ def test_what_is_welded_to_a_parent_or_moved_by_two_joints_is_filtered_and_told(
     assert any(note.endswith(told) for note in loaded.notes)
 
 
-def test_what_stands_is_no_parent(tmp_path):
-    """The base is welded to the world, as are the walls."""
-    base = body("base", body("boom"), joint="")
-    loaded = load_mjcf(tmp_path, mjcf(BALL + base))
-    assert why(loaded) == {"world base": RIGID, "world boom": None, "base boom": None}
-
-
 def test_pairs_that_are_asked_for_are_measured_whatever_else_is_said(tmp_path):
     geoms = [f'<geom name="{name}" size="0.1" contype="0" conaffinity="0"/>' for name in "abc"]
     nested = body("a", body("b", body("c", geom=geoms[2]), geom=geoms[1]), geom=geoms[0])
@@ -86,12 +77,6 @@ def test_bits_of_the_floor_count_and_bodies_without_a_shape_are_not_told(tmp_pat
     assert why(loaded) == {"world high": BITS, "world low": None, "high low": BITS}
     (note,) = (one for one in loaded.notes if "leaves out" in one)
     assert note.endswith(f"({BITS}): world - high, high - low")
-
-
-def test_bits_say_nothing_of_shapes_that_are_only_seen(tmp_path):
-    seen = '<geom size="0.1" contype="0" conaffinity="0"/>'
-    loaded = load_mjcf(tmp_path, mjcf(body("a", geom=seen) + body("b", geom=seen)), "visual")
-    assert why(loaded) == {"a b": None}
 
 
 class RandomModel:
@@ -154,7 +139,6 @@ def test_mujoco_collides_exactly_the_pairs_that_are_measured(tmp_path, first):
 
 
 STAND = '<geom type="box" size="0.1 0.1 0.1"/>'
-SLIDE = f'<body name="moved" pos="1 0 0"><joint name="j" type="slide" axis="1 0 0"/>{STAND}</body>'
 
 
 def run_of(robot, *obstacles, end=-0.886, self_clearance=True):
@@ -163,15 +147,6 @@ def run_of(robot, *obstacles, end=-0.886, self_clearance=True):
     asked = cl.SelfClearance() if self_clearance else None
     placed = cl.PlacedRobot(robot, path, self_clearance=asked)
     return cl.check(cl.Case("stand", (placed,), obstacles))
-
-
-@pytest.mark.parametrize("model", [STAND + SLIDE, f"<body>{STAND}{SLIDE}</body>"])
-def test_a_link_that_hits_the_stand_that_it_slides_on_is_found(tmp_path, model):
-    """Stand and slider are 0.1 m to each side; the slider goes from 1 m away to 0.114 m."""
-    robot = load_mjcf(tmp_path, mjcf(model))
-    run = run_of(robot)
-    assert run.verdict.status == "contact"
-    assert run.record.deepest.penetration == pytest.approx(0.086)
 
 
 DROP = f'<body name="moved" pos="0 0 1"><joint name="j" type="slide" axis="0 0 1"/>{STAND}</body>'
@@ -196,10 +171,3 @@ def test_the_models_own_floor_is_told_where_it_is_not_measured(tmp_path):
         why_not = {(one.link, one.obstacle): one.reason for one in run.record.unmeasured}
         assert why_not["world", "table"] == "both stand in the world"
         assert (run.verdict.status, run.verdict.reasons) == ("clear", ())
-
-
-def test_the_models_own_floor_is_swept_by_nothing(tmp_path):
-    run = run_of(load_mjcf(tmp_path, mjcf(FLOOR + DROP)), end=-0.5)
-    assert {one.label for one in swept_bodies(run.record, None, [])} == {"moved"}
-    assert {one.label for one in swept_bodies(run.record, ["world"], [])} == {"world"}
-    assert {piece.link for piece in swept_pieces(run.record.timeline, 0, 0.01)} == {"moved"}

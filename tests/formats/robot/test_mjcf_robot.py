@@ -3,18 +3,15 @@
 import numpy as np
 import pytest
 
-import clearance as cl
-from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, NothingToMeasure
+from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.request import RobotRequest
-from clearance.simulate.physics.model import write_physics_urdf
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind
 from tests.formats.making_case import changed, load_small
 from tests.formats.making_mjcf import BALL, load_mjcf, mjcf, tetrahedron_stl, write_mjcf
-from tests.formats.making_urdf import BOX, link, robot
 
 ARM = mjcf(
     f'<body name="upper" pos="0 0 0.1"><joint name="shoulder" axis="0 0 1" range="-90 90"/>{BALL}'
@@ -42,25 +39,6 @@ def test_a_case_names_it_as_a_robot(tmp_path):
     assert [source.path for source in case.sources] == ["arm.xml", "case.yaml", "path.csv"]
 
 
-def test_a_robot_of_any_format_is_loaded_by_its_file(tmp_path):
-    write_mjcf(tmp_path, ARM)
-    (tmp_path / "arm.urdf").write_text(robot(link(BOX, "a")))
-    assert cl.load_robot(tmp_path / "toy.xml").link_names == ("world", "upper", "hand")
-    assert cl.load_robot(str(tmp_path / "arm.urdf")).link_names == ("a",)
-
-
-def test_its_motion_cannot_be_simulated(tmp_path):
-    placed = cl.PlacedRobot(load_mjcf(tmp_path, ARM), urdf_path=str(tmp_path / "toy.xml"))
-    with pytest.raises(BadSyntax, match="its motion cannot be simulated; the robot as URDF"):
-        write_physics_urdf(placed, tmp_path, False)
-
-
-def test_an_xml_file_whose_root_is_robot_is_urdf(tmp_path):
-    (tmp_path / "arm.xml").write_text(robot(link(BOX, "a")))
-    read = read_robot(RobotRequest(tmp_path / "arm.xml"), MeshStore(InputFiles(tmp_path)))
-    assert read.link_names == ("a",)
-
-
 SEEN = mjcf(
     f'<body name="a"><joint/>{BALL}<geom size="0.2" contype="0" conaffinity="0" group="2"/></body>'
     '<body name="b"><geom size="0.3" contype="0" conaffinity="0"/></body>'
@@ -85,12 +63,6 @@ def test_geoms_collide_or_are_seen(tmp_path, geometry, radii):
         assert told[0].startswith(
             "1 link has a visual but no collision shape and is not measured: 'b'"
         )
-
-
-def test_a_model_that_is_only_seen_says_what_to_give(tmp_path):
-    text = mjcf('<body name="b"><geom size="0.3" contype="0" conaffinity="0"/></body>')
-    with pytest.raises(NothingToMeasure, match=r"give robot: \{geometry: visual\}"):
-        load_mjcf(tmp_path, text)
 
 
 def test_geoms_of_the_world_stand_with_the_robot_planes_among_them(tmp_path):
@@ -192,15 +164,6 @@ def test_a_mesh_without_faces_is_the_hull_of_its_points_in_double_precision(tmp_
     np.testing.assert_allclose(body.shape.bounds, [[0, 0, 0], [0.1, 0.1, 0.1]], rtol=0, atol=1e-16)
 
 
-def test_a_box_may_be_fitted_to_a_mesh(tmp_path):
-    text = mjcf(
-        '<body><geom type="box" mesh="a"/></body>',
-        '<asset><mesh file="a.stl" scale="1 2 3"/></asset>',
-    )
-    (body,) = load_mjcf(tmp_path, text).bodies
-    assert body.origin == "box" and body.shape.n_faces == 6 and 0.1 < body.shape.volume < 6
-
-
 def test_what_is_included_stands_where_it_is_included(tmp_path):
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "one.xml").write_text(
@@ -221,10 +184,6 @@ def test_files_from_outside_the_models_folder_are_told(tmp_path):
     )
     loaded = load_mjcf(tmp_path / "in", mjcf('<include file="../one.xml"/>'))
     assert "files outside the model's folder: ../one.xml" in loaded.notes
-
-
-def section(bodies: str, *sections: str) -> str:
-    return mjcf(bodies, *sections)
 
 
 @pytest.mark.parametrize(
@@ -263,14 +222,6 @@ def test_each_fault_is_one_line_with_the_file(tmp_path, text, fault, says):
     assert (
         told.startswith("toy.xml: ") and says in told and "\n" not in told and ", line" not in told
     )
-
-
-@pytest.mark.slow
-def test_a_file_cut_off_anywhere_is_refused(tmp_path):
-    whole = ARM.encode()
-    for n in range(1, len(whole)):
-        with pytest.raises(ClearanceError):
-            load_mjcf(tmp_path, whole[:n])
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import pytest
 
 from clearance import check, load_case
 from clearance.cli import run
-from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, UnknownState
+from clearance.errors import BadSyntax, MissingKey, NotFinite, UnknownState
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from tests.formats.making_case import changed, load_small
@@ -132,12 +132,3 @@ def test_a_new_case_places_a_free_body_where_the_model_has_it(tmp_path, monkeypa
     assert said in capsys.readouterr().out
     text = (tmp_path / "out" / "case.yaml").read_text()
     assert "root/z: 1.0  # assumed: nothing moves it, and so the robot's file has it" in text
-
-
-def test_a_free_body_that_is_given_no_place_is_refused_with_the_model_s(tmp_path):
-    with pytest.raises(BadInput, match="floating joint 'root' is given no place") as caught:
-        load_small(
-            tmp_path, changed("urdf: arm.urdf", "urdf: toy.xml"), toy__xml=LOWERED,
-            trajectory="time,j\n0,0\n1,0.5\n",
-        )  # fmt: skip
-    assert "{root/x: 0.1, root/z: 1.0, root/yaw: 1.57079632" in str(caught.value)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, MissingKey
+from clearance.errors import BadInput, BadSyntax, MissingKey
 from clearance.formats.robot.srdf import load_srdf
 from clearance.world.collision_matrix import BY_DEFAULT
 from tests.formats.making_urdf import collision, joint, link, load_urdf, robot
@@ -72,18 +72,6 @@ def test_rows_of_unknown_links_are_left_out_and_named(read):
     assert "arm.srdf: 2 rows" in note and "gripper, tool" in note
 
 
-def test_rows_of_a_link_with_itself_are_left_out_with_a_note(read):
-    """As the setup assistant wrote them once: they excuse no two links."""
-    matrix = read(disable("a", "a"), disable("a", "c"), '<enable_collisions link1="b" link2="b"/>')
-    assert matrix.disabled == (("a", "c", "Never"),) and matrix.enabled == ()
-    assert matrix.notes == ("arm.srdf: 2 rows pair links with themselves and are left out",)
-
-
-def test_groups_states_and_the_like_are_passed_over(read):
-    matrix = read('<group name="g"><joint name="ab"/></group>', disable("a", "c"))
-    assert matrix.reason("a", "c") == "Never" and matrix.notes == ()
-
-
 @pytest.mark.parametrize(
     "document, error, words",
     [
@@ -120,15 +108,3 @@ def test_other_files_are_refused(read, document, words):
     with pytest.raises(BadSyntax) as caught:
         read(document=document)
     assert words in str(caught.value)
-
-
-def test_a_file_cut_off_anywhere_is_refused(read, tmp_path):
-    whole = f'<robot name="arm">{OFF}{disable("a", "b")}</robot>'
-    for end in range(len(whole)):
-        with pytest.raises(BadInput):
-            read(document=whole[:end] or " ")
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(MissingFile):
-        load_srdf(tmp_path / "none.srdf", load_urdf(tmp_path, ARM))

@@ -2,10 +2,7 @@
 
 import pytest
 
-from clearance.cli import run
-from clearance.errors import BadInput, BadShape, BadSyntax, ClearanceError, MissingKey, UnknownState
-from clearance.formats.files.input_files import InputFiles
-from clearance.formats.robot.srdf import read_states
+from clearance.errors import BadInput, BadShape, MissingKey, UnknownState
 from tests.formats.making_case import TWO_JOINTS, changed, load_small
 
 JOINTS = '<joint name="shoulder" value="0.3"/><joint name="lift" value="0.05"/>'
@@ -80,13 +77,6 @@ def test_a_name_of_several_groups_needs_the_group(tmp_path):
     assert case.robots[0].fixed_positions == {"lift": 0.02}
 
 
-def test_a_state_of_no_group_has_its_name_alone(tmp_path):
-    document = srdf(state().replace(' group="arm"', ""))
-    assert load(tmp_path, document=document).robots[0].fixed_positions == {"lift": 0.05}
-    (one,) = read_states(tmp_path / "arm.srdf", InputFiles(tmp_path))
-    assert one.full_name == "home"
-
-
 def test_joints_that_cannot_be_set_are_left_out_with_a_note(tmp_path):
     more = '<joint name="flange" value="1"/><joint name="root_joint" value="0 0 1 0 0 0 1"/>'
     case = load(tmp_path, document=srdf(state(JOINTS + more)))
@@ -94,15 +84,6 @@ def test_joints_that_cannot_be_set_are_left_out_with_a_note(tmp_path):
     assert any("cannot be set are left out: flange, root_joint" in note for note in case.notes)
     with pytest.raises(BadInput, match="'arm/home' speaks of no joint that robot 'arm' can move"):
         load(tmp_path, document=srdf(state(more)))
-
-
-def test_a_state_needs_a_file_and_the_file_needs_a_use(tmp_path):
-    with pytest.raises(
-        MissingKey, match=r"robot\.joints\.state: state 'home' is in no file; robot.srdf:"
-    ):
-        load_small(tmp_path, changed("urdf: arm.urdf", "urdf: arm.urdf, joints: {state: home}"))
-    with pytest.raises(BadInput, match=r"or a state of it: joints: \{state: …\}"):
-        load_small(tmp_path, changed("urdf: arm.urdf", "urdf: arm.urdf, srdf: arm.srdf"))
 
 
 @pytest.mark.parametrize(
@@ -120,26 +101,3 @@ def test_values_are_checked_where_they_stand(tmp_path, inner, fault, says):
     with pytest.raises(fault) as caught:
         load(tmp_path, document=srdf(state(), state(inner, "b")))
     assert f"arm.srdf: group_state[1]: {says}" in str(caught.value) or says in str(caught.value)
-
-
-def test_a_file_cut_off_anywhere_is_refused(tmp_path):
-    path = tmp_path / "arm.srdf"
-    for end in range(len(HOME)):
-        path.write_text(HOME[:end])
-        with pytest.raises(BadSyntax):
-            read_states(path, InputFiles(tmp_path))
-    path.write_text(HOME)
-    assert [one.full_name for one in read_states(path, InputFiles(tmp_path))] == [
-        "arm/home",
-        "hand/open",
-    ]
-
-
-def test_the_command_says_it_in_one_line(tmp_path, capsys):
-    try:
-        load(tmp_path, "state: hme")
-    except ClearanceError:
-        pass
-    assert run(["check", str(tmp_path / "case.yaml")]) == 2
-    told = capsys.readouterr().err.strip()
-    assert "unknown state 'hme'; did you mean 'home'?" in told and told.count("\n") == 0

@@ -1,16 +1,10 @@
 """URDF to a robot: shapes in their link's frame, and joints as written."""
 
-import importlib.util
-
 import numpy as np
 import pytest
 
 import clearance as cl
 from clearance.errors import BadSyntax
-from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.mesh_store import MeshStore
-from clearance.formats.robot.formats import read_robot
-from clearance.formats.robot.request import RobotRequest
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.mimics import followers
@@ -173,15 +167,6 @@ def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
     assert poses["d"][:2, 0] == pytest.approx([np.cos(0.5), np.sin(0.5)])
 
 
-def test_a_fixed_joint_that_mimics_is_fixed(tmp_path):
-    arm = load_urdf(
-        tmp_path,
-        robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", '<mimic joint="gone"/>')),
-    )
-    assert arm.joints[0].kind is JointKind.FIXED
-    assert arm.joints[0].mimic is None
-
-
 @pytest.mark.parametrize(
     ("kind", "inner", "limits"),
     [
@@ -198,15 +183,6 @@ def test_limits(tmp_path, kind, inner, limits):
         tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner))
     )
     assert (arm.joints[0].lower, arm.joints[0].upper) == limits
-
-
-@pytest.mark.parametrize("axis", ["0 0 1e-200", "0 0 1e200", "0 0 7"])
-def test_axes_get_length_one(tmp_path, axis):
-    inner = f'<axis xyz="{axis}"/><limit lower="0" upper="1"/>'
-    arm = load_urdf(
-        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "revolute", inner))
-    )
-    assert arm.joints[0].axis.tolist() == [0, 0, 1]
 
 
 @pytest.mark.parametrize(
@@ -231,17 +207,6 @@ def test_meshes_are_found(tmp_path, given, place):
     mesh = f'<mesh filename="{given.format(folder=tmp_path)}"/>'
     arm = load_urdf(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
     assert arm.bodies[0].origin == f"{place}/part.stl"
-
-
-def test_the_longest_match_of_a_package_path_wins(tmp_path):
-    for place, scale in (("one", 1), ("two/pkg", 2)):
-        (tmp_path / place).mkdir(parents=True)
-        (tmp_path / place / "part.obj").write_text(
-            f"v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n"
-        )
-    mesh = collision('<mesh filename="package://pkg/part.obj"/>')
-    arm = load_urdf(tmp_path, robot(link(mesh)), [tmp_path / "one", tmp_path / "two"])
-    assert arm.bodies[0].origin == "two/pkg/part.obj"
 
 
 def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
@@ -270,24 +235,6 @@ def test_a_default_namespace_changes_nothing(tmp_path):
         assert found.link_names == expected.link_names
         assert [body.shape.n_faces for body in found.bodies] == [6, 6]
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
-
-
-def test_elements_of_another_namespace_are_passed_over(tmp_path):
-    other = '<x:joint xmlns:x="urn:x" name="k"/>'
-    found = load_urdf(tmp_path, robot(link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b"), other))
-    assert [j.name for j in found.joints] == ["j"]
-
-
-def test_a_robot_that_a_package_brings(tmp_path):
-    pytest.importorskip("pybullet_data")
-    files = InputFiles(tmp_path)
-    path = resolved("pybullet_data:kuka_iiwa/model.urdf", tmp_path)
-    arm = read_robot(RobotRequest(path), MeshStore(files))
-    assert len(arm.bodies) == 8
-    assert len(arm.moving_joints) == 7
-    assert {source.path.split(":")[0] for source in files.sources} == {"pybullet_data"}
-    assert arm.bodies[0].origin == "pybullet_data:kuka_iiwa/meshes/link_0.stl"
-    assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
 
 
 @pytest.mark.slow
@@ -331,12 +278,6 @@ def test_shapes_of_no_size_are_left_out_with_a_warning_that_names_them(tmp_path,
     (notice,) = arm.notices
     assert (notice.severity, notice.kind) == (Severity.WARNING, "geometry")
     assert notice.text.endswith("measured: link 'a' collision[1], link 'b' collision[0]")
-
-
-def test_pictures_of_no_size_are_no_matter_where_they_are_not_measured(tmp_path):
-    for geometry in ("collision", "collision_or_visual"):
-        arm = load_urdf(tmp_path, robot(link(BOX + "<visual/>")), geometry=geometry)
-        assert len(arm.bodies) == 1 and not arm.notices
 
 
 def test_joints_that_should_have_limits_and_have_none_are_named(tmp_path):

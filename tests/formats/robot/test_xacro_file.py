@@ -1,6 +1,5 @@
 """xacro: what it makes, only where it is asked for; what it reads is hashed, what it cannot do is one line."""
 
-import json
 import math
 import os
 import subprocess
@@ -9,15 +8,13 @@ import sys
 import pytest
 
 from clearance import check, load_case
-from clearance.cli import run
-from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, UnknownKey
+from clearance.errors import BadInput, BadSyntax, MissingFile, UnknownKey
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.robot import request as robot_request
 from clearance.formats.robot.request import RobotRequest
 from clearance.formats.robot.urdf import xacro_file
 from clearance.formats.robot.urdf.robot import load_urdf
 from clearance.formats.robot.urdf.xacro_file import expanded
-from clearance.formats.robot.urdf.xacro_process import evaluated
 from tests.formats.making_xacro import MAIN, NAMESPACE, PARTS, write_package
 
 pytestmark = pytest.mark.cold  # xacro runs in a process of its own
@@ -55,13 +52,6 @@ def test_it_is_what_the_written_out_urdf_is(tmp_path):
     (tmp_path / "plain.yaml").write_text(CASE.format("name: arm").replace(".xacro", ""))
     ours, plain = (check(path).record for path in (case, load_case(tmp_path / "plain.yaml")))
     assert ours.clearances.tobytes() == plain.clearances.tobytes()
-
-
-def test_modules_that_are_not_compiled_yet_are_no_fault(tmp_path, monkeypatch):
-    main = write_package(tmp_path)
-    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
-    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path / "empty"))
-    assert b"<robot" in made(main).urdf
 
 
 def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
@@ -123,13 +113,6 @@ def test_packages_are_found_by_our_rules(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "src" / "arm"))
     (note,) = [note for note in made(lone).notes if "ROS_PACKAGE_PATH" in note]
     assert "leads to $(find arm_description) as src/arm" in note
-
-
-def test_a_package_in_a_workspace_is_found_by_its_manifest(tmp_path):
-    main = write_package(tmp_path / "src")
-    lone = tmp_path / "lone.xacro"
-    lone.write_text(main.read_text())
-    assert b'name="upper"' in made(lone, package_dirs=(tmp_path / "src",)).urdf
 
 
 def test_defaults_that_are_paths_are_the_same_on_every_machine(tmp_path):
@@ -217,46 +200,3 @@ def test_it_writes_no_file(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert "File too large" in done.stderr and not (tmp_path / "a").read_bytes()
-
-
-def test_a_file_cut_off_anywhere_is_refused(tmp_path):
-    macro = (
-        f'<a {NAMESPACE}><xacro:macro name="m" params="n"><link name="${{n}}"/></xacro:macro></a>'
-    )
-    main = body('<xacro:include filename="b"/><xacro:m n="${1+1}"/>')
-    path, other = tmp_path / "a", tmp_path / "b"
-    for texts in [(main, macro[:i]) for i in range(len(macro))] + [
-        (main[:i], macro) for i in range(len(main) + 1)
-    ]:
-        path.write_text(texts[0])
-        other.write_text(texts[1])
-        answer = evaluated(path, {})
-        if texts == (main, macro):
-            assert b'<link name="2"/>' in answer["urdf"].encode()
-        else:
-            assert answer["problem"] and answer["file"]
-
-
-def test_a_file_cut_off_is_one_line_of_ours(tmp_path):
-    for end in range(0, len(MAIN) - 2, 240):
-        with pytest.raises(ClearanceError) as caught:
-            made(write_package(tmp_path, MAIN[:end]))
-        assert "\n" not in str(caught.value)
-
-
-def test_the_command_line_asks_for_it(tmp_path, capsys):
-    path = str(write_package(tmp_path))
-    assert run(["srdf", "make", path, "--xacro", "--xacro-arg", "size:=0.5"]) == 0
-    assert 'link1="base"' in capsys.readouterr().out
-    assert run(["srdf", "make", path]) == 2
-    assert "--xacro, allows that" in capsys.readouterr().err
-    assert run(["srdf", "make", path, "--xacro-arg", "size:=0.5"]) == 2
-    assert "--xacro-arg says nothing without --xacro" in capsys.readouterr().err
-    assert run(["srdf", "make", path, "--xacro", "--xacro-arg", "size"]) == 2
-    assert "'size' is not an argument; name:=value" in capsys.readouterr().err
-
-
-def test_the_summary_has_its_files(tmp_path, capsys):
-    assert run(["check", str(write_case(tmp_path)), "--json"]) == 0
-    inputs = json.loads(capsys.readouterr().out)["inputs"]
-    assert "arm/urdf/parts.xacro" in json.dumps(inputs)

@@ -12,7 +12,6 @@ from clearance.world.pairs import measured_pairs
 from clearance.world.rules import matches
 from tests.formats.making import CUBE, cube_stl
 from tests.formats.making_case import CASE, load_small
-from tests.formats.making_cell import load_cell
 from tests.formats.making_moveit import (
     FIRST,
     LISTS,
@@ -99,17 +98,6 @@ def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
         assert told == (not found)
 
 
-def test_subframes_and_the_place_of_the_robot_are_said_to_be_passed_over(tmp_path):
-    document = LISTS.replace("  - id: can\n", "  - id: can\n    subframe_names: [a, b]\n") + (
-        "robot_state: {multi_dof_joint_state: {joint_names: [virtual_joint]}}\n"
-    )
-    notes = content_of(tmp_path, document).notes
-    assert (
-        "cell.yaml: 2 subframes of objects are passed over: nothing here is given in them" in notes
-    )
-    assert any("the robot's state is not taken" in note for note in notes)
-
-
 def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path):
     robots = "".join(
         f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
@@ -117,12 +105,6 @@ def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path)
     text = f"robots:\n{robots}scene: cell.yaml\n"
     with pytest.raises(BadInput, match="nothing is called 'tip'; valid: left/base, left/tip"):
         load_small(tmp_path, text, cell__yaml=MESSAGE)
-
-
-def test_the_padding_of_the_case_goes_before(tmp_path):
-    text = NAMED.replace("arm.urdf}", 'arm.urdf, padding: {"*": 0.02}}')
-    case = load_small(tmp_path, text, cell__yaml=MESSAGE)
-    assert case.robots[0].padding["upper"] == 0.02
 
 
 def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
@@ -147,12 +129,6 @@ world: {{collision_objects: [{objects}]}}
 {more}"""
     with pytest.raises(BadInput, match=told):
         content_of(tmp_path, document)
-
-
-def test_an_octomap_has_a_pose_for_its_origin(tmp_path):
-    map_ = "octomap: {origin: 1, octomap: {id: OcTree, resolution: 0.1, binary: false, data: [1]}}"
-    with pytest.raises(BadInput, match=r"octomap: origin: 1 is given; a mapping is needed"):
-        content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
 
 
 def test_a_default_stands_for_all_and_gives_way_to_what_is_forbidden(tmp_path):
@@ -205,13 +181,6 @@ def test_a_frame_that_is_nowhere_is_refused_with_the_nearest_name(tmp_path, fram
         load_small(tmp_path, CASE.replace("scene:\n", f"scene:\n  frame: {frame}\n"))
 
 
-def test_a_frame_is_a_link_of_any_robot_with_its_name_or_without(tmp_path):
-    frames = {"left/base": 0, "right/base": 1, "base": 1, "left/upper": 1}
-    for frame, n_elsewhere in frames.items():
-        case = load_cell(tmp_path, "scene:\n", f"scene:\n  frame: {frame}\n")
-        assert [one.kind for one in case.notices] == ["frame"] * n_elsewhere
-
-
 def objects(**n_shapes):
     """A world of spheres on one spot, by name how many."""
     ball = "{type: 2, dimensions: [0.05]}"
@@ -226,13 +195,6 @@ def allowing(one, other):
     """A matrix in which two names may touch."""
     row = f'{{entry_names: ["{one}", "{other}"], entry_values: [[0, 1], [1, 0]]}}'
     return f"allowed_collision_matrix: {row}\n"
-
-
-def test_an_object_named_below_another_is_no_shape_of_it(tmp_path):
-    both = allowing("can", "base") + objects(can=2, can_lid=1)
-    assert content_of(tmp_path, both).allow == (("can/0", "base"), ("can/1", "base"))
-    gone = allowing("can", "base") + objects(can_lid=1)
-    assert content_of(tmp_path, gone).allow == (("can", "base"),)
 
 
 @pytest.mark.parametrize("name", ["po*", "po[st]", "pos?"])
@@ -292,9 +254,3 @@ def test_text_of_the_second_version_has_poses_of_objects_and_subframes(tmp_path)
         "post": [1, 2, 0],
         "ball": [0, 2, 5],
     }
-
-
-def test_a_case_names_it_as_its_scene(tmp_path):
-    text = NAMED.replace("cell.yaml", "cell.scene")
-    case = load_small(tmp_path, text, cell__scene=SECOND)
-    assert [one.name for one in case.obstacles] == ["post", "ball"]

@@ -1,7 +1,7 @@
 """Looks closer at the steps in contact: which pairs overlap, how deep, in which region.
 
 Called when the clearance of every step is known and some of them are 0; a run without contact does not even
-load this room. Not for: whether there is contact (`measure`).
+load this room. Work is counted in triangles, not in seconds: the same input gives the same bytes on any machine.
 """
 
 from __future__ import annotations
@@ -31,7 +31,6 @@ from clearance.simulate.answers.contact.events import (
     rated_places,
 )
 from clearance.simulate.answers.contact.rows import ContactPart, FoundContacts, joined_contacts
-from clearance.simulate.answers.contact.work import ContactWork
 from clearance.simulate.measure.layout import PairsInMotion
 from clearance.simulate.measure.measure import pairs_in_contact
 from clearance.simulate.measure.section_answer import SectionAnswer
@@ -310,3 +309,50 @@ def _volume_shared(pair: BodyPair, b_from_a: np.ndarray) -> float:
     """[m^3] what two solids share at a pose; 0 where that is not known."""
     shared = pair.shared(b_from_a)
     return 0.0 if shared is None else shared.volume
+
+
+WORK = 30_000_000
+"""Of one pair: about 2 s of the machine on which the figures of `query/CONTACT.md` were measured."""
+
+ROW = 300_000
+"""An overlap, its bodies however small: 20 ms, most of it calls."""
+
+RATED = 15_000
+"""A look at how deep a step may be: 1 ms."""
+
+LOOKS = 18
+"""Such looks at an event at most."""
+
+PER_TRIANGLE = 12
+"""Times that each triangle of both bodies is gone through in an overlap: a solid made of them takes as much."""
+
+
+@dataclass(eq=False)
+class ContactWork:
+    """What is left for a pair of so many triangles in all."""
+
+    n_triangles: int
+    left: int = field(default_factory=lambda: WORK)
+    left_for_deeper: int = field(default_factory=lambda: WORK // 2)
+
+    @property
+    def why(self) -> str:
+        """What is said of an event that is beyond it."""
+        return "beyond the work allowed for a pair: bounds by 26 directions and boxes only"
+
+    def take_event(self, n_steps: int) -> bool:
+        """True if the deepest moment of one more event of so many steps may be worked out; it is counted then."""
+        looks = min(n_steps, LOOKS) if n_steps > 1 else 0
+        work = ROW + PER_TRIANGLE * self.n_triangles + looks * (RATED + self.n_triangles)
+        if work > self.left:
+            return False
+        self.left -= work
+        return True
+
+    def take_deeper(self) -> bool:
+        """True if one more overlap may be worked out to find a deeper one; it is counted then, by itself."""
+        work = ROW + PER_TRIANGLE * self.n_triangles
+        if work > self.left_for_deeper:
+            return False
+        self.left_for_deeper -= work
+        return True

@@ -1,8 +1,8 @@
 """Makes the trajectories, pose tables and meshes of scenes/; the case files beside them are written by hand.
 
-    python scripts/make_scenes.py [--out REPOSITORY] [SCENE ...]
+    python -m scripts.makers.scenes [--out REPOSITORY] [SCENE ...]
 
-Run again, it writes the same bytes. Needs robots/heron6 (scripts/make_robot.py) and pybullet_data.
+Run again, it writes the same bytes. Needs robots/heron6 (`robot`) and pybullet_data.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from makers.paths import write_table
-from makers.scene_meshes import MESHES
-from makers.scene_paths import TABLES
-from makers.solids import write_stl
+from scripts.makers.paths import write_table
+from scripts.makers.scene_meshes import MESHES
+from scripts.makers.scene_paths import TABLES
+from scripts.makers.solids import write_stl
 
 
 def make(root: Path, name: str) -> None:
@@ -28,7 +28,7 @@ def make(root: Path, name: str) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(TABLES))
-    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1])
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[2])
     arguments = parser.parse_args()
     for scene in arguments.scenes or TABLES:
         make(arguments.out, scene)

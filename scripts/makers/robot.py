@@ -1,8 +1,8 @@
 """Makes robots/heron6: a six-axis hot-cell manipulator with a two-finger gripper, meshes and URDF.
 
-    python scripts/make_robot.py [--out REPOSITORY]
+    python -m scripts.makers.robot [--out REPOSITORY]
 
-Run again, it writes the same bytes. The shapes are in makers/heron6_parts.py.
+Run again, it writes the same bytes. The shapes are in `heron6_parts`.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from makers.heron6_joints import JOINTS
-from makers.heron6_parts import PARTS
-from makers.solids import write_stl
-from makers.urdf import urdf_text
+from scripts.makers.heron6_joints import JOINTS
+from scripts.makers.heron6_parts import PARTS
+from scripts.makers.solids import write_stl
+from scripts.makers.urdf import urdf_text
 
 
 def make(root: Path) -> None:
@@ -26,5 +26,5 @@ def make(root: Path) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1])
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[2])
     make(parser.parse_args().out)

@@ -1,0 +1,38 @@
+"""What is hot stays hot: kernels count the work that the table beside this file says, neither more nor less.
+
+A clock says something else on each machine; these numbers are the same on all. A commit that changes the work on
+purpose writes the table anew: `python -m tests.simulate.test_counted_work`.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+
+SCENES = Path(__file__).parents[2] / "scenes"
+NAMES = sorted(path.parent.name for path in SCENES.glob("*/case.yaml"))
+TABLE = Path(__file__).with_name("counted_work.json")
+
+
+def counters_of(name: str) -> dict[str, dict[str, int]]:
+    """What the kernels of a certified run counted: at the steps, and for the proofs of all rules."""
+    one_thread = cl.Resources(jobs=1)
+    run = cl.check(SCENES / name / "case.yaml", resources=one_thread, contact="none")
+    proofs = [rule.certificate.tally for rule in run.record.rules]
+    counters = sorted({counter for tally in proofs for counter in tally})
+    proven = {name: sum(tally.get(name, 0) for tally in proofs) for name in counters}
+    return {"steps": dict(run.record.tally), "proof": proven}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_kernels_count_what_the_table_says_of_a_scene(name: str) -> None:
+    assert counters_of(name) == json.loads(TABLE.read_text(encoding="utf-8"))[name]
+
+
+if __name__ == "__main__":
+    counted = {name: counters_of(name) for name in NAMES}
+    TABLE.write_text(json.dumps(counted, indent=1) + "\n", encoding="utf-8")
