@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
-from importlib import metadata
-
 import pytest
-from packaging.requirements import Requirement
-from packaging.utils import canonicalize_name
 
 from clearance.batch import keys
-from clearance.package_digest import PACKAGE, digest_of_sources, package_digest
+from clearance.package_digest import digest_of_sources
 from clearance.receipt import remade_report
 from clearance.record import fingerprint
 from tests.cells import cell
@@ -23,11 +18,6 @@ def folder(tmp_path):
         path.parent.mkdir(exist_ok=True)
         path.write_text(content)
     return tmp_path
-
-
-def test_it_is_of_places_lengths_and_contents_in_order(folder):
-    told = b"a.py 6\nx = 1\nrooms/b.py 6\ny = 2\nrooms/p.yaml 4\nz: 3"
-    assert digest_of_sources(folder) == hashlib.sha256(told).hexdigest()
 
 
 @pytest.mark.parametrize(
@@ -53,11 +43,6 @@ def test_what_decides_nothing_does_not_change_it(folder):
     assert digest_of_sources(folder) == before
 
 
-def test_that_of_the_package_is_worked_out_once():
-    assert package_digest() is package_digest()
-    assert package_digest() == digest_of_sources(PACKAGE)
-
-
 @pytest.mark.parametrize(
     "room, told",
     [
@@ -72,12 +57,3 @@ def test_what_other_sources_made_is_not_taken_for_ones_own(room, told, monkeypat
     assert told() == before
     monkeypatch.setattr(room, "package_digest", lambda: "0" * 64)
     assert told() != before
-
-
-def test_a_key_asks_for_no_library_that_an_installation_may_lack() -> None:
-    needed = {
-        canonicalize_name(Requirement(line).name)
-        for line in metadata.requires("clearance") or ()
-        if Requirement(line).marker is None
-    }
-    assert set(map(canonicalize_name, (*keys.LIBRARIES, "pyarrow"))) <= needed

@@ -42,7 +42,7 @@ def least_at(case, rows, t, *, left=False):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6])
+@pytest.mark.parametrize("seed", [0, 2, 4, 6])
 def test_every_step_and_the_motion_between(seed):
     case = cell(seed, apart=2.0)
     run = cl.check(case)
@@ -68,7 +68,7 @@ def test_every_step_and_the_motion_between(seed):
 
 
 @pytest.mark.peer
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_fcl_agrees_at_every_step(seed):
     run = cl.check(cell(seed, apart=2.0), cross_check=True, certify=False)
     assert run.cross_check.agrees
@@ -87,7 +87,7 @@ def ruled(seed):
     return replace(case, robots=(padded, *case.robots[1:]), limits=Limits(0.01, 0.05, rules=rules))
 
 
-@pytest.mark.parametrize("seed", first_fast(range(5), 1))
+@pytest.mark.parametrize("seed", first_fast(range(3), 1))
 def test_each_rule_has_its_own_least(seed):
     case = ruled(seed)
     run = cl.check(case, certify=False)
@@ -124,7 +124,7 @@ def standing_of(near, limits):
 
 
 @pytest.mark.parametrize("need", first_fast(["limit", "pairs", "minimum"], 1))
-@pytest.mark.parametrize("seed", first_fast(range(4), 1))
+@pytest.mark.parametrize("seed", [0])
 def test_other_needs_know_the_same_worst(seed, need):
     case = ruled(seed)
     whole, run = cl.check(case), cl.check(case, need=need)
@@ -135,7 +135,7 @@ def test_other_needs_know_the_same_worst(seed, need):
         assert found.worst_sample.clearance == pytest.approx(rule.worst_sample.clearance, abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", first_fast(range(3), 1))
+@pytest.mark.parametrize("seed", [0])
 def test_threads_change_no_byte(seed):
     case = ruled(seed)
     one, two = (cl.check(case, resources=cl.Resources(jobs=jobs)) for jobs in (1, 2))
@@ -148,7 +148,7 @@ class Broken(Exception):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("after", [17, 1, 5, 40])
+@pytest.mark.parametrize("after", [17])
 def test_a_run_that_was_broken_off_goes_on_to_the_same_bytes(tmp_path, after, monkeypatch):
     monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
     case, left = ruled(2), [after]

@@ -221,18 +221,6 @@ def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
     assert len(said) == 1 and said[0].startswith("resuming: ")
 
 
-def test_a_second_run_to_the_same_place_is_refused(tmp_path: Path) -> None:
-    place = tmp_path / "kept"
-    with open_resumable_rows(place, print):
-        with (
-            pytest.raises(Unwritable, match="another run is writing"),
-            open_resumable_rows(place, print),
-        ):
-            pass
-        assert place.is_dir()
-    assert not place.exists()
-
-
 def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
     case: Case, tmp_path: Path
 ) -> None:
@@ -252,17 +240,6 @@ def test_a_full_disk_is_told_before_anything_is_mapped(
     monkeypatch.setattr(os, "posix_fallocate", full)
     with pytest.raises(Unwritable, match="No space left"):
         answer(case, tmp_path / "kept", [])
-    assert not (tmp_path / "kept").exists()
-
-
-def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
-    with (
-        pytest.raises(ValueError, match="refused"),
-        open_resumable_rows(tmp_path / "kept", print) as kept,
-    ):
-        kept.ask("question")
-        kept.array("steps.clearance", (100,))
-        raise ValueError("refused")
     assert not (tmp_path / "kept").exists()
 
 

@@ -50,25 +50,6 @@ def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> Non
     assert {(m.link, m.obstacle): m.clearance for m in lazy} == least
 
 
-def test_the_nearest_pairs_are_found_without_the_least_of_all(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Four pairs are the nearest of a step, and five are asked for: of the others only what could be the fifth."""
-    run = cl.check(SCENES / "iiwa_pipe_rack" / "case.yaml", certify=False)
-    real, asked = measure._Sweep.least_rows, {}
-
-    def least_rows(self, name, steps, within):
-        asked[name] = within
-        return real(self, name, steps, within)
-
-    monkeypatch.setattr(measure._Sweep, "least_rows", least_rows)
-    few = run.session.pair_minima(5)
-    assert list(asked) == ["first", "nearest"]
-    fifth = few[-1].clearance
-    assert fifth <= asked["nearest"].max() < 2.0 * fifth
-    assert few == run.pair_minima[:5]
-
-
 def test_the_minimum_is_that_of_all_steps(runs: dict[str, cl.Run]) -> None:
     """In contact it is the first step in it, since no other is known; of all steps the deepest is the worst."""
     worst, truth = runs["minimum"].worst, runs["steps"].worst
@@ -115,17 +96,16 @@ def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 def test_threads_change_nothing(need: str) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
-    one, two, four = (
+    one, other = (
         cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=jobs))
-        for jobs in (1, 2, 4)
+        for jobs in (1, 3)
     )
-    for other in (two, four):
-        assert one.steps.equals(other.steps)
-        assert one.record.tally == other.record.tally
-        assert list(one.pair_minima) == list(other.pair_minima)
+    assert one.steps.equals(other.steps)
+    assert one.record.tally == other.record.tally
+    assert list(one.pair_minima) == list(other.pair_minima)
 
 
-@pytest.mark.parametrize("longest", first_fast([7, 2, 50, 1000], 1))
+@pytest.mark.parametrize("longest", [7])
 def test_how_steps_are_parted_changes_no_clearance(
     longest: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -161,19 +141,6 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
     assert need == "steps" or afresh.pairs.equals(run.pairs)
 
 
-def test_parts_hold_every_row_once() -> None:
-    for n_rows in (1, 2, 127, 128, 129, 255, 256, 257, 512, 513, 1000, 12345):
-        for sparse, longest in (
-            (False, parts.LONGEST_PART),
-            (True, parts.SPARSE * parts.LONGEST_PART),
-        ):
-            spans = parts.parts(n_rows, sparse=sparse)
-            assert [i for span in spans for i in range(span.start, span.stop)] == list(
-                range(n_rows)
-            )
-            assert max(span.stop - span.start for span in spans) <= longest
-
-
 def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
     case = cl.load_case(SCENES / "box_pipe" / "case.yaml")
     case = replace(case, limits=cl.Limits(fail=0.0, warn=1e-6))
@@ -184,8 +151,8 @@ def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effort", [0, 1, 64, 10**9])
-@pytest.mark.parametrize("name", ["box_pipe", "panda_shelf", "iiwa_pipe_rack"])
+@pytest.mark.parametrize("effort", [0, 64])
+@pytest.mark.parametrize("name", ["box_pipe", "iiwa_pipe_rack"])
 def test_how_long_the_first_look_searches_changes_nothing(
     name: str, effort: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
