@@ -6,7 +6,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from clearance.crosscheck.containment import is_inside, winding_number
-from clearance.crosscheck.pairs import point_triangle_distances
 from clearance.crosscheck.peer_run import (
     PeerRun,
     greatest_displacements,

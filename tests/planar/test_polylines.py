@@ -44,19 +44,6 @@ def test_vertex_count_sweep_against_the_oracle(n):
     assert low - raised.error_bound <= raised.distance <= high + raised.error_bound
 
 
-@pytest.mark.parametrize("n", [*range(2, 75), 97, 103, 721, 727, 4099])
-def test_vertex_count_sweep_by_hand(n):
-    """A zigzag over its base line, and a spike in the last segment that no count may lose."""
-    x = np.arange(n, dtype=float)
-    base = Curve.line([0, 0], [n - 1.0, 0])
-    zigzag = Curve.polyline(np.stack([x, (x % 2) * 0.75 + 0.25], axis=1))
-    found = hausdorff(zigzag, base)
-    assert found.directed["a_to_b"].distance == 1.0 and found.distance == 1.0
-    spike = Curve.polyline(np.stack([x, 5.0 * (x == n - 1)], axis=1))
-    assert hausdorff(spike, base).directed["a_to_b"].distance == 5.0
-    assert hausdorff(base, spike).directed["b_to_a"].distance == 5.0
-
-
 vertices = st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=2, max_size=12)
 
 
@@ -77,19 +64,6 @@ def test_the_quick_way_agrees_with_the_general_one(one, two, near):
         apart = math.dist(p.point_a, p.point_b)
         assert apart == pytest.approx(p.distance, abs=1e-14 * size)
     assert quick.error_bound <= 1e-14 * size and quick.tally.given_up == 0
-
-
-def test_kinds_of_polylines():
-    roof = Curve.polyline([[0, 0], [1, 1], [2, 0]])
-    ends = hausdorff(roof, Curve.line([0, 0], [2, 0]))
-    assert ends.kind == "end" and ends.distance == 1.0
-    chord = hausdorff(Curve.line([0, 0], [2, 0]), roof).directed["a_to_b"]
-    assert chord.kind == "self_bisector" and chord.distance == pytest.approx(math.sqrt(0.5))
-    assert chord.parameter_a == pytest.approx(0.5)
-    split = Curve.polyline([[0, 0], [1, 0], [2, 0]])  # its middle vertex is no corner
-    assert hausdorff(split, roof).directed["a_to_b"].kind == "self_bisector"
-    tee = Curve.contours([Curve.line([-3, 0], [3, 0]), Curve.line([0, 0], [0, 2])])
-    assert hausdorff(tee, Curve.line([-3, 0], [3, 0])).point_a == pytest.approx([0, 2])
 
 
 def outline(n, noise):

@@ -61,15 +61,6 @@ def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():
                 assert min(a.offsets_about(point).min(), b.offsets_about(point).min()) > 0.0
 
 
-def test_three_bodies_that_meet_in_pairs_only():
-    bars = [Polytope((CUBE - 0.5) * s + c) for s, c in (
-        ((4, 1, 1), (0, 0, 0)), ((1, 4, 1), (0, 0, 0.9)), ((1, 1, 4), (0.9, 0.0, 0)))]  # fmt: skip
-    assert common_point(bars).relation == "overlap"
-    bars[2] = Polytope((CUBE - 0.5) * (1, 1, 4) + (1.2, 0.0, 0.0))
-    met = common_point(bars)
-    assert met.relation == "apart" and certificate_is_right(bars, met.certificate)
-
-
 @pytest.mark.parametrize("shift", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0.5, 0.25)])
 def test_touching_is_neither_overlap_nor_apart(shift):
     a, b = Polytope(CUBE), Polytope(CUBE + shift)

@@ -108,21 +108,6 @@ def test_many_bodies_both_ways(m, n):
         assert cut.common.passes < MAX_PASSES and cut.common.n_faces < 16 * m
 
 
-@pytest.mark.slow
-def test_no_volume_is_negative_and_none_is_an_exception():
-    rng = np.random.default_rng(7)
-    relations = set()
-    for seed in range(150):
-        shape = 10.0 ** rng.integers(-3, 1, 3)
-        shift = rng.integers(-1, 2, 3) * (1.0 + rng.choice([0.0, 1e-16, -1e-15, 1e-14, -1e-9]))
-        pair = [turned(points, seed) for points in (CUBE * shape, (CUBE + shift) * shape)]
-        found = intersect([Polytope(points) for points in pair])
-        assert found.volume >= 0.0 and (found.dimension == 3) == (found.volume > 0.0)
-        assert found.common.passes <= MAX_PASSES
-        relations.add(found.relation)
-    assert relations == {"overlap", "touch", "apart"}
-
-
 def test_bytes_do_not_depend_on_the_number_of_threads(monkeypatch):
     monkeypatch.setattr(intersection, "HALVED_FROM", 100)
     rng = np.random.default_rng(2)

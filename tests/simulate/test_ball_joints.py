@@ -20,13 +20,12 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box,
     orientation_rounding,
 )
-from clearance.kernels.motion.joint_path import BallPath, part_of_arc
+from clearance.kernels.motion.joint_path import BallPath
 from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
 from clearance.world.kinematics import (
     all_links,
     floating_links,
     poses_by_link,
-    rates_by_link,
     seen_from,
     standing_link,
     values_by_link,
@@ -55,37 +54,6 @@ def arm_below(random: np.random.Generator, n_steps: int, turn: float) -> Scene:
 
 
 SCENES = {"two that float": two_floating, "an arm below": arm_below}
-
-
-@pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
-@pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("seed", range(1))
-def test_a_sweep_finds_what_single_questions_find(seed, make, turn):
-    scene = make(np.random.default_rng(seed), 40, turn)
-    rows, _ = floating.swept(scene)
-    truth = floating.distances(scene, scene.positions)
-    assert np.abs(rows.clearance - truth.min(axis=1)).max() < 1e-12
-    assert (rows.lower_bound <= truth.min(axis=1) + 1e-12).all()
-    apart = truth[np.arange(40), rows.pair] - truth.min(axis=1)
-    assert apart.max() < 1e-12
-
-
-@pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
-@pytest.mark.parametrize("seed", range(2))
-def test_steps_are_passed_over_and_nothing_is_missed(seed, make):
-    """Slowly turning: bodies are looked at when their columns have changed enough."""
-    random = np.random.default_rng(seed)
-    scene = make(random, 2, 0.4)
-    shares = np.linspace(0.0, 1.0, 300)
-    scene = scene._replace(positions=floating.between(scene.links, *scene.positions, shares))
-    truth = floating.distances(scene, scene.positions).min(axis=1)
-    within = truth.min() + 0.05 * np.ptp(truth)
-    rows, counts = floating.swept(scene, within)
-    assert counts[4] > 0
-    known = rows.pair >= 0
-    assert known[truth < within - 1e-12].all()
-    assert np.abs(rows.clearance - truth)[known].max() < 1e-12
-    assert (rows.lower_bound <= truth + 1e-12).all()
 
 
 @pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
@@ -202,36 +170,6 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     assert np.abs(placed[0] - room[link]).max() <= 1e-14
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
-    """The same motion about the axis of the arc: the same bounds but for rounding."""
-    random = np.random.default_rng(seed)
-    scene = arm_below(random, 2, random.choice([0.3, 1.5, 3.0]))
-    ball = 2
-    column = scene.links.columns[ball]
-    arc = arcs_between(*scene.positions[:, column : column + 4])
-    fixed, kinds = scene.links.parent_from_joint.copy(), scene.links.kinds.copy()
-    turned = floating.Rotation.from_quat(scene.positions[0, column : column + 4]).as_matrix()
-    fixed[ball, :3, :3] = fixed[ball, :3, :3] @ turned
-    axes, kinds[ball] = scene.links.axes.copy(), TURNING
-    axes[ball], angles = arc[:3], scene.positions.copy()
-    angles[:, column] = 0.0, arc[3]
-    turning = scene.links._replace(kinds=kinds, parent_from_joint=fixed, axes=axes)
-    same = scene._replace(links=turning, positions=angles)
-    found, wanted = floating.certified(scene), floating.certified(same)
-    assert wanted.lower[0] > 0.0
-    assert found.lower[0] == pytest.approx(wanted.lower[0], abs=1e-11)
-    assert found.upper[0] == pytest.approx(wanted.upper[0], abs=1e-11)
-
-
-def test_the_parts_of_an_arc():
-    balls = BallPath(np.array([1]), np.eye(4)[None], np.array([[[0, 0, 0, 1.0, 1, 0, 0, 0.8]]]))
-    found = part_of_arc(balls, 0, 0, 0.25, 0.75)
-    assert found.middle == pytest.approx(0.4, rel=1e-15)
-    assert 0.2 < found.swing <= 0.2 * (1.0 + 1e-11)
-    assert found.bend == 0.0
-
-
 def on_one_base(n_steps: int = 30) -> tuple[Scene, dict]:
     """Two bodies fixed to a base that tumbles and one on a joint of it, seen from the base."""
     random = np.random.default_rng(7)
@@ -265,22 +203,3 @@ def test_two_bodies_on_one_base_stay_as_far_apart():
     assert np.ptp(floating.certified(scene).lower[:-1]) <= 1e-9
     in_world = scene._replace(frames=[6, 7, 8])
     assert np.abs(floating.swept(in_world)[0].clearance - rows.clearance).max() < 1e-12
-
-
-def test_floating_links_are_where_their_columns_say():
-    random = np.random.default_rng(3)
-    links = all_links(standing_link(at(1.0)), floating_links(1, 2, 0, at(0.0, 2.0)))
-    positions = np.hstack(
-        [random.normal(size=(20, 5)), orientations(random, 20, 1.0), np.zeros((20, 1))]
-    )
-    placed = poses_by_link(links, positions)[:, 4]
-    assert (placed[:, :3, 3] == positions[:, 2:5] + [1.0, 2.0, 0.0]).all()
-    turned = floating.Rotation.from_quat(positions[:, 5:9]).as_matrix()
-    assert np.abs(placed[:, :3, :3] - turned).max() < 1e-15
-    longer = positions.copy()
-    longer[:, 5:9] *= 3.0
-    assert np.abs(poses_by_link(links, longer)[:, 4] - placed).max() < 1e-15
-    assert (
-        values_by_link(links, positions) == np.c_[np.zeros(20), positions[:, 2:5], np.zeros(20)]
-    ).all()
-    assert (rates_by_link(links, positions)[:, 4] == 0.0).all()

@@ -1,6 +1,5 @@
 """One configuration after another against a run over the same positions, bit for bit, in any order."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure, SuspectInput
-from clearance.world.robot import Mimic
 from tests.examples import first_fast
 from tests.made_cases import arm, at, ball, faces_of, flying
 
@@ -99,21 +97,6 @@ def test_what_cannot_be_told_is_said():
         assert checker.distance(row).undecided == (tuple(checker.pairs) if undecided else ())
 
 
-def test_threads_may_share_a_checker():
-    case = swaying()
-    run, checker = cl.check(case, certify=False), cl.Checker(case)
-    positions, wrong = case.robots[0].trajectory.positions, []
-
-    def ask(seed):
-        for i in np.random.default_rng(seed).integers(0, len(positions), 200):
-            if checker.distance(positions[i]).distance != run.record.clearances[i]:
-                wrong.append(i)
-
-    with ThreadPoolExecutor(4) as threads:
-        list(threads.map(ask, range(4)))
-    assert not wrong
-
-
 @pytest.mark.parametrize(
     ("given", "fault", "told"),
     [
@@ -177,23 +160,6 @@ def test_a_joint_a_little_beyond_its_limits_is_warned_of_once(recwarn):
     assert len(recwarn.list) == 1
     with pytest.raises(SuspectInput):
         checker.distance([0.0, 2.9])
-
-
-def test_joints_that_follow_are_held_to_their_own_limits():
-    case = limited()
-    (one,) = case.robots
-    first, second = one.robot.moving_joints
-    joints = [
-        replace(joint, mimic=Mimic(first.name, -3.0, 0.5)) if joint is second else joint
-        for joint in one.robot.joints
-    ]
-    robot = replace(one.robot, joints=tuple(joints))
-    checker = cl.Checker(replace(case, robots=(replace(one, robot=robot),)))
-    checker.distance([0.5])  # the other at -1
-    with pytest.warns(UserWarning, match=f"joint '{second.name}' leaves its limits"):
-        checker.distance([0.6])
-    with pytest.raises(SuspectInput, match=f"joint '{second.name}'"):
-        checker.distance([-0.9])  # at 3.2
 
 
 def test_a_case_that_is_suspect_is_no_checker_unless_that_is_accepted():

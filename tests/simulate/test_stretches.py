@@ -10,7 +10,6 @@ import pytest
 
 import clearance as cl
 from clearance.record.levels import LEVELS
-from clearance.simulate.answers.stretches import joined_spans
 from clearance.simulate.replay.curve_moments import nearest_moments
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
@@ -136,12 +135,6 @@ def test_intervals_and_events_are_of_the_motion():
     assert (entered.link, entered.obstacle) == ("fore", "post")
     there = cl.check(sweeping([[entered.time - 1.0, 0.0]], PAST)).worst["clearance"]
     assert entered.time == below.start and entered.clearance == pytest.approx(there, abs=1e-12)
-
-
-def test_spans_that_overlap_or_meet_are_one():
-    spans = np.array([[3.0, 4.0], [0.0, 1.0], [1.0, 2.0], [3.5, 3.6], [5.0, 5.0]])
-    assert joined_spans(spans).tolist() == [[0.0, 2.0], [3.0, 4.0], [5.0, 5.0]]
-    assert joined_spans(np.empty((0, 2))).shape == (0, 2)
 
 
 def test_a_body_that_goes_wholly_into_another_stays_in_contact():

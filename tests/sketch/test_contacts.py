@@ -107,18 +107,6 @@ def test_a_slot(free):
             assert turn == pytest.approx(angle, abs=1e-4)
 
 
-def test_a_triangle_that_is_a_line():
-    """A point at the only place that two circles have in common is held, and moves with them."""
-    s = Sketch()
-    a, b, c = s.point(0, 0), s.point(2, 0), s.point(1.0, 0.0)
-    s.distance(a, b, 2.0), s.distance(a, c, 1.0), s.distance(c, b, 1.0)
-    assert verdict(s) == ("well", 0, [])
-    line = s.line(a, b)
-    s.incident(c, line, name="between")
-    status, freedom, redundant = verdict(s)
-    assert (status, freedom) == ("over", 0) and len(redundant) == 1
-
-
 def test_a_flat_four_bar_linkage_has_one_freedom():
     """Where its two branches meet the kernel has two motions; every solution near it has one."""
     s = Sketch()

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from clearance.world.plausibility import notices_of
@@ -71,15 +70,6 @@ def test_a_table_of_one_row_says_nothing_of_a_clock(tmp_path):
     )
     obstacles = [replace(one, moves=moves) if one is door else one for one in case.obstacles]
     assert not reported(replace(case, obstacles=tuple(obstacles)))
-
-
-def test_a_table_in_which_nothing_moves_says_nothing_of_a_clock(tmp_path):
-    case = cell(tmp_path, EPOCH)
-    standing = np.zeros_like(case.robots[0].given_trajectory.positions)
-    left = replace(
-        case.robots[0], trajectory=replace(case.robots[0].given_trajectory, positions=standing)
-    )
-    assert not reported(replace(case, robots=(left, *case.robots[1:])))
 
 
 def two_recordings(folder, apart, *changes):
