@@ -1,0 +1,95 @@
+"""Ten answers as they are told, word for word, of runs that are made by hand and need no engine.
+
+    python -m tests.report.test_golden
+
+writes them anew, for whoever means a change of words, and reads what changed.
+"""
+
+from __future__ import annotations
+
+import html
+import io
+import re
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from clearance.findings.comparison import compared
+from clearance.report.annotations import annotation_lines
+from clearance.report.comparison import comparison_page
+from clearance.report.junit_cases import write_run_junit
+from clearance.report.markdown import markdown
+from clearance.report.summary import json_text
+from clearance.report.terminal import print_answer
+from clearance.world.case import Limits
+from tests.findings.test_verdict import CASES, made
+from tests.report.budgets import with_budget
+from tests.report.made import model_of, page_of, run_of
+from tests.report.records import disagreeing, record, with_contacts
+
+HERE = Path(__file__).parent / "golden"
+
+SWING = with_contacts(record(cross_check=disagreeing()))
+OPEN = with_budget(made(Limits(warn=0.02)), 0.0025)
+SUSPECT = CASES["suspect and contact"][0]
+
+
+def terminal(one) -> str:
+    console = Console(file=io.StringIO(), width=200)
+    print_answer(model_of(one), Path("out"), console)
+    return console.file.getvalue()
+
+
+def page(text: str) -> str:
+    """What a page says, where its rows lead, and what they say when pointed at."""
+    text = re.sub(r"<(script|style).*?</\1>", "", text, flags=re.DOTALL)
+    text = re.sub(r"<[^>]+?((?: (?:data-\w+|title|href)=\"[^\"]*\")*)[^>]*>", r"\n\1\n", text)
+    lines = (" ".join(html.unescape(line).split()) for line in text.split("\n"))
+    return "\n".join(filter(None, lines)) + "\n"
+
+
+def summary(one) -> str:
+    told = run_of(one).summary
+    return json_text(told | {"versions": sorted(told["versions"])})
+
+
+def junit(one) -> str:
+    with tempfile.TemporaryDirectory() as folder:
+        write_run_junit(model_of(one), Path(folder, "junit.xml"))
+        return Path(folder, "junit.xml").read_text(encoding="utf-8")
+
+
+def compared_page() -> str:
+    lists = [run_of(one).finding_list for one in (record(limits=Limits(0.01, 0.1)), record())]
+    return page(comparison_page(compared(*lists), [], ("before", "now")))
+
+
+def without_versions(text: str) -> str:
+    return re.sub(r"^(clearance .*, python .*|clearance \d.*)$", "versions", text, flags=re.M)
+
+
+ANSWERS: dict[str, Callable[[], str]] = {
+    "swing.terminal.txt": lambda: terminal(SWING),
+    "swing.page.txt": lambda: page(page_of(SWING)),
+    "short.summary.json": lambda: summary(record(n_steps=24)),
+    "swing.junit.xml": lambda: junit(SWING),
+    "swing.md": lambda: markdown(model_of(SWING)),
+    "open.terminal.txt": lambda: terminal(OPEN),
+    "open.page.txt": lambda: page(page_of(OPEN)),
+    "suspect.annotations.txt": lambda: "\n".join(annotation_lines(model_of(SUSPECT), HERE)),
+    "two_robots.notebook.txt": lambda: page(run_of(record(n_robots=2))._repr_html_()),
+    "comparison.page.txt": compared_page,
+}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_an_answer_is_told_as_ever(name):
+    assert without_versions(ANSWERS[name]()) == (HERE / name).read_text(encoding="utf-8")
+
+
+if __name__ == "__main__":
+    for file, answer in ANSWERS.items():
+        (HERE / file).write_text(without_versions(answer()), encoding="utf-8")
