@@ -121,17 +121,17 @@ class SampledScene:
     library = "points"
 
     def __init__(self, scene: Scene, n_points: int) -> None:
-        assert len(scene.index) == len(scene.links) * len(scene.obstacles), (
-            "one tree holds all pairs"
-        )
+        moving, standing = scene.moving, scene.standing
+        assert len(scene.index) == len(moving) * len(standing), "one tree holds all pairs"
         self.name = SampledPoints(n_points).name
-        self._scene = scene
-        areas = np.array([area_of(link) for link in scene.links])
+        self._scene, self._moving = scene, moving
+        areas = np.array([area_of(scene.bodies[i]) for i in moving])
         shares = np.maximum(1, np.round(n_points * areas / areas.sum())).astype(int)
         self._links = [
-            sampled([link], [np.eye(4)], n) for link, n in zip(scene.links, shares, strict=True)
+            sampled([scene.bodies[i]], [np.eye(4)], n) for i, n in zip(moving, shares, strict=True)
         ]
-        self._tree = KDTree(sampled(scene.obstacles, list(scene.standing), n_points))
+        still = [scene.bodies[i] for i in standing]
+        self._tree = KDTree(sampled(still, list(scene.poses[0, standing]), n_points))
         self.counters: dict[str, int] = {}
 
     def run(self, steps: np.ndarray) -> np.ndarray:
@@ -139,7 +139,7 @@ class SampledScene:
         return np.array([self._step(int(step)) for step in steps])
 
     def _step(self, step: int) -> float:
-        poses = self._scene.poses[step]
+        poses = self._scene.poses[step, self._moving]
         moved = [
             points @ pose[:3, :3].T + pose[:3, 3]
             for points, pose in zip(self._links, poses, strict=True)

@@ -5,9 +5,8 @@
 Each tree answers in processes of its own, the two in turn: the scenes, the shared cases where they are there, and
 random cells. Compared are the bits of every clearance, witness point and pair at the steps; the certified bounds,
 with and without tolerances, which may differ but must not be looser by more than 1 %; exit code and summary; and
-CPU seconds. Of small cases that end in every kind of verdict, exit code and summary alone are compared. Last come
-the seconds of a start, the least of all commands. The exit code is 1 where bits, exit codes or summaries differ,
-or a bound is looser.
+CPU seconds. Of small cases that end in every kind of verdict, exit code and summary alone are compared. The exit
+code is 1 where bits, exit codes or summaries differ, or a bound is looser.
 """
 
 from __future__ import annotations
@@ -19,15 +18,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from harness import ROOT, SCENES, SHARED
 from verdict_cases import CASES, write_verdict_case
 
-ROOT = Path(__file__).resolve().parents[2]
-SHARED = ROOT.parent / "shared" / "cases"
 BUILT = Path("clearance/compile/built")
 
 LOOSER = 0.01
@@ -91,33 +88,34 @@ def main() -> int:
     with _tree_of(asked.revision) as before:
         trees = {"before": before, "now": ROOT}
         differing = sum(_case_differs(trees, name, asked.passes) for name in names)
-        differing += _differing_verdicts(trees, CASES if asked.verdicts is None else asked.verdicts)
+        small = CASES if asked.verdicts is None else asked.verdicts
+        differing += sum(_verdict_differs(trees, name) for name in small)
     print(f"{differing} differ")
     return int(differing > 0)
 
 
 def _case_differs(trees: dict[str, Path], name: str, passes: int) -> bool:
     """Holds the answers to a scene, a shared case or a cell against each other, and prints a line."""
-    answers = {tree: _answer(path, _in_tree(path, name), passes) for tree, path in trees.items()}
+    is_cell = name.startswith("cell ")
+    answers = {
+        tree: _answer(path, name if is_cell else str(path / name), passes)
+        for tree, path in trees.items()
+    }
+    return _differs(name if is_cell else Path(name).parent.name, answers, _times(answers))
+
+
+def _verdict_differs(trees: dict[str, Path], name: str) -> bool:
+    """Holds the verdicts on a small case against each other, and prints a line."""
+    with tempfile.TemporaryDirectory() as folder:
+        arguments = write_verdict_case(Path(folder) / "case", name)
+        verdicts = {tree: _command(path, arguments) for tree, path in trees.items()}
+    return _differs(name, verdicts, f"exit code {verdicts['now']['exit code']}")
+
+
+def _differs(name: str, answers: dict[str, dict], told: str) -> bool:
     faults = list(_faults(answers["before"], answers["now"]))
-    print(f"{_shown(name):34} {_times(answers)}  {'; '.join(faults) or 'same'}", flush=True)
+    print(f"{name:34} {told}  {'; '.join(faults) or 'same'}", flush=True)
     return bool(faults)
-
-
-def _differing_verdicts(trees: dict[str, Path], names: Iterable[str]) -> int:
-    """Holds the verdicts on small cases against each other, and prints a line for each and one on the start."""
-    starts, differing = [], 0
-    for name in names:
-        verdicts, seconds = _verdicts(trees, name)
-        starts.append(seconds)
-        faults = list(_faults(verdicts["before"], verdicts["now"]))
-        differing += bool(faults)
-        told = f"exit code {verdicts['now']['exit code']}"
-        print(f"{name:34} {told}  {'; '.join(faults) or 'same'}", flush=True)
-    if starts:
-        least = {tree: min(seconds[tree] for seconds in starts) for tree in trees}
-        print(f"{'start':34} {_shown_seconds(least)}", flush=True)
-    return differing
 
 
 def _arguments() -> argparse.Namespace:
@@ -151,22 +149,12 @@ def _tree_of(revision: str) -> Iterator[Path]:
 
 def _cases(names: list[str] | None) -> list[str]:
     """The case files that are asked about, as seen from a tree."""
-    scenes = sorted(path for path in (ROOT / "scenes").glob("*/case.yaml"))
-    found = [path.relative_to(ROOT).as_posix() for path in scenes]
-    if SHARED.is_dir():
-        found += [
-            f"../shared/cases/{path.parent.name}/case.yaml"
-            for path in sorted(SHARED.glob("*/case.yaml"))
-        ]
-    return [path for path in found if names is None or Path(path).parent.name in names]
-
-
-def _in_tree(tree: Path, name: str) -> str:
-    return name if name.startswith("cell ") else str(tree / name)
-
-
-def _shown(name: str) -> str:
-    return name if name.startswith("cell ") else Path(name).parent.name
+    scenes = [f"scenes/{path.parent.name}/case.yaml" for path in sorted(SCENES.glob("*/case.yaml"))]
+    shared = [
+        f"../shared/cases/{path.parent.name}/case.yaml"
+        for path in sorted(SHARED.glob("*/case.yaml"))
+    ]
+    return [path for path in scenes + shared if names is None or Path(path).parent.name in names]
 
 
 def _answer(tree: Path, name: str, passes: int) -> dict:
@@ -190,22 +178,6 @@ def _command(tree: Path, arguments: list[str]) -> dict:
     done = _run(tree, "-m", "clearance", "check", *arguments, "--json")
     said = json.loads(done.stdout) if done.stdout else {"said": done.stderr.strip()}
     return {"exit code": done.returncode, "summary": said}
-
-
-def _verdicts(trees: dict[str, Path], name: str) -> tuple[dict[str, dict], dict[str, float]]:
-    """What both trees say of a small case, and in how many seconds."""
-    verdicts, seconds = {}, {}
-    with tempfile.TemporaryDirectory() as folder:
-        arguments = write_verdict_case(Path(folder) / "case", name)
-        for tree, path in trees.items():
-            start = time.perf_counter()
-            verdicts[tree] = _command(path, arguments)
-            seconds[tree] = time.perf_counter() - start
-    return verdicts, seconds
-
-
-def _shown_seconds(seconds: dict[str, float]) -> str:
-    return ", ".join(f"{of:.2f} s {tree}" for tree, of in seconds.items())
 
 
 def _faults(before: dict, now: dict) -> Iterator[str]:

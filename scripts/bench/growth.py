@@ -11,12 +11,10 @@ searched, and what is allocated at most while steps are measured, by `tracemallo
 from __future__ import annotations
 
 import argparse
-import time
 import tracemalloc
 
 import harness  # first: it sets the number of threads before numpy is loaded
-import numpy as np
-from harness import Row, interleaved, tell
+from harness import Row, interleaved, least_on_wall, tell
 from inputs import Scene, scene_from
 
 from clearance.geometry.tree import surface_of
@@ -64,16 +62,13 @@ def timed_rows(what: str, scenes: list[Scene], asked: argparse.Namespace) -> lis
 
 def thread_rows(scene: Scene, passes: int) -> list[Row]:
     """One thread and two, in turns."""
-    least, tallies = {1: np.inf, 2: np.inf}, {}
-    for _ in range(passes):
-        for jobs in least:
-            start = time.perf_counter()
-            tallies[jobs] = run(scene, jobs)
-            least[jobs] = min(least[jobs], time.perf_counter() - start)
-    assert tallies[1] == tallies[2]
+    works = {str(jobs): lambda jobs=jobs: run(scene, jobs) for jobs in (1, 2)}
+    found = least_on_wall(works, passes)
+    one, tally = found["1"]
+    assert found["2"][1] == tally
     return [
-        row_of("threads", scene, jobs, spent / scene.n_steps * 1e3, least[1] / spent, tallies[jobs])
-        for jobs, spent in least.items()
+        row_of("threads", scene, int(jobs), spent / scene.n_steps * 1e3, one / spent, tally)
+        for jobs, (spent, _) in found.items()
     ]
 
 
@@ -98,7 +93,7 @@ def memory_lines(finer: list[Scene], closer: list[Scene]) -> list[str]:
     """Bytes a triangle beside the mesh, and what measuring allocates, with few steps and many."""
     lines = []
     for scene in finer:
-        shapes = [solid.shape for solid in [*scene.links, *scene.obstacles]]
+        shapes = [body.shape for body in scene.bodies]
         own = [(shape.vertices, shape.face_starts, shape.face_vertices) for shape in shapes]
         trees = sum(n_bytes(surface_of(shape), of) for shape, of in zip(shapes, own, strict=True))
         joined = n_bytes(lay_out(scene.case, scene.pairs).surface)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from harness import SCENES, SHARED  # first: it sets the number of threads before numpy is loaded
+from moving_cases import MOVING, absent_robots
 
 import numpy as np  # isort: skip
 
@@ -19,6 +20,7 @@ from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.case import Case
+from clearance.world.forest import WORLD, link_poses_at
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import Pair, measured_pairs
 from scripts.makers import hostile_cases
@@ -49,7 +51,7 @@ class Solid:
 
     Attributes:
         round_shape: what it is before it is faceted, so that a peer may use its own; None for all others.
-        stands: an obstacle, the second body of a pair.
+        stands: where it is at every step; of a pair of bodies the second.
     """
 
     name: str
@@ -61,13 +63,11 @@ class Solid:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A case ready to be measured.
+    """A case in which nothing changes hands, ready to be measured.
 
     Attributes:
-        links, obstacles: those that occur in `index`.
-        poses: (steps, links, 4, 4) `world_from_link` [m].
-        standing: (obstacles, 4, 4) `world_from_obstacle` [m].
-        index: (p, 2) link and obstacle of each measured pair.
+        bodies: those that occur in a pair. poses: (steps, bodies, 4, 4) `world_from_body` [m].
+        index: (p, 2) the bodies of each measured pair.
         reference: (steps,) [m] clearances made elsewhere, and (steps,) True where they are exact for
             the meshes that are measured; None where the case brings none.
     """
@@ -76,10 +76,8 @@ class Scene:
     case: Case
     motions: tuple[Motion, ...]
     pairs: list[Pair]
-    links: list[Solid]
-    obstacles: list[Solid]
+    bodies: list[Solid]
     poses: np.ndarray
-    standing: np.ndarray
     index: np.ndarray
     reference: tuple[np.ndarray, np.ndarray] | None
 
@@ -90,8 +88,18 @@ class Scene:
 
     @property
     def n_triangles(self) -> int:
-        """Triangles of all links and obstacles that are measured."""
-        return sum(len(solid.soup.triangles) for solid in [*self.links, *self.obstacles])
+        """Triangles of all bodies that are measured."""
+        return sum(len(body.soup.triangles) for body in self.bodies)
+
+    @property
+    def moving(self) -> list[int]:
+        """The bodies that move."""
+        return [i for i, body in enumerate(self.bodies) if not body.stands]
+
+    @property
+    def standing(self) -> list[int]:
+        """Those that do not."""
+        return [i for i, body in enumerate(self.bodies) if body.stands]
 
 
 def solid(body: Body, stands: bool = False) -> Solid:
@@ -125,8 +133,9 @@ def case_files() -> list[Path]:
 
 def absent_inputs() -> list[str]:
     """What cannot be run, one line each."""
-    shared = sorted(SHARED.glob("*/case.yaml"))
-    return [] if shared else [f"skipped: no shared cases in {SHARED.name}/ beside the repository"]
+    if sorted(SHARED.glob("*/case.yaml")):
+        return absent_robots()
+    return [f"skipped: no shared cases in {SHARED.name}/ beside the repository", *absent_robots()]
 
 
 def scenes(names: Sequence[str] = ()) -> Iterator[Scene]:
@@ -134,7 +143,12 @@ def scenes(names: Sequence[str] = ()) -> Iterator[Scene]:
     for path in case_files():
         if not names or path.parent.name in names:
             yield scene_of(path)
-    yield from (scene_from(name, make()) for name, make in MADE.items() if name in names)
+    yield from (scene_from(name, make()) for name, make in made().items() if name in names)
+
+
+def made() -> dict[str, Callable[[], Case]]:
+    """The cases that are made in memory; those of real robots where these are installed."""
+    return MADE | ({} if absent_robots() else MOVING)
 
 
 def scene_of(path: Path) -> Scene:
@@ -149,34 +163,18 @@ def scene_from(
     """A case with its motion followed and its bodies triangulated."""
     motions = tuple(kinematic_motion(placed) for placed in case.robots)
     pairs, _ = measured_pairs(case)
-    movers = sorted({(pair.a.i_robot, pair.a.i_body) for pair in pairs})
-    fixed = sorted({pair.b.i_body for pair in pairs if pair.b.is_obstacle})
-    standing = [case.obstacles[k] for k in fixed]
-    links = [solid(case.robots[i].robot.bodies[j]) for i, j in movers]
-    obstacles = [solid(o.body, stands=True) for o in standing]
+    bodies = sorted({body for pair in pairs for body in pair})
+    links = link_poses_at(case, motions, slice(None))
     return Scene(
         name=name,
         case=case,
         motions=motions,
         pairs=pairs,
-        links=links,
-        obstacles=obstacles,
-        poses=_poses(case, motions, movers),
-        standing=np.array([o.world_from_body for o in standing]),
-        index=np.array(
-            [(movers.index((p.a.i_robot, p.a.i_body)), fixed.index(p.b.i_body)) for p in pairs]
-        ),
+        bodies=[solid(one.body_in(case), one.frame_in(case) == WORLD) for one in bodies],
+        poses=np.stack([one.poses_in(case, links) for one in bodies], axis=1),
+        index=np.array([(bodies.index(pair.a), bodies.index(pair.b)) for pair in pairs]),
         reference=reference,
     )
-
-
-def _poses(case: Case, motions: tuple[Motion, ...], movers: list[tuple[int, int]]) -> np.ndarray:
-    by_robot = [motion.poses() for motion in motions]
-    columns = []
-    for i_robot, i_body in movers:
-        robot = case.robots[i_robot].robot
-        columns.append(by_robot[i_robot][:, robot.link_names.index(robot.bodies[i_body].name)])
-    return np.ascontiguousarray(np.stack(columns, axis=1))
 
 
 def _reference(case: Case, path: Path) -> tuple[np.ndarray, np.ndarray] | None:

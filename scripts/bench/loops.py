@@ -88,10 +88,10 @@ class AllPairs:
         self.counters: dict[str, int] = {}
         self._n_queries = 0
         with silenced():
-            self._links = [by.body(link) for link in scene.links]
-            self._obstacles = [by.body(obstacle) for obstacle in scene.obstacles]
-        for obstacle, pose in zip(self._obstacles, scene.standing, strict=True):
-            by.place(obstacle, pose)
+            self._bodies = [by.body(body) for body in scene.bodies]
+        for i in scene.standing:
+            by.place(self._bodies[i], scene.poses[0, i])
+        self._moving = scene.moving
         self._index = [(int(i), int(j)) for i, j in scene.index]
 
     def run(self, steps: np.ndarray) -> np.ndarray:
@@ -102,13 +102,14 @@ class AllPairs:
         return found
 
     def _place(self, step: int) -> None:
-        for link, pose in zip(self._links, self._scene.poses[step], strict=True):
-            self._peer.place(link, pose)
+        poses = self._scene.poses[step]
+        for i in self._moving:
+            self._peer.place(self._bodies[i], poses[i])
 
     def _ask(self, i_pair: int, **options: Any) -> float:
         i, j = self._index[i_pair]
         self._n_queries += 1
-        return self._peer.distance(self._links[i], self._obstacles[j], **options)
+        return self._peer.distance(self._bodies[i], self._bodies[j], **options)
 
     def _step(self, step: int) -> float:
         self._place(step)
@@ -122,20 +123,19 @@ class SortedPairs(AllPairs):
 
     def __init__(self, scene: Scene, by: PairPeer) -> None:
         super().__init__(scene, by)
-        centres, radii = zip(*(sphere_of(link.soup.vertices) for link in scene.links), strict=True)
-        self._centres, self._radii = np.array(centres), np.array(radii)
-        fixed = [sphere_of(obstacle.soup.vertices) for obstacle in scene.obstacles]
-        self._fixed = np.array(
-            [p[:3, :3] @ c + p[:3, 3] for (c, _), p in zip(fixed, scene.standing, strict=True)]
-        )
-        self._reach = (
-            self._radii[scene.index[:, 0]] + np.array([r for _, r in fixed])[scene.index[:, 1]]
-        )
+        centres, radii = zip(*(sphere_of(body.soup.vertices) for body in scene.bodies), strict=True)
+        self._own = np.array(centres)[self._moving]
+        self._centres = np.einsum("bij,bj->bi", scene.poses[0, :, :3, :3], np.array(centres))
+        self._centres += scene.poses[0, :, :3, 3]
+        self._reach = np.array(radii)[scene.index].sum(axis=1)
 
     def _bounds(self, step: int) -> np.ndarray:
-        poses, index = self._scene.poses[step], self._scene.index
-        centres = np.einsum("lij,lj->li", poses[:, :3, :3], self._centres) + poses[:, :3, 3]
-        return np.linalg.norm(centres[index[:, 0]] - self._fixed[index[:, 1]], axis=1) - self._reach
+        poses, index = self._scene.poses[step, self._moving], self._scene.index
+        self._centres[self._moving] = (
+            np.einsum("bij,bj->bi", poses[:, :3, :3], self._own) + poses[:, :3, 3]
+        )
+        apart = self._centres[index[:, 0]] - self._centres[index[:, 1]]
+        return np.linalg.norm(apart, axis=1) - self._reach
 
     def _step(self, step: int) -> float:
         self._place(step)
@@ -160,7 +160,7 @@ class BestSoFar(SortedPairs):
 
 
 class CarriedBounds(SortedPairs):
-    """Bounds carried from step to step less what the link can have moved, or those of the spheres where
+    """Bounds carried from step to step less what both bodies can have moved, or those of the spheres where
     they are greater; sorted, best so far: the best known by hand."""
 
     style = "carried bounds"
@@ -169,11 +169,11 @@ class CarriedBounds(SortedPairs):
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps from the first."""
         scene = self._scene
-        moved = [
-            greatest_displacements(link.soup.bounds, scene.poses[: len(steps), i])
-            for i, link in enumerate(scene.links)
-        ]
-        self._moved = np.vstack([np.zeros(len(moved)), np.array(moved).T])[:, scene.index[:, 0]]
+        moved = np.zeros((len(steps), len(scene.bodies)))
+        for i in self._moving:
+            bounds = scene.bodies[i].soup.bounds
+            moved[1:, i] = greatest_displacements(bounds, scene.poses[: len(steps), i])
+        self._moved = moved[:, scene.index].sum(axis=2)
         self._lower = self._bounds(int(steps[0]))
         return super().run(steps)
 
@@ -203,18 +203,14 @@ class FclManagers:
     def __init__(self, scene: Scene, by: Fcl) -> None:
         self._peer, self._scene = by, scene
         self.name, self.library = f"{by.name}: two AABB-tree managers", by.name
-        self._links = [by.body(link) for link in scene.links]
-        obstacles = [by.body(obstacle) for obstacle in scene.obstacles]
-        for obstacle, pose in zip(obstacles, scene.standing, strict=True):
-            by.place(obstacle, pose)
+        self._bodies = [by.body(body) for body in scene.bodies]
+        for i in scene.standing:
+            by.place(self._bodies[i], scene.poses[0, i])
         facing: dict[tuple[int, ...], list[int]] = {}
-        for i in range(len(scene.links)):
+        for i in scene.moving:
             facing.setdefault(tuple(scene.index[scene.index[:, 0] == i, 1].tolist()), []).append(i)
         self._groups = [
-            (
-                self._manager([self._links[i] for i in links]),
-                self._manager([obstacles[j] for j in them]),
-            )
+            tuple(self._manager([self._bodies[i] for i in side]) for side in (links, them))
             for them, links in facing.items()
         ]
         self.counters = {"managers": 2 * len(self._groups)}
@@ -230,8 +226,8 @@ class FclManagers:
         return np.array([self._step(int(step)) for step in steps])
 
     def _step(self, step: int) -> float:
-        for link, pose in zip(self._links, self._scene.poses[step], strict=True):
-            self._peer.place(link, pose)
+        for i in self._scene.moving:
+            self._peer.place(self._bodies[i], self._scene.poses[step, i])
         answers = []
         for links, obstacles in self._groups:
             links.update()
@@ -250,10 +246,11 @@ def sphere_of(vertices: np.ndarray) -> tuple[np.ndarray, float]:
 def loops_of(scene: Scene) -> list[StepLoop]:
     """Ours first, then every peer's loop whose library is there."""
     loops: list[StepLoop] = [OurSteps(scene), OurPairs(scene)]
-    has_round = any(body.round_shape for body in [*scene.links, *scene.obstacles])
+    has_round = any(body.round_shape for body in scene.bodies)
+    all_stand = {*scene.index[:, 1].tolist()} <= {*scene.standing}  # what managers can be asked
     if available("fcl"):
         for by in [Fcl, FclShapes] if has_round else [Fcl]:
-            loops += [AllPairs(scene, by()), FclManagers(scene, by())]
+            loops += [AllPairs(scene, by()), *([FclManagers(scene, by())] if all_stand else [])]
     if available("coal"):
         for by in [Coal, CoalShapes] if has_round else [Coal]:
             loops += [AllPairs(scene, by()), SortedPairs(scene, by())]

@@ -8,12 +8,11 @@ unless two are said. python-fcl's all pairs are asked for some steps only and to
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import harness  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from harness import Row, geometric_mean, tell
+from harness import Row, geometric_mean, least_on_wall, tell
 from inputs import Scene, absent_inputs, scenes
 from loops import AllPairs
 from peers import Fcl, available
@@ -51,14 +50,8 @@ def main(words: list[str] | None = None) -> list[Row]:
 
 def rows_of(scene: Scene, passes: int) -> list[Row]:
     """What everything costs on one scene."""
-    works = works_of(scene)
-    seconds, tallies = dict.fromkeys(works, np.inf), dict[str, dict]()
-    for i_pass in range(passes + 1):
-        for what, work in works.items():
-            start = time.perf_counter()
-            tallies[what] = work()
-            if i_pass > 0:  # the first one warms up
-                seconds[what] = min(seconds[what], time.perf_counter() - start)
+    found = least_on_wall(works_of(scene), passes)
+    seconds = {what: spent for what, (spent, _) in found.items()}
     ratios = {}
     if "FCL all pairs" in seconds:
         seconds["FCL all pairs"] *= scene.n_steps / N_ASKED
@@ -67,7 +60,7 @@ def rows_of(scene: Scene, passes: int) -> list[Row]:
     return [
         {
             "scene": scene.name, "what": what, "seconds": seconds.get(what), "ratio_to_steps": ratio,
-            **{name: tallies.get(what, {}).get(name) for name in COUNTED},
+            **{name: found[what][1].get(name) if what in found else None for name in COUNTED},
         }
         for what, ratio in ratios.items()
     ]  # fmt: skip

@@ -6,7 +6,8 @@ Compiled code warm, meshes and trees made outside the clock; milliseconds of CPU
 passes; the first run of each pass, which finds the others' data in the processor's caches, is told apart. Loops
 without memory are asked for evenly spread steps where all of them would exceed their share of `--seconds`. A peer
 that says 0 where we say more than 1 um is counted as false, and the reverse as missed.
-`--made` takes the cases of `inputs.MADE` instead, in most of which nothing can be cut.
+`--made` takes the cases of `inputs.made` instead: those in which nothing can be cut, and real robots whose links
+are measured against each other and against other robots.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def main(words: list[str] | None = None) -> list[Row]:
     )
     tell(*inputs.absent_inputs(), *absent_peers(LIBRARIES))
     rows: list[Row] = []
-    for scene in inputs.scenes([*inputs.MADE] if asked.made else asked.scenes):
+    for scene in inputs.scenes([*inputs.made()] if asked.made else asked.scenes):
         found = measured(scene, asked.seconds, asked.passes)
         title = f"{scene.name}: {scene.n_triangles} triangles, {len(scene.pairs)} pairs, {scene.n_steps} steps"
         harness.show(title, found, SHOWN)

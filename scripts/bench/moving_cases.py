@@ -1,7 +1,7 @@
 """Cases in which more moves than one robot among standing things, made in memory from real robots.
 
 An arm that minds itself and a scene, a humanoid that minds itself, two arms over one table. Seeds are fixed; what
-touches at rest is allowed, so that no run ends at a contact. Not for: measuring (`actors`).
+touches at rest is allowed, so that no run ends at a contact. Not for: measuring.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from harness import SCENES
 
 import clearance as cl
 from clearance.formats.robot.srdf import load_srdf
@@ -87,12 +86,7 @@ def two_arms(n_steps: int = 300) -> Case:
     return settled(Case("two_arms", arms, (table, tray), allow=(standing,)))
 
 
-def handover() -> Case:
-    """Two arms, one of which hands the other a part."""
-    return cl.load_case(SCENES / "dual_arm_handover" / "case.yaml")
-
-
-CASES: dict[str, Callable[..., Case]] = {
+MOVING: dict[str, Callable[..., Case]] = {
     "arm": arm_among_obstacles,
     "humanoid": humanoid,
     "two_arms": two_arms,
