@@ -43,7 +43,7 @@ def row_of(path: Path, tolerances: bool) -> Row:
     run = cl.check(case)
     with tempfile.TemporaryDirectory() as place:
         run.save(place)
-        write_s, receipt = timed(lambda: cl.write_receipt(run, place, None if tolerances else path))
+        write_s, receipt = timed(lambda: cl.write_receipt(run, place, "" if tolerances else path))
         found = cl.verify(place, case)
         run_s, verify_s = (
             least_time(lambda: cl.check(case), 3)[0],
