@@ -1,7 +1,4 @@
-"""The clearances that the tolerances of a case leave, for each rule: the `budget` of its record.
-
-Not for: the proof (`proven`), the estimate (`expected`), and the loss by each error (`worst`).
-"""
+"""The clearances that the tolerances of a case leave, for each rule: the `budget` of its record."""
 
 from __future__ import annotations
 

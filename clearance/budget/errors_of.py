@@ -1,8 +1,7 @@
 """The errors of a case's budget, laid over the links and bodies that are measured.
 
 Links that are seen from another link (`simulate.measure.layout`) have the errors of the joints between; a part
-that has changed hands has those of its carriers at these moments too. Not for: what the errors do to a distance
-(`kernels.budget`).
+that has changed hands has those of its carriers at these moments too.
 """
 
 from __future__ import annotations

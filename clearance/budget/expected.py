@@ -3,7 +3,6 @@
 Errors are independent. A number is uniform up to its size, or normal with its size at three standard deviations; a
 vector is uniform in the ball of its size, or normal in each of three axes alike. To the first order the variance
 of the distance is the sum of theirs, times the squares of their slopes: m^2 / 3, of a ball m^2 / 5 for each axis.
-Not for: proofs (`proven`).
 """
 
 from __future__ import annotations

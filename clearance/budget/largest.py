@@ -1,7 +1,6 @@
 """The greatest single tolerance, all others as given, at which a limit is still proven to be kept.
 
 A tolerance is tried at the steps and intervals where it can matter; the number reported is proven at all of them.
-Not for: the proof (`proven`).
 """
 
 from __future__ import annotations

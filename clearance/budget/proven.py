@@ -1,7 +1,4 @@
-"""The distances that the errors of a budget leave of a section's pairs, proven at its steps and between them.
-
-Not for: all sections together (`answer`), and the estimate (`expected`).
-"""
+"""The distances that the errors of a budget leave of a section's pairs, proven at its steps and between them."""
 
 from __future__ import annotations
 

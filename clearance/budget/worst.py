@@ -1,7 +1,4 @@
-"""The moments at which a budget leaves least, and the loss by each error there.
-
-Not for: the bounds at each step (`proven`).
-"""
+"""The moments at which a budget leaves least, and the loss by each error there."""
 
 from __future__ import annotations
 

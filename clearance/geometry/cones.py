@@ -1,7 +1,6 @@
 """Normal cones of a tree's nodes: directions of the faces that could have the nearest point to another body.
 
 `kernels.mesh.normal_cones` says which directions a cone must contain, and why.
-Not for: how two cones are compared (there).
 """
 
 from __future__ import annotations

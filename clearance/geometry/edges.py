@@ -1,7 +1,4 @@
-"""Vertices matched bit for bit and edges matched by their ends.
-
-Not for: what a surface's edges say (`topology`).
-"""
+"""Vertices matched bit for bit and edges matched by their ends."""
 
 from __future__ import annotations
 

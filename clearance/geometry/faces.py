@@ -1,7 +1,6 @@
 """Flat lists of faces: made from what callers give, checked, and split where a face is not flat.
 
-`starts` (m + 1,) says where each face begins in `flat`, the vertex indices of all faces. Not for: what the
-faces form together (`topology`).
+`starts` (m + 1,) says where each face begins in `flat`, the vertex indices of all faces.
 """
 
 from __future__ import annotations

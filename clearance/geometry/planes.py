@@ -1,7 +1,4 @@
-"""The plane, centre and radius of each face, free of scale and of distance from the origin.
-
-Not for: whether points lie on a plane exactly (`kernels.arithmetic.expansion`).
-"""
+"""The plane, centre and radius of each face, free of scale and of distance from the origin."""
 
 from __future__ import annotations
 

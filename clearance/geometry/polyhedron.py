@@ -2,8 +2,7 @@
 
 Faces are stored flat (`face_starts`, `face_vertices`), counter-clockwise as seen from outside where the
 surface is consistently oriented. A `Polyhedron` that exists is valid: finite, with at least one face, every
-index in range, every face flat and convex. Everything else is computed on first use, and then cached. Not
-for: reading files (room `formats`) and making shapes (`shapes`).
+index in range, every face flat and convex. Everything else is computed on first use, and then cached.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
 """The graphs of a polytope's surface: twins, vertex neighbours, face neighbours and the trivalent form.
 
-Made once a polytope, with whole arrays; the kernels walk on them. Not for: deciding which points are
-vertices (`polytope_hull`).
+Made once a polytope, with whole arrays; the kernels walk on them.
 """
 
 from __future__ import annotations

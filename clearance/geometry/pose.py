@@ -1,7 +1,4 @@
-"""Poses: (4, 4) rigid motions `world_from_body`, made from the forms that files use and checked where given.
-
-Not for: poses of a robot's links (`world.kinematics`).
-"""
+"""Poses: (4, 4) rigid motions `world_from_body`, made from the forms that files use and checked where given."""
 
 from __future__ import annotations
 

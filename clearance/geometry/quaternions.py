@@ -1,7 +1,4 @@
-"""Unit quaternions: of rotation matrices, without importing scipy for it, and of rounded ones.
-
-Not for: the inverse (`pose`).
-"""
+"""Unit quaternions: of rotation matrices, without importing scipy for it, and of rounded ones."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The topology of faces: edges shared or open, connected components, volume, inside and outside.
-
-Not for: the shape of single faces (`planes`, `faces`) and containment as a query (room `query`).
-"""
+"""The topology of faces: edges shared or open, connected components, volume, inside and outside."""
 
 from __future__ import annotations
 

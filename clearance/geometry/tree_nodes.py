@@ -1,7 +1,4 @@
-"""The tree of boxes over some of the faces of a surface, in the arrays that kernels search.
-
-Not for: how it is built (`kernels.mesh.tree_build`), and what else a surface has (`tree`).
-"""
+"""The tree of boxes over some of the faces of a surface, in the arrays that kernels search."""
 
 from __future__ import annotations
 

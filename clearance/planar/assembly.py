@@ -1,7 +1,4 @@
-"""Bézier pieces joined as in a curve: about an origin of their own, without pieces of no extent.
-
-Not for: what lines, arcs and splines are as pieces (`primitives`).
-"""
+"""Bézier pieces joined as in a curve: about an origin of their own, without pieces of no extent."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Circular arcs fitted to a curve with a proven error: what the distance map is drawn from, for everyone.
-
-Not for: fitting points, or arcs that need not follow the curve's parameter.
-"""
+"""Circular arcs fitted to a curve with a proven error: what the distance map is drawn from, for everyone."""
 
 from __future__ import annotations
 

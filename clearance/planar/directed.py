@@ -1,7 +1,6 @@
 """One direction of a Hausdorff distance: from the numbers of a search to named values and witnesses.
 
 Shared by the ways of solving (`hausdorff`, `systems`) and by all that sets two curves in one frame.
-Not for: searching.
 """
 
 from __future__ import annotations

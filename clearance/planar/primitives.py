@@ -1,7 +1,4 @@
-"""Polylines, splines, Bézier curves and arcs as the pieces of a curve, their input checked.
-
-Not for: curves made of curves (`curve`).
-"""
+"""Polylines, splines, Bézier curves and arcs as the pieces of a curve, their input checked."""
 
 from __future__ import annotations
 

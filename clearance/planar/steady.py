@@ -3,7 +3,6 @@
 Between weights 1 and 1e30 a piece runs through half its length within 1e-30 of its parameter, nearer to an end
 than floats lie. Weights w_i may be scaled by lambda^i without moving a point: so both ends get the same weight,
 and where those between still stand out the piece is halved, which reduces their ratio to its square root.
-Not for: evaluation at a parameter of the caller's (`curve`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The links from a root that stands down to one that carries a body, and where they are at any instant of a phase.
 
 Whatever moves is in it: a robot's own joints, those of what the robot stands on, and the slides and the ball joint
-of an obstacle that moves by itself. Instants are counted in the phase's steps. Not for: its effect on the
-points of a body (`chain_bounds`).
+of an obstacle that moves by itself. Instants are counted in the phase's steps.
 """
 
 from __future__ import annotations

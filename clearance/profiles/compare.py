@@ -1,7 +1,4 @@
-"""How far two outlines differ: certified Hausdorff distance, deviation along them, areas, who made the worst.
-
-Not for: reading files (`outline_file`) or drawing (`picture`).
-"""
+"""How far two outlines differ: certified Hausdorff distance, deviation along them, areas, who made the worst."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""A drawn sketch as closed contours of lines and arcs, always of the same pieces however it is dimensioned.
-
-Not for: curves with free ends (`Sketch.curves`).
-"""
+"""A drawn sketch as closed contours of lines and arcs, always of the same pieces however it is dimensioned."""
 
 from __future__ import annotations
 

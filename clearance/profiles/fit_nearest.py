@@ -1,7 +1,4 @@
-"""The search for the sketch nearest to an outline, from one start: Gauss and Newton, then linear programs.
-
-Not for: choosing starts (`fit`), or outlines to be contained (`fit_bounded`).
-"""
+"""The search for the sketch nearest to an outline, from one start: Gauss and Newton, then linear programs."""
 
 from __future__ import annotations
 

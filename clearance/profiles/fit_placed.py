@@ -1,7 +1,4 @@
-"""One shape that a sketch draws, where it stands, and how far its numbers may go in one step.
-
-Not for: drawing it (`fit_shape`).
-"""
+"""One shape that a sketch draws, where it stands, and how far its numbers may go in one step."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The linear programs of a fit, solved over few of their rows at a time until none of the others is broken.
-
-Not for: where the rows come from (`fit_rows`), or how far a step may go (`fit_nearest`, `fit_bounded`).
-"""
+"""The linear programs of a fit, solved over few of their rows at a time until none of the others is broken."""
 
 from __future__ import annotations
 

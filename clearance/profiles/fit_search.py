@@ -1,7 +1,4 @@
-"""The common part of all searches for a fitted sketch: its places, its step bounds, and its rows.
-
-Not for: the searches themselves (`fit_nearest`, `fit_bounded`).
-"""
+"""The common part of all searches for a fitted sketch: its places, its step bounds, and its rows."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The relation of a fitted sketch to an outline: near, around or clear of it; rows to search by, and the proof.
-
-Not for: the search (`fit_search`).
-"""
+"""The relation of a fitted sketch to an outline: near, around or clear of it; rows to search by, and the proof."""
 
 from __future__ import annotations
 

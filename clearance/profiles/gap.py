@@ -1,7 +1,4 @@
-"""The proven gap between a sketch and an outline, and whether each is on its right side of the other.
-
-Not for: swept bounds, which come on top (`answer`), or searching (`fit_search`).
-"""
+"""The proven gap between a sketch and an outline, and whether each is on its right side of the other."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Outlines from any file that has one: a profile, a sketch, a list of curves, a DXF drawing.
-
-Not for: writing (`profile_file`).
-"""
+"""Outlines from any file that has one: a profile, a sketch, a list of curves, a DXF drawing."""
 
 from __future__ import annotations
 

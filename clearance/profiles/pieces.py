@@ -1,7 +1,6 @@
 """Lines and arcs as flat arrays: points, normals and nearest points of many at once, in closed form.
 
-For searches with many evaluations; a place on them is a piece and the share of its length. Not for: certified
-distances (`clearance.planar`).
+For searches with many evaluations; a place on them is a piece and the share of its length.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The plane that a profile lies in: its name or its point and normal, and its two axes.
-
-Not for: what is projected on it (`sweep`) or cut by it (`section`).
-"""
+"""The plane that a profile lies in: its name or its point and normal, and its two axes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""A profile: closed outlines of lines and arcs in a plane, and for a sweep what it was made from and how sure.
-
-Not for: making one from a motion (`sweep`), or files (`profile_file`).
-"""
+"""A profile: closed outlines of lines and arcs in a plane, and for a sweep what it was made from and how sure."""
 
 from __future__ import annotations
 

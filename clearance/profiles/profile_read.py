@@ -1,7 +1,4 @@
-"""Profiles read from our YAML, everything checked that is used.
-
-Not for: writing (`profile_file`), or curves that are not profiles, which `clearance.planar.curve_file` reads.
-"""
+"""Profiles read from our YAML, everything checked that is used."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """The adapter of shapely: unions, offsets, areas and membership of plane regions.
 
 Rings are (n, 2) arrays without the first point repeated, outer ones counter-clockwise, holes clockwise.
-Not for: bounds (`outline`), which are proven on what comes out of here.
 """
 
 from __future__ import annotations

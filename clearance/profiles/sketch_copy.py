@@ -1,7 +1,4 @@
-"""A sketch again as a new one, some driven dimensions driving or the reverse, moved on request.
-
-Not for: solving (`clearance.sketch`), or shapes of numbers (`fit_shape`).
-"""
+"""A sketch again as a new one, some driven dimensions driving or the reverse, moved on request."""
 
 from __future__ import annotations
 

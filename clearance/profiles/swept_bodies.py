@@ -1,7 +1,4 @@
-"""The bodies that a profile is swept by: links of robots, parts while they are carried, and obstacles by name.
-
-Not for: sweeping them (`sweep`).
-"""
+"""The bodies that a profile is swept by: links of robots, parts while they are carried, and obstacles by name."""
 
 from __future__ import annotations
 

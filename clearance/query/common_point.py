@@ -1,8 +1,7 @@
 """A point strictly inside several polytopes, or a certificate that there is none.
 
 `common_point` finds the deepest point: the x with the greatest t such that x is inside by t times each face's
-distance from its own centroid. Not for: the paper's method (`common_point_paper`), the common region
-(`intersection`).
+distance from its own centroid.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""A common point of two polytopes by the paper: GJK, then a step in one of 26 directions.
-
-Not for: more than two bodies, or the deepest point (`common_point`).
-"""
+"""A common point of two polytopes by the paper: GJK, then a step in one of 26 directions."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Proven bounds on an overlap where the effort is spent: a few products per corner of both bodies.
-
-Not for: the depth itself (`contact`).
-"""
+"""Proven bounds on an overlap where the effort is spent: a few products per corner of both bodies."""
 
 from __future__ import annotations
 

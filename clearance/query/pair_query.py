@@ -1,7 +1,4 @@
-"""Two solids measured at many poses: an object that caches the findings of the last answer.
-
-Not for: single questions (`distance`, which gives the same answers).
-"""
+"""Two solids measured at many poses: an object that caches the findings of the last answer."""
 
 from __future__ import annotations
 

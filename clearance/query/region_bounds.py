@@ -1,7 +1,6 @@
 """Bounds of the depth from the common region of two bodies: directions worth trying, and balls inside it.
 
-Both from above and from below without cutting a body into convex parts. Not for: making the region (`contact`), or
-confirming a separation (`retreat`).
+Both from above and from below without cutting a body into convex parts.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
 """The part of a large solid that another body can reach: the common region is the same with its triangles alone.
-
-Not for: the region itself (`contact`).
 """
 
 from __future__ import annotations

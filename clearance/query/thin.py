@@ -1,8 +1,7 @@
 """The volume of a thin common region, to the last digits: cut again in a frame that makes it round.
 
 Only faces whose planes come near the region take part, each as the planes of the exact hull of its corners,
-because a merged face is flat only to rounding, and that is large compared with a thin region. Not for: finding the
-region (`cutting`).
+because a merged face is flat only to rounding, and that is large compared with a thin region.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
-"""The pairs in contact at the steps of a run, and the overlaps that the run works out. Not for: finding them
-(`simulate.answers.contact`).
-"""
+"""The pairs in contact at the steps of a run, and the overlaps that the run works out."""
 
 from __future__ import annotations
 

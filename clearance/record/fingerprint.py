@@ -1,7 +1,4 @@
-"""What decides every row of a run, as one fingerprint: two runs that agree in it give the same bytes.
-
-Not for: provenance that people read (`report.topics.provenance`).
-"""
+"""What decides every row of a run, as one fingerprint: two runs that agree in it give the same bytes."""
 
 from __future__ import annotations
 

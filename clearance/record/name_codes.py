@@ -1,7 +1,6 @@
 """Columns of names as codes, and back.
 
-Few rows are gone through one by one: pyarrow's own functions for it take longer to be imported. Not for: which
-names there are (`names`, `status`).
+Few rows are gone through one by one: pyarrow's own functions for it take longer to be imported.
 """
 
 from __future__ import annotations

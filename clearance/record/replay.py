@@ -2,7 +2,6 @@
 
 The page in a report and the live viewer both draw from this, so they show the same frames. Geometry
 and poses are float32, which is for the eye only; times, clearances and witness points stay float64.
-Not for: making it (`simulate.replay`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
 """How the rows of a record stand: each step by itself, and the motion to the next, against the rule that is worst.
-
-Not for: what a rule comes to as a whole (`rule_answer`).
 """
 
 from __future__ import annotations

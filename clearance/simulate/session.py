@@ -1,7 +1,6 @@
 """One object that works out on demand what a record leaves open: pairs, moments, stretches, a replay.
 
-Whoever makes a record holds its session beside it, and gives it to those who ask. Not for: measuring a run
-(`measure`, `certify`).
+Whoever makes a record holds its session beside it, and gives it to those who ask.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The entities of a sketch as they are drawn: their numbers, and the incidences that tie them to points.
-
-Not for: constraints of the user (`relations`).
-"""
+"""The entities of a sketch as they are drawn: their numbers, and the incidences that tie them to points."""
 
 from __future__ import annotations
 

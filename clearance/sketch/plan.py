@@ -3,8 +3,7 @@
 Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by two edges; (c) two
 bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing,
 whose assumptions are counted: Fig. 13 (a) and (b) lack one edge, (c) is two bodies that lack two,
-(d) two bodies that lack one. Not for: making the plan
-(`clearance.sketch.graph.plan`).
+(d) two bodies that lack one.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The contents of a sketch by name: entities, constraints, parameters; names and numbers are checked here.
-
-Not for: what they mean (`constraints`), nor their numbers (`lists`).
-"""
+"""The contents of a sketch by name: entities, constraints, parameters; names and numbers are checked here."""
 
 from __future__ import annotations
 

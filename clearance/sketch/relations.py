@@ -1,7 +1,4 @@
-"""The constraints of a sketch and their dimensions: numbers or expressions, and what follows when one changes.
-
-Not for: what a kind means (`constraints`), nor its equations (`rows`).
-"""
+"""The constraints of a sketch and their dimensions: numbers or expressions, and what follows when one changes."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The findings of a solve; details are computed on demand.
-
-Not for: the search itself (`solver`), conflicts (`diagnosis`), the plan's wording (`plan`).
-"""
+"""The findings of a solve; details are computed on demand."""
 
 from __future__ import annotations
 

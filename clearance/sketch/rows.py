@@ -1,8 +1,7 @@
 """The equations that each constraint stands for, as rows for `clearance.sketch.equations`.
 
 A function per form takes the sketch's numbers and the entities. Signs that an equation leaves open (the side of a
-line, inside or outside, the turn of an angle) it reads from the sketch. Not for: which kinds are for which
-entities (`constraints`).
+line, inside or outside, the turn of an angle) it reads from the sketch.
 """
 
 from __future__ import annotations

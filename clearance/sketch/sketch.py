@@ -1,8 +1,7 @@
 """The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on demand.
 
 One class with every public method, so that an editor and a type checker see them; what each does is in the
-rooms it is made of. Not for: how entities are drawn (`drawing`), constraints and dimensions made
-(`relations`), nor how a sketch is solved (`execution`), nor its files (`sketch_file`).
+rooms it is made of.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""A sketch's solver: the current problem, cached while the structure stays, and its solves and drags.
-
-Not for: how a problem is solved (`execution`).
-"""
+"""A sketch's solver: the current problem, cached while the structure stays, and its solves and drags."""
 
 from __future__ import annotations
 

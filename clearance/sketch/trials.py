@@ -2,8 +2,7 @@
 
 A quick trial starts from the numbers of the failed solve, where most equations hold already; only
 when it finds nothing are the chosen constraints planned and solved from the sketch. What a trial finds
-solvable is so; what it does not find solvable need not be impossible. Not for: what a conflict means
-(`diagnosis`).
+solvable is so; what it does not find solvable need not be impossible.
 """
 
 from __future__ import annotations

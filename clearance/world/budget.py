@@ -1,7 +1,6 @@
 """Errors of a real machine, as plain data: patterns and presets are resolved.
 
-Each number is the greatest magnitude of one error, in any direction, at once with all others. Not for: reading it
-(`formats`), nor the remaining clearance (`clearance.budget`).
+Each number is the greatest magnitude of one error, in any direction, at once with all others.
 """
 
 from __future__ import annotations

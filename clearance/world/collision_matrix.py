@@ -1,7 +1,4 @@
-"""Which pairs of one robot's links are excused from self-clearance, and why: the allowed collision matrix.
-
-Not for: reading it from a file (`formats.robot.srdf`), and whether an excuse is right (`simulate.answers.audit`).
-"""
+"""Which pairs of one robot's links are excused from self-clearance, and why: the allowed collision matrix."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Checks on the bodies of one case: links have surfaces, and all names are different.
-
-Not for: names of one kind (`names`), and what else a case needs (`case`).
-"""
+"""Checks on the bodies of one case: links have surfaces, and all names are different."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """Lengths of bodies, reach of robots, and lengths in words: sizes and places are compared with them;
 and floor and walls of a robot's own file.
-
-Not for: what is odd about them (`plausible_sizes`).
 """
 
 from __future__ import annotations

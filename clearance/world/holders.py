@@ -1,6 +1,4 @@
 """What robots have in hand: which link of which robot a carried part, and all that stands on it, is on in the end.
-
-Not for: when parts change hands (`world.timeline`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Joints beyond their limits: a warning or, where the case says so, a violation; far beyond is suspect.
-
-Not for: how fast joints are (`joint_speeds`).
-"""
+"""Joints beyond their limits: a warning or, where the case says so, a violation; far beyond is suspect."""
 
 from __future__ import annotations
 

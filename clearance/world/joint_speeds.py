@@ -1,7 +1,4 @@
-"""Joints that are faster, or accelerate more, than they may: a warning or, where the case says so, a violation.
-
-Not for: joints beyond their positions (`joint_limits`), units (`plausible_motion`).
-"""
+"""Joints that are faster, or accelerate more, than they may: a warning or, where the case says so, a violation."""
 
 from __future__ import annotations
 

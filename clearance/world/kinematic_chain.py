@@ -1,7 +1,4 @@
-"""The joints between two links of one robot, as one chain from the first to the second.
-
-Not for: poses in the world (`kinematics`).
-"""
+"""The joints between two links of one robot, as one chain from the first to the second."""
 
 from __future__ import annotations
 

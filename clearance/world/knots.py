@@ -1,8 +1,7 @@
 """A table of samples laid out over a run: before its first sample, after its last, and round again where it loops.
 
 Between two knots a value goes straight, on a cubic where velocities are given, and a rotation turns about one
-axis at constant speed. A knot has a value on either side, since a table that loops may jump. Not for: when that is
-(`timing`), nor what is moved (`forest`).
+axis at constant speed. A knot has a value on either side, since a table that loops may jump.
 """
 
 from __future__ import annotations

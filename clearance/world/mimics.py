@@ -1,7 +1,4 @@
-"""Joints that follow others, to the joint that moves them all.
-
-Not for: what a file may say (`formats.robot.urdf.joints`).
-"""
+"""Joints that follow others, to the joint that moves them all."""
 
 from __future__ import annotations
 

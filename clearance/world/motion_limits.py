@@ -1,7 +1,4 @@
-"""How fast a joint may move and accelerate, and how far a controller lets it off its path.
-
-Not for: what is faster than it may be (`joint_speeds`), limits of position (`robot`).
-"""
+"""How fast a joint may move and accelerate, and how far a controller lets it off its path."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
 """A stretch of a run in which nothing changes hands, comes, goes or jumps: a plain case and how all moves in it.
-
-Not for: where phases begin and end (`timeline`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Values of a case that can be right but look wrong: lengths, angles or times in another unit, joints beyond
 their limits.
 
-Works on the case itself, so that one made in memory is checked like one from files. Not for: what
-only a file shows (`load.plausibility`), and values that cannot be right.
+Works on the case itself, so that one made in memory is checked like one from files.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Motions of robots that look like degrees, millimetres or milliseconds.
-
-Not for: joint limits (`joint_limits`), nor tables of poses (`plausibility`).
-"""
+"""Motions of robots that look like degrees, millimetres or milliseconds."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Notices on holes in recordings: suspect until the case says how joints move there; named where not measured.
-
-Not for: finding them (`formats.motion.recording_gaps`).
-"""
+"""Notices on holes in recordings: suspect until the case says how joints move there; named where not measured."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Bodies that look like millimetres: extents compared with the robot's reach, places with where robots get.
-
-Not for: bodies beyond all bounds (`reach`), which are refused.
-"""
+"""Bodies that look like millimetres: extents compared with the robot's reach, places with where robots get."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Notices on long turns of continuous joints for which the case does not say which way round they go.
-
-Not for: what such a turn is (`wrap`), nor units (`plausible_motion`).
-"""
+"""Notices on long turns of continuous joints for which the case does not say which way round they go."""
 
 from __future__ import annotations
 

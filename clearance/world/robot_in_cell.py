@@ -1,7 +1,4 @@
-"""One robot among all that moves in its case: its name, where its links are, and what it stands on.
-
-Not for: what it passes through (`swept_pieces`).
-"""
+"""One robot among all that moves in its case: its name, where its links are, and what it stands on."""
 
 from __future__ import annotations
 

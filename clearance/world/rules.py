@@ -1,7 +1,4 @@
-"""Which pairs may come how close, and which may touch: rows of patterns, times and carried parts.
-
-Not for: which pairs there are (`pairs`), and the limits of a clearance (`case.Limits`).
-"""
+"""Which pairs may come how close, and which may touch: rows of patterns, times and carried parts."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 """The pairs of links of one robot that can come near each other, and which of them are excused.
 
-Links that fixed joints join are one rigid body: such a pair never moves. Not for: pairs of a robot and an
-obstacle (`pairs`).
+Links that fixed joints join are one rigid body: such a pair never moves.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Waivers: who lets which two bodies come nearer than a rule says, how near, why and until when.
-
-Not for: whether a run needs one and meets it (`findings.judgement`), nor their files (`case.waiver_file`).
-"""
+"""Waivers: who lets which two bodies come nearer than a rule says, how near, why and until when."""
 
 from __future__ import annotations
 

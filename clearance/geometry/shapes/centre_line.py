@@ -1,7 +1,4 @@
-"""The centre line of a bent pipe: corners rounded by arcs, arcs replaced by tangents, sections swept along.
-
-Not for: radii of the pipe and its faces (`pipe`).
-"""
+"""The centre line of a bent pipe: corners rounded by arcs, arcs replaced by tangents, sections swept along."""
 
 from __future__ import annotations
 

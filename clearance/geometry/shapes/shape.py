@@ -1,7 +1,4 @@
-"""A row of the table of shapes: a maker, and the names and valid values of its dimensions.
-
-Not for: the shapes themselves, nor how a file format writes them (room `formats`).
-"""
+"""A row of the table of shapes: a maker, and the names and valid values of its dimensions."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Tables too long for memory: batches written to a file as they come, and mapped to be read as a table.
-
-Not for: what is in them (`steps`), nor the files of a report.
-"""
+"""Tables too long for memory: batches written to a file as they come, and mapped to be read as a table."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""The worst moments of a run: in contact the deepest, as far as depth is known.
-
-Not for: finding overlaps and their depth (`contact`), nor moments without contact (`run_answer`).
-"""
+"""The worst moments of a run: in contact the deepest, as far as depth is known."""
 
 from __future__ import annotations
 

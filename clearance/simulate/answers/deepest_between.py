@@ -1,7 +1,4 @@
-"""Penetration depth between the steps, for contacts with few steps in them.
-
-Not for: the deepest of the steps (`deepest`), nor when there is contact (`stretches`).
-"""
+"""Penetration depth between the steps, for contacts with few steps in them."""
 
 from __future__ import annotations
 

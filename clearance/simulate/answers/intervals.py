@@ -1,7 +1,4 @@
-"""When a limit was passed and for how long: by the certified motion, else by the status of steps.
-
-Not for: judging a step.
-"""
+"""When a limit was passed and for how long: by the certified motion, else by the status of steps."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""Intervals and events of a certified run: the times below each level, and the most critical moment of each.
-
-Not for: runs that are not certified (`intervals`).
-"""
+"""Intervals and events of a certified run: the times below each level, and the most critical moment of each."""
 
 from __future__ import annotations
 

@@ -1,7 +1,4 @@
-"""How points of bodies move with what moves them: by each column of a case's forest, by an actor's place.
-
-Not for: what that does to a clearance (`approaches`).
-"""
+"""How points of bodies move with what moves them: by each column of a case's forest, by an actor's place."""
 
 from __future__ import annotations
 

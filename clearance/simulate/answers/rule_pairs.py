@@ -1,7 +1,6 @@
 """The pairs that one rule judges, one by one: which are near at which steps, and the moment of any.
 
-A run has the nearest pair of each step; what else is near then is measured when it is first asked for. Not for:
-how the rule stands as a whole (`rule_answer`).
+A run has the nearest pair of each step; what else is near then is measured when it is first asked for.
 """
 
 from __future__ import annotations

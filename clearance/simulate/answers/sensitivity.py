@@ -2,8 +2,7 @@
 
 The distance of two bodies has a slope each way in whatever moves them, and the two differ where several nearest
 points, or several pairs, are as near: parallel faces, a body midway between two. So every pair within `BAND` of
-the nearest is measured again a step of `STEP` either way, and each way the least of their slopes counts. Not for:
-rows for a search, one pair at many steps (`approaches`).
+the nearest is measured again a step of `STEP` either way, and each way the least of their slopes counts.
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""Lays all measured bodies into one searchable surface, and says what moves them.
-
-Not for: the measuring (`measure`) and the motion itself (`world.motion`, `physics.bullet`).
-"""
+"""Lays all measured bodies into one searchable surface, and says what moves them."""
 
 from __future__ import annotations
 

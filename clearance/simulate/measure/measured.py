@@ -1,7 +1,6 @@
 """A run as it was measured: the data of its record, beside what can measure more of it.
 
-The classes here are those of the record with what measures; `plain` gives the data alone. Not for: what is worked
-out on demand (`session`).
+The classes here are those of the record with what measures; `plain` gives the data alone.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """What is measured alike: the pairs of one phase that one rule judges, with one padding and one relation of
 clocks.
 
-A run without rules, padding and windows is one section. Not for: which pairs there are (`world.pairs`), and what
-the sections' answers come to together (`run_answer`).
+A run without rules, padding and windows is one section.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
 """Moments between the steps of a certified run for its replay and chart: dips, and steps between distant samples.
-
-Not for: the frames that are made of them (`frames`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,4 @@
-"""The frames of a replay: which steps and moments there are, and what was found at each.
-
-Not for: shapes and poses (`replay`).
-"""
+"""The frames of a replay: which steps and moments there are, and what was found at each."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Rigid bodies: grown along rigid chains, or made of what is assumed to be rigid.
 
 A body starts from two entities with three degrees of freedom and adds every vertex that hangs
-on it by as many edges as it has freedom (Fig. 8 a and b of the paper). Not for: the clusters of bodies and
-vertices that are solved at once (`sketch.graph.plan`).
+on it by as many edges as it has freedom (Fig. 8 a and b of the paper).
 Source: Kwon, Lee, Lee 2001, section 3.5.
 """
 

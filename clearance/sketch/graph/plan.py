@@ -3,8 +3,7 @@
 Peeled vertices come last; before them the core: rigid bodies in their own frame, then the clusters in the order
 of placing. A part is what equations connect; a node is a rigid body or a single vertex. A matching of edges to
 freedoms and the strongly connected parts of the directed graph give the smallest clusters (Fig. 8 c and d of the
-paper, and extended ones). Not for: finding the bodies (`sketch.graph.bodies`), the order of the rules
-(`sketch.graph.rules`), nor running a plan (`sketch.solve.execute`).
+paper, and extended ones).
 Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for minimal dense subgraphs.
 """
 

@@ -8,8 +8,6 @@ arm_k how far the link gets from the axis of joint k (Lipschitz bound). Where bo
 direction u of their nearest points, sliding past each other costs nothing in the first order: a point x of the
 second link keeps u.x - sum |half_k u.v_k(x)| - rest, with v_k the velocity by joint k. It is concave in x, so the
 corners of the link's hull decide; rest is of second order (source: `kernels.motion.joint_motion_bound`).
-
-Not for: which boxes are asked (`pair`).
 """
 
 from __future__ import annotations

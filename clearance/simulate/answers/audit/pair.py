@@ -2,8 +2,7 @@
 
 Poses all over the joints' ranges are looked at first, and the nearest followed downhill: most pairs that can
 meet are seen to. Of the others, a box of positions that no bound keeps apart is halved, across the joint that
-moves most, until all are proven apart, or one is so small that the links come within `GAP` there. Not for:
-motions (`certify`), the bounds (`joint_box`), and which pairs are asked (`world.self_pairs`).
+moves most, until all are proven apart, or one is so small that the links come within `GAP` there.
 """
 
 from __future__ import annotations

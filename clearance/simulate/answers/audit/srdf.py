@@ -1,7 +1,4 @@
-"""All excused pairs of a robot held against its geometry, and a proposal of which to excuse.
-
-Not for: one pair (`pair`), nor how it is reported (`report.srdf`).
-"""
+"""All excused pairs of a robot held against its geometry, and a proposal of which to excuse."""
 
 from __future__ import annotations
 

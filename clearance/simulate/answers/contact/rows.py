@@ -1,7 +1,4 @@
-"""The contacts of a run in one table, with the overlaps that it asks for.
-
-Not for: finding an overlap (`contacts`), and which moment of an event is worked out (`events`).
-"""
+"""The contacts of a run in one table, with the overlaps that it asks for."""
 
 from __future__ import annotations
 

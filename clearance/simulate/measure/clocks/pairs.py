@@ -1,7 +1,4 @@
-"""Pairs of bodies that move by two clocks: which is on which side, and where all is at the steps of either.
-
-Not for: how near they come (`unsynchronised`).
-"""
+"""Pairs of bodies that move by two clocks: which is on which side, and where all is at the steps of either."""
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """What is found of pairs of two clocks, as rows of the first clock: a measurement and a certificate like any
 other.
-
-Not for: finding it (`unsynchronised`).
 """
 
 from __future__ import annotations
