@@ -6,18 +6,21 @@ rooms it is made of.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence, Set
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from clearance.errors import BadShape
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.drawing import Drawing
 from clearance.sketch.effort import SECONDS, TimeLimit
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
+from clearance.sketch.faults import DegenerateSketch
+from clearance.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
 from clearance.sketch.lists import FlatLists
-from clearance.sketch.register import Register, two
+from clearance.sketch.register import Register, number, two
 from clearance.sketch.relations import Relations
 from clearance.sketch.result import SketchResult
 from clearance.sketch.solver import Solver
@@ -29,6 +32,9 @@ Given = Entity | str
 """An entity of the sketch, or its name."""
 Value = float | str | None
 """A number, an expression of parameters and dimensions, or None for what is drawn."""
+Place = Point | Sequence[float]
+"""A point of the sketch, or two numbers [m]."""
+L = TypeVar("L", bound=Line)
 Name = str | None
 """A name that is used once, or None for the next one that is free."""
 
@@ -49,7 +55,6 @@ class Sketch:
         self._register = Register(self)
         self._lists = FlatLists()
         self._relations = Relations(self._register, self._lists)
-        self._drawing = Drawing(self._register, self._lists, self._relations)
         self._solver: Solver | None = None
         self.entities: dict[str, Entity] = self._register.entities
         self.constraints: dict[str, Constraint] = self._register.constraints
@@ -59,44 +64,58 @@ class Sketch:
 
     def point(self, x: float, y: float, *, name: Name = None) -> Point:
         """A new point at (x, y) [m]."""
-        return self._drawing.point(x, y, name)
+        name = self._register.new_name(name, "point")
+        x, y = self._lists.local(number(x, f"{name}.x"), number(y, f"{name}.y"))
+        variable = self._lists.append_numbers((x, X), (y, Y))
+        return self._register.add(Point(self, name, variable))
 
-    def line(
-        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: Name = None
-    ) -> Line:
+    def line(self, a: Point | Sequence[float], b: Place, *, name: Name = None) -> Line:
         """A new infinite line through two points of the sketch, or drawn through two pairs of
         numbers.
 
         Raises:
             DegenerateSketch: the two points coincide.
         """
-        return self._drawing.line(Line, a, b, name)
+        return self._drawn_line(Line, a, b, name)
 
-    def segment(
-        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: Name = None
-    ) -> Segment:
+    def segment(self, a: Point | Sequence[float], b: Place, *, name: Name = None) -> Segment:
         """A new segment between two points of the sketch (or pairs of numbers, which become points)."""
-        return self._drawing.segment(a, b, name)
+        a, b = (self._as_point(p, "segment") for p in (a, b))
+        return self._drawn_line(Segment, a, b, name)
 
-    def circle(
-        self, center: Point | Sequence[float], radius: float, *, name: Name = None
-    ) -> Circle:
+    def circle(self, center: Place, radius: float, *, name: Name = None) -> Circle:
         """A new circle about a point of the sketch, or about a new point at a pair of numbers."""
-        return self._drawing.circle(center, radius, name)
+        name = self._register.new_name(name, "circle")
+        radius = number(radius, f"{name}.radius")
+        if radius <= 0.0:
+            raise DegenerateSketch(f"the radius of {name} is {radius}", valid="a radius above 0")
+        middle = self._center(center, name)
+        variable = self._lists.append_numbers((radius, RADIUS))
+        return self._register.add(Circle(self, name, variable, middle))
 
-    def arc(
-        self, center: Point | Sequence[float], start: Point, end: Point, *, name: Name = None
-    ) -> Arc:
+    def arc(self, center: Place, start: Point, end: Point, *, name: Name = None) -> Arc:
         """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its circle."""
-        return self._drawing.arc(center, start, end, name)
+        name = self._register.new_name(name, "arc")
+        for p in (start, end, *([center] if isinstance(center, Entity) else [])):
+            self._register.of_kind(p, Point)
+        radius = math.dist(self._local(center, name), self._local(start, name))
+        if radius == 0.0:
+            raise DegenerateSketch(f"{name} starts at its centre", valid="a radius above 0")
+        middle = self._center(center, name)
+        variable = self._lists.append_numbers((radius, RADIUS))
+        arc = self._register.add(Arc(self, name, variable, middle, start, end))
+        self._tie(arc, start=start, end=end)
+        return arc
 
-    def polyline(
-        self, points: Iterable[Point | Sequence[float]], *, closed: bool = False
-    ) -> Polyline:
+    def polyline(self, points: Iterable[Place], *, closed: bool = False) -> Polyline:
         """New segments through points of the sketch (or pairs of numbers, which become points)."""
-        out = self._drawing.polyline(points, closed)
-        self.polylines.append(out)
-        return out
+        ends = [self._as_point(p, "polyline") for p in points]
+        if len(ends) < 2:
+            raise BadShape(f"a polyline of {len(ends)} points", valid="at least 2")
+        pairs = list(zip(ends, ends[1:] + ends[:1], strict=True))
+        segments = [self.segment(*p) for p in (pairs if closed else pairs[:-1])]
+        self.polylines.append(Polyline(ends, segments, closed))
+        return self.polylines[-1]
 
     def parameter(self, name: str, value: float) -> None:
         """A new named number for expressions."""
@@ -283,6 +302,53 @@ class Sketch:
     def sides(self, chosen: Set[int] | None = None) -> list[tuple[int, int, int]]:
         """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
         return self._lists.sides(chosen)
+
+    def _drawn_line(self, kind: type[L], a: Place, b: Place, name: Name) -> L:
+        """A new line or segment."""
+        name = self._register.new_name(name, kind.what)
+        ends = None
+        if isinstance(a, Entity) or isinstance(b, Entity):
+            ends = self._register.of_kind(a, Point), self._register.of_kind(b, Point)
+        p, q = (self._local(place, name) for place in ends or (a, b))
+        line = self._register.add(kind(self, name, self._line_numbers(p, q, name), ends))
+        variables = (-1, -1) if ends is None else (ends[0].variable, ends[1].variable)
+        self._lists.line_ends.extend((line.variable, *variables))
+        if ends is not None:
+            self._tie(line, start=ends[0], end=ends[1])
+        return line
+
+    def _line_numbers(self, p: Sequence[float], q: Sequence[float], name: str) -> int:
+        """The first variable of a new line through two places: its direction, then its offset."""
+        (px, py), (qx, qy) = p, q
+        if px == qx and py == qy:
+            raise DegenerateSketch(
+                f"the two points of {name} coincide", valid="two different points"
+            )
+        theta = math.atan2(qy - py, qx - px)
+        offset = math.cos(theta) * 0.5 * (py + qy) - math.sin(theta) * 0.5 * (px + qx)
+        return self._lists.append_numbers((theta, DIRECTION), (offset, OFFSET))
+
+    def _as_point(self, place: Place, where: str) -> Point:
+        """The point itself, or a new point at two numbers."""
+        return place if isinstance(place, Entity) else self.point(*two(place, where))
+
+    def _center(self, center: Place, name: str) -> Point:
+        """The centre of a circle: a point of the sketch, or a new one named after the circle."""
+        if isinstance(center, Entity):
+            return self._register.of_kind(center, Point)
+        return self.point(*two(center, name), name=f"{name}.center")
+
+    def _local(self, place: Place, name: str) -> Sequence[float]:
+        """The coordinates of a point or of two numbers, counted from the sketch's origin."""
+        if isinstance(place, Entity):
+            return self.numbers(place.variable, 2)
+        return self._lists.local(*two(place, name))
+
+    def _tie(self, entity: Line | Arc, **points: Point) -> None:
+        """Puts the points on the entity, by constraints named after it."""
+        for which, p in points.items():
+            name = f"{entity.name}.{which}"
+            self._relations.add("incident", (p, entity), name=name, built_in=True)
 
     def _result(self, *found) -> SketchResult:
         return SketchResult(self, *found)
