@@ -15,7 +15,7 @@ from clearance.simulate.measure.measure import measure
 from clearance.world.budget import Budget, JointTolerance, PlacementTolerance, RobotTolerance
 from tests.budget.budget_cases import proven_sections, random_budget, random_case, sections_of
 from tests.budget.sampled_machine import SampledMachine
-from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
+from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
 
 COVERAGE = 3.0
 N_SAMPLES = 2000

@@ -20,8 +20,8 @@ from clearance.world.robot import Joint, JointKind, Mimic
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, crossing, gantry, slot, standing
 from tests.made_cases import at
-from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
-from tests.simulate.test_refine import sliding
+from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
+from tests.simulate.measure.test_refine import sliding
 
 FINE = 1e-6
 

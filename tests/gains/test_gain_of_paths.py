@@ -9,7 +9,7 @@ from clearance.errors import BadInput
 from clearance.gains.folder import save_gain
 from clearance.world.notice import NOT_MEASURED
 from clearance.world.trajectory import Hole
-from tests.simulate.test_quintic_motion import there_and_back
+from tests.simulate.measure.test_quintic_motion import there_and_back
 
 
 def test_a_path_with_accelerations_is_written_as_the_cubics_that_were_measured(tmp_path):

@@ -210,7 +210,7 @@ def test_a_robot_on_what_stands_sweeps_what_it_would_standing_there(seed):
 
 def carrying(**changes):
     """A slider along x with a cube of 0.2 that picks a part up at half way, 1 m to its side."""
-    from tests.simulate.test_workspace import slider
+    from tests.simulate.answers.test_workspace import slider
 
     made = slider("made", (1, 0, 0), 0.0, 1.0, n_steps=3)
     at = np.eye(4)

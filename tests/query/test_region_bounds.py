@@ -14,7 +14,7 @@ from clearance.geometry.envelope import envelope
 from clearance.query.contact import BodyPair
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.region_bounds import ball_depth, thickness, ways_through
-from tests.simulate.test_contact_modes import channel
+from tests.simulate.answers.test_contact_modes import channel
 
 needs_manifold = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
 

@@ -19,7 +19,7 @@ from clearance.world.trajectory import Trajectory
 from tests.report.records import moved
 from tests.shared_cases import shared_case
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="module")

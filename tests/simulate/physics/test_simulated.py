@@ -19,7 +19,7 @@ from clearance.world.pose_table import PoseTable
 from clearance.world.timing import Timing, Window
 from clearance.world.trajectory import Trajectory
 from tests.report.records import moved
-from tests.simulate.test_bullet import cart, tilted_base
+from tests.simulate.physics.test_bullet import cart, tilted_base
 
 PLATE = """<robot name="plate">
   <link name="ground"/>
@@ -34,7 +34,7 @@ def named(placed: PlacedRobot, name: str, **changes) -> PlacedRobot:
 
 
 def plate(tmp_path, angles) -> PlacedRobot:
-    from tests.simulate.test_bullet import placed_robot
+    from tests.simulate.physics.test_bullet import placed_robot
 
     path = tmp_path / "plate.urdf"
     path.write_text(PLATE)

@@ -10,8 +10,8 @@ from tests import oracle
 from tests.made_cases import faces_of
 from tests.oracle.kinematics import rotation_of
 from tests.oracle.rationals import exact_points
-from tests.simulate import floating
-from tests.simulate.floating import two_floating
+from tests.simulate.measure import floating
+from tests.simulate.measure.floating import two_floating
 
 GRID = 1 << 150
 

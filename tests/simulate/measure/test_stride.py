@@ -22,9 +22,9 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import random_robot
-from tests.simulate.forests import links_of
+from tests.simulate.measure.forests import links_of
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 SHAPE = box((0.3, 0.1, 0.2))
 ASIDE = np.block(
     [[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]]

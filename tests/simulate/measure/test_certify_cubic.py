@@ -13,9 +13,9 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
-from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
+from tests.simulate.measure.certified import assert_as_tight_as_asked, assert_never_above_samples
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 GAP = 1e-4
 
 

@@ -20,7 +20,7 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import random_robot
-from tests.simulate.forests import links_of
+from tests.simulate.measure.forests import links_of
 
 SHAPE = box((0.3, 0.1, 0.2))
 

@@ -33,8 +33,8 @@ from clearance.world.kinematics import (
 from clearance.world.slerp import aligned, arcs_between
 from tests.examples import examples
 from tests.made_cases import at, dented
-from tests.simulate import floating
-from tests.simulate.floating import Scene, chain, orientations, two_floating
+from tests.simulate.measure import floating
+from tests.simulate.measure.floating import Scene, chain, orientations, two_floating
 
 TURNS = {"usual": 0.7, "half a turn": np.pi, "tiny": 1e-9, "none": 0.0}
 SHAPE = cl.box((0.3, 0.1, 0.2))

@@ -10,9 +10,9 @@ import clearance as cl
 from clearance.errors import BadDimension
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import WORST, at, dented, flying
-from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
+from tests.simulate.measure.certified import assert_as_tight_as_asked, assert_never_above_samples
 
-SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*/trajectory.csv"))
+SCENES = sorted((Path(__file__).parents[3] / "scenes").glob("*/trajectory.csv"))
 N_STEPS = 60
 """Taken of each scene, before two fifths of it: what is proven of a step does not depend on the others, and in
 contact, which comes later, no bound can be wrong."""

@@ -1,7 +1,7 @@
 """What is hot stays hot: kernels count the work that the table beside this file says, neither more nor less.
 
 A clock says something else on each machine; these numbers are the same on all. A commit that changes the work on
-purpose writes the table anew: `python -m tests.simulate.test_counted_work`.
+purpose writes the table anew: `python -m tests.simulate.measure.test_counted_work`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import pytest
 
 import clearance as cl
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 NAMES = sorted(path.parent.name for path in SCENES.glob("*/case.yaml"))
 TABLE = Path(__file__).with_name("counted_work.json")
 

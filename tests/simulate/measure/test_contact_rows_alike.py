@@ -17,9 +17,9 @@ from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
-from tests.simulate.test_contact_modes import channel
+from tests.simulate.answers.test_contact_modes import channel
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def measured(case, motion, steps, need="steps"):

@@ -17,9 +17,9 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.rules import Rule
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
-from tests.simulate.test_between_steps import LIMITS, PAST, THROUGH, sweeping
+from tests.simulate.measure.test_between_steps import LIMITS, PAST, THROUGH, sweeping
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 
 TWICE = [[-1.0, 0.0], [1.0, 0.0], [-0.3, 0.3], [0.2, -0.4], [-1.1, 0.1], [-1.0, 0.0]]
 """Over the post or through it five times, twice with a bent elbow."""

@@ -27,7 +27,7 @@ from clearance.simulate.replay.replay import replay_of
 from clearance.world.case import Case
 from tests.examples import first_fast
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 ASKED = {
     "steps": {"certify": False},
     "pairs": {"need": "pairs", "certify": False},

@@ -13,13 +13,13 @@ from clearance.world.pose_table import PoseTable
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, dented, random_robot
-from tests.simulate.certified import assert_as_tight_as_asked
-from tests.simulate.hostile_actors import (
+from tests.simulate.measure.certified import assert_as_tight_as_asked
+from tests.simulate.measure.hostile_actors import (
     CARRIED_FROM,
     CARRIED_UNTIL,
     carrying,
 )
-from tests.simulate.wandering import wandering
+from tests.simulate.measure.wandering import wandering
 
 
 def finer(case: cl.Case, times: np.ndarray) -> cl.Case:

@@ -17,7 +17,7 @@ from tests import oracle
 from tests.examples import first_fast
 from tests.made_cases import at, faces_of
 from tests.oracle.kinematics import link_poses, on, placed, seen_from
-from tests.simulate.hostile_actors import (
+from tests.simulate.measure.hostile_actors import (
     CARRIED_FROM,
     CARRIED_UNTIL,
     CUBE,
@@ -28,7 +28,7 @@ from tests.simulate.hostile_actors import (
     every,
     is_rigid,
 )
-from tests.simulate.wandering import N_STEPS, wandering
+from tests.simulate.measure.wandering import N_STEPS, wandering
 from tests.strategies import rotations
 
 NEAR_ORIGIN, FAR_OFF = (0.0, 0.0, 0.0), (700.0, -1300.0, 400.0)

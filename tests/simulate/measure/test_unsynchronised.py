@@ -30,7 +30,7 @@ from tests.examples import examples, first_fast, some_slow
 from tests.made_cases import at, faces_of
 from tests.oracle.kinematics import link_poses as exact_link_poses
 from tests.oracle.kinematics import placed as exactly_placed
-from tests.simulate.wandering import solid_robot
+from tests.simulate.measure.wandering import solid_robot
 from tests.strategies import rotations
 
 GAP = 1e-4

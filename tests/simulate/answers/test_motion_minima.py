@@ -15,8 +15,8 @@ from clearance.simulate.answers.pairs_alone import near_alone
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from tests.made_cases import at
-from tests.simulate.test_between_steps import PAST, THROUGH, sweeping
-from tests.simulate.test_stretches import TWICE, finer
+from tests.simulate.answers.test_stretches import TWICE, finer
+from tests.simulate.measure.test_between_steps import PAST, THROUGH, sweeping
 
 
 def two_posts(post: float = PAST) -> Case:

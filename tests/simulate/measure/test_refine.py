@@ -15,7 +15,7 @@ from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at
-from tests.simulate.test_between_steps import LIMITS, THROUGH, sweeping
+from tests.simulate.measure.test_between_steps import LIMITS, THROUGH, sweeping
 
 TOP = 0.48
 """[m] How high the fore arm's lower side is, so that a post of TOP - d leaves d below it."""

@@ -26,7 +26,7 @@ from clearance.world.timing import Window
 from tests import cells
 from tests.examples import examples
 from tests.report.records import moved
-from tests.simulate.test_workspace import slider
+from tests.simulate.answers.test_workspace import slider
 
 WITH_MANIFOLD = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
 

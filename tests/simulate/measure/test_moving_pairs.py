@@ -12,7 +12,7 @@ from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.pairs import measured_pairs
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, random_robot
-from tests.simulate.wandering import N_STEPS, case_of, poses_of
+from tests.simulate.measure.wandering import N_STEPS, case_of, poses_of
 
 
 @pytest.mark.parametrize("n_robots", [1, 2])

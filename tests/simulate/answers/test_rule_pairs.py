@@ -16,7 +16,7 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests.cells import cell
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 WITHIN = 0.08
 
 

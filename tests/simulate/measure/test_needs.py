@@ -14,7 +14,7 @@ from clearance.simulate.measure import measure, parts
 from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 
-SCENES = Path(__file__).parents[2] / "scenes"
+SCENES = Path(__file__).parents[3] / "scenes"
 
 
 @pytest.fixture(scope="module", params=first_fast(["box_pipe", "panda_shelf", "hot_cell"], 1))

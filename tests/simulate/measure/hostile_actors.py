@@ -17,7 +17,7 @@ from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind, Robot
 from clearance.world.timing import Window
 from tests.made_cases import at, dented, random_robot
-from tests.simulate.wandering import wandering
+from tests.simulate.measure.wandering import wandering
 from tests.strategies import rotations
 
 NEEDLE, SLAB, CUBE = (1.0, 1e-4, 1e-4), (0.6, 0.6, 1e-3), (0.2, 0.2, 0.2)

@@ -17,11 +17,11 @@ from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.made_cases import at, dented
-from tests.simulate.hostile_actors import (
+from tests.simulate.measure.hostile_actors import (
     CUBE,
     is_rigid,
 )
-from tests.simulate.wandering import N_STEPS, case_of
+from tests.simulate.measure.wandering import N_STEPS, case_of
 from tests.strategies import rotations
 
 
