@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 import clearance as cl
-from clearance.report.summary import notes_of
+from clearance.report.topics.certainty import notes_of
 from clearance.simulate.answers.handling import handling_hints
 from clearance.simulate.answers.standing import always_in_contact, standing_hint
 from clearance.world.carry import Carry

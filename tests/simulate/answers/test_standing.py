@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance import check, load_case
-from clearance.report.summary import notes_of
+from clearance.report.topics.certainty import notes_of
 from clearance.simulate.answers.standing import standing_contacts, standing_hint
 from tests.formats.making import CASE, write_case
 
