@@ -5,7 +5,8 @@ byte is on disk. A folder that holds nothing but an older answer is exchanged as
 rename: a process killed at any moment leaves the older answer or the new one. Where the folder
 holds other files too, files are exchanged one by one: `LAST` moves last and is taken away first, so
 that a folder that holds it is whole; should a move fail or be interrupted, the older answer is put
-back. Not for: which places a command may write to (`cli.places`).
+back. Places that cannot be written, or hold an input of the run, are refused before the work. Not for: what is
+written.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -136,6 +137,87 @@ def _identity(path: Path) -> tuple[int, int] | None:
     except OSError:
         return None
     return found.st_dev, found.st_ino
+
+
+def require_folder_place(folder: Path | None) -> None:
+    """Raises `Unwritable` if `folder` is given and is no folder, or none can be made or filled
+    there.
+    """
+    if folder is None:
+        return
+    if folder.exists() and not folder.is_dir():
+        raise Unwritable("is a file", where=str(folder), valid="--out needs a folder")
+    _require_writable(folder, folder)
+
+
+def require_file_place(file: Path | None, option: str = "--junit") -> None:
+    """Raises `Unwritable` if `file` is given and is a folder, or cannot be made."""
+    if file is None:
+        return
+    if file.is_dir():
+        raise Unwritable("is a folder", where=str(file), valid=f"{option} needs a file")
+    _require_writable(file, file.absolute().parent)
+
+
+def _require_writable(place: Path, folder: Path) -> None:
+    """Makes and removes a nameless file where `place` would go: permission bits alone do not
+    tell.
+    """
+    for link in (folder.absolute(), *folder.absolute().parents):
+        if link.is_symlink() and not link.exists():
+            raise Unwritable(
+                f"{link.name!r} is a link that leads nowhere",
+                where=str(place),
+                valid="a place inside a folder that can be written is needed",
+            )
+    existing = next(p for p in (folder.absolute(), *folder.absolute().parents) if p.exists())
+    try:
+        with tempfile.TemporaryFile(dir=existing):
+            pass
+    except OSError as error:
+        raise Unwritable(
+            f"cannot be written ({error.strerror or error})",
+            where=str(place),
+            valid="a place inside a folder that can be written is needed",
+        ) from None
+
+
+def write_files(
+    folder: Path,
+    contents: Mapping[str, bytes],
+    read: Iterable[str | Path],
+    *,
+    force: bool,
+    others: Iterable[str] = (),
+) -> None:
+    """Writes `contents` by name into `folder`, which is made where it is not there.
+
+    Args:
+        read: the files that the contents are made from. force: overwrite what is there.
+        others: names of files that such a folder may have of an earlier time, which go.
+
+    Raises:
+        Unwritable: a file is there already, or is one of `read`, or there is no way to write; the folder is as it
+        was then.
+    """
+    names = dict.fromkeys((*others, *contents))
+    refuse_there([folder / name for name in names], force=force)
+    refuse_inputs([folder / name for name in names], read)
+
+    def fill(fresh: Path) -> None:
+        for name, content in contents.items():
+            (fresh / name).write_bytes(content)
+
+    fill_folder(folder, fill, set(names))
+
+
+def refuse_there(files: Iterable[Path], *, force: bool) -> None:
+    """Raises `Unwritable` for the first of `files` that is a folder, or is there and may not be overwritten."""
+    for file in files:
+        if file.is_dir():
+            raise Unwritable("is a folder", where=str(file), valid="a file is to be written there")
+        if file.exists() and not force:
+            raise Unwritable("is there already", where=str(file), valid="--force overwrites it")
 
 
 def _exchange_whole(fresh: Path, folder: Path, older: Path) -> None:

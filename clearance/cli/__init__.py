@@ -7,12 +7,16 @@ so the greatest that holds goes); 70 a fault of this program, with its traceback
 
 from __future__ import annotations
 
+import atexit
+import errno
+import io
+import os
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from enum import IntEnum
-
-from clearance.cli.streams import leave, make_streams_safe
+from typing import NoReturn
 
 
 class ExitCode(IntEnum):
@@ -123,3 +127,62 @@ def _hint(error: Exception) -> str:
 def _say(line: str) -> None:
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)
+
+
+def make_streams_safe() -> None:
+    """Makes sure that nothing else is taken for one of the three, and that no character stops a line.
+
+    A file opened later would get the number of one that is closed, and what libraries print would go into it.
+    Output that is closed still cannot be written, and says so; where errors cannot be written, they are not. A
+    warning is one line, like an error.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
+    if sys.stdout is None:
+        sys.stdout = _ClosedStream()
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+    warnings.formatwarning = _in_one_line
+
+
+def _in_one_line(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    line: str | None = None,
+) -> str:
+    return f"warning: {message}\n"
+
+
+class _ClosedStream(io.TextIOBase):
+    """Output that the shell has closed."""
+
+    encoding = "utf-8"
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        raise OSError(errno.EBADF, "standard output is closed")
+
+
+def leave(code: int) -> NoReturn:
+    """Ends this process, whatever its threads and those of libraries are doing.
+
+    The interpreter's own end waits for threads, then takes away from under those of libraries what they run on.
+    """
+    if sys.getprofile() is not None or sys.gettrace() is not None:
+        sys.exit(code)  # who measures writes its results afterwards
+    with suppress(Exception):
+        atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):
+            stream.flush()
+    os._exit(code)

@@ -114,7 +114,7 @@ def check(
     from clearance.batch.output import ANSWER
     from clearance.batch.store_files import FILE
     from clearance.cli.batch_run import BatchRequest, run_asked
-    from clearance.cli.places import refuse_inputs
+    from clearance.files import refuse_inputs
 
     own = said(CheckOptions, given)
     options = made(CheckOptions, own, spelled_by(CheckOptions))

@@ -1,28 +1,45 @@
-"""Runs a batch for the command line: engine, progress, answer, exit code. Not for: its options (`batch`)."""
+"""Runs a batch for the command line: engine, progress, answer, exit code. Not for: its options (`batch`).
+
+Progress is one line that is drawn again in a terminal; on a pipe a line every `EVERY` seconds.
+"""
 
 from __future__ import annotations
 
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from clearance.batch.answer import answer_of
+from clearance.batch.answer import answer_of, reach_of
 from clearance.batch.engine import Engine, LocalEngine
 from clearance.batch.item import Item
 from clearance.batch.listed import write_list
+from clearance.batch.measuring import Fault, ItemResult
 from clearance.batch.outcome import Outcome
 from clearance.batch.output import withdraw_answer, write_answer
-from clearance.batch.run import Opener, run_batch, shard_of
+from clearance.batch.run import Opener, Watch, run_batch, shard_of
 from clearance.batch.store import Store, merge, open_store
 from clearance.batch.workers import local_workers
 from clearance.cli import ExitCode
-from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
-from clearance.record.wording import count
+from clearance.errors import shown
+from clearance.record.wording import count, depth_mm, mm
 from clearance.simulate.measure.parts import usable_cores
 from clearance.world.waiver import Waiver
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+
+MOST_TOLD = 50
+"""Failures that are told as they come; the answer lists the worst, and the page has all."""
+
+EVERY = 10.0
+"""[s] Between two lines on a pipe."""
 
 FEW = 32
 """Cases that one process has measured before others are ready to help."""
@@ -128,3 +145,164 @@ def say(line: str) -> None:
 
 def _silent(line: str) -> None:
     """Says nothing."""
+
+
+class SilentWatch:
+    """Nobody watches."""
+
+    def begin(self, items: Sequence[object], n_cached: int) -> None:
+        """Tells nothing."""
+
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+        """Tells nothing."""
+
+
+@contextmanager
+def shown_progress(quiet: bool, name: Callable[[int], str]) -> Iterator[Watch]:
+    """Who is told how far a batch is: a terminal, a pipe, or nobody.
+
+    Args:
+        name: of a case by its number.
+    """
+    if quiet:
+        yield SilentWatch()
+        return
+    if not sys.stderr.isatty():
+        with _every(EVERY, PipeWatch(name)) as watch:
+            yield watch
+        return
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]}"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[worst]}"),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield TerminalWatch(bar, name)
+
+
+class _Worst:
+    """The worst case so far: of those in contact the deepest.
+
+    Args:
+        name: of a case by its number.
+    """
+
+    def __init__(self, name: Callable[[int], str]) -> None:
+        self._name = name
+        self._least: ItemResult | None = None
+
+    def take(self, measured: Sequence[ItemResult]) -> None:
+        """Takes some cases into account."""
+        before = () if self._least is None else (self._least,)
+        self._least = min((*before, *measured), key=_standing, default=None)
+
+    def __str__(self) -> str:
+        one = self._least
+        if one is None or one.row["clearance"] is None:
+            return ""
+        return f"worst {one.row['status']} {_length(one.row)}, {shown(self._name(one.number))}"
+
+
+class PipeWatch:
+    """Counts, and says in one line how far it is."""
+
+    def __init__(self, name: Callable[[int], str]) -> None:
+        self._worst = _Worst(name)
+        self._n, self._done, self._n_failing = 0, 0, 0
+        self._begun = time.monotonic()
+
+    def begin(self, items: Sequence[object], n_cached: int) -> None:
+        """Begins to count what is to be measured."""
+        self._n, self._begun = len(items), time.monotonic()
+
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+        """Counts."""
+        self._done += len(measured) + len(faults)
+        self._n_failing += sum(bool(one.row["exit_code"]) for one in measured) + len(faults)
+        self._worst.take(measured)
+
+    @property
+    def line(self) -> str:
+        """How far it is."""
+        if not self._done:
+            return f"0 of {self._n:,} cases measured"
+        rate = self._done / max(time.monotonic() - self._begun, 1e-9)
+        left = f"{rate:,.1f} cases/s, {(self._n - self._done) / rate:,.0f} s left"
+        parts = (left, f"{self._n_failing:,} failed", str(self._worst))
+        told = ", ".join(part for part in parts if part)
+        return f"{self._done:,} of {self._n:,} cases measured, {told}"
+
+
+@contextmanager
+def _every(seconds: float, watch: PipeWatch) -> Iterator[PipeWatch]:
+    """Prints how far a batch is so often, until it is done."""
+    ended = threading.Event()
+
+    def work() -> None:
+        while not ended.wait(seconds):
+            print(watch.line, file=sys.stderr, flush=True)
+
+    thread = threading.Thread(target=work, daemon=True)
+    thread.start()
+    try:
+        yield watch
+    finally:
+        ended.set()
+        thread.join()
+
+
+class TerminalWatch:
+    """Draws one line, and prints failures above it."""
+
+    def __init__(self, bar: Progress, name: Callable[[int], str]) -> None:
+        self._bar = bar
+        self._task = bar.add_task("", total=None, rate="", worst="")
+        self._name, self._worst = name, _Worst(name)
+        self._n_told = 0
+
+    def begin(self, items: Sequence, n_cached: int) -> None:
+        """Begins to count what is to be measured."""
+        self._bar.update(self._task, total=len(items))
+
+    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+        """Counts, and prints what fails."""
+        for fault in faults:
+            self._print(f"error     {self._name(fault.number)}: {fault.text}")
+        for one in measured:
+            if one.row["exit_code"]:
+                why = (one.row["reasons"] or [""])[0]
+                self._print(f"{one.row['status']:<9} {self._name(one.number)}: {why}")
+        self._worst.take(measured)
+        self._bar.update(self._task, advance=len(measured) + len(faults))
+        speed = self._bar.tasks[0].speed
+        rate = f"{speed:,.0f} cases/s" if speed else ""
+        self._bar.update(self._task, rate=rate, worst=str(self._worst))
+
+    def _print(self, line: str) -> None:
+        self._n_told += 1
+        if self._n_told <= MOST_TOLD:
+            self._bar.console.print(shown(line), markup=False, highlight=False, soft_wrap=True)
+        elif self._n_told == MOST_TOLD + 1:
+            self._bar.console.print("further failures are told at the end", markup=False)
+
+
+def _standing(one: ItemResult) -> tuple[int, float]:
+    reach = reach_of(one.row["clearance"], one.row["penetration"])
+    return -one.row["exit_code"], float("inf") if reach is None else reach
+
+
+def _length(row: dict[str, Any]) -> str:
+    """The clearance of a case, or how deep its contact is, as far as that is known."""
+    depth = row["penetration"]
+    return f"{mm(row['clearance'])} mm" if depth is None else f"{depth_mm(depth)} mm deep"

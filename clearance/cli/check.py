@@ -62,11 +62,11 @@ def check(
     outputs.require_writable()
     _require_file(case_file)
     from clearance.case.case_file import load_case
-    from clearance.cli.places import refuse_inputs_of_cases
+    from clearance.files import refuse_inputs
     from clearance.run import Question
 
     question = Question.of(load_case(case_file), options, spelled)
-    refuse_inputs_of_cases([question.case], outputs.files)
+    refuse_inputs(outputs.files, question.case.files_read)
     before = _baseline_of(baseline, outputs.files)
     require_receipt(receipt, outputs.out, question)
     run = _answer(question, before, outputs, jobs, PrintedOutput(as_json, quiet))
@@ -136,8 +136,8 @@ def _baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | No
     """
     if path is None:
         return None
-    from clearance.cli.places import refuse_inputs
     from clearance.cli.run_rows import require_finished
+    from clearance.files import refuse_inputs
     from clearance.findings.findings_file import FILE_NAME, read_findings
 
     refuse_inputs(outputs, [path / FILE_NAME if path.is_dir() else path])

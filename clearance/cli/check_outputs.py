@@ -74,8 +74,8 @@ class Outputs:
             Unavailable: a library is missing. Unwritable: a place that cannot be written or is taken twice, or
                 another suffix.
         """
-        from clearance.cli.places import require_file_place, require_folder_place
         from clearance.extras import require
+        from clearance.files import require_file_place, require_folder_place
 
         for name in ("out", "png"):
             if getattr(self, name) is not None:

@@ -16,7 +16,6 @@ from clearance.cli.gain import gain
 from clearance.cli.new import new
 from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
-from clearance.cli.schema import schema
 from clearance.cli.srdf import srdf
 from clearance.cli.verify import verify
 from clearance.cli.view import view
@@ -27,6 +26,20 @@ from clearance.cli.workspace import workspace
 @click.version_option(__version__, prog_name="clearance", message="%(prog)s %(version)s")
 def clearance() -> None:
     """How close a robot's path comes to anything, where, when, and how sure that is."""
+
+
+@click.command()
+def schema() -> None:
+    """Prints the JSON Schema of case files, with which editors complete keys and mark faults.
+
+    Keep it in a file and name that in a case file's first line:
+    # yaml-language-server: $schema=clearance.schema.json
+    """
+    import json
+
+    from clearance.formats.schema.json_schema import case_schema
+
+    click.echo(json.dumps(case_schema(), indent=2))
 
 
 for command in (

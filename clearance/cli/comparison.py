@@ -78,7 +78,7 @@ def _compare_batches(before: Path, now: Path, out: Path | None, quiet: bool) -> 
 
 
 def _write(comparison: Comparison, before: Path, now: Path, out: Path) -> None:
-    from clearance.cli.places import refuse_inputs, require_folder_place
+    from clearance.files import refuse_inputs, require_folder_place
     from clearance.report.comparison import FILE_NAME, write_comparison
     from clearance.report.output import OWN
 

@@ -55,7 +55,7 @@ def convert(
     each; warnings stand in a scene, so that each check tells them. Meshes that are written out in a scene get
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
-    from clearance.cli.written_files import refuse_there, write_files
+    from clearance.files import refuse_there, write_files
     from clearance.formats.conversion.files import Conversion, converted, kind_of
     from clearance.formats.files.input_files import InputFiles
     from clearance.formats.known_formats import Kind
@@ -76,8 +76,8 @@ def convert(
 
 
 def _require_place(in_file: Path, out_file: Path) -> None:
-    from clearance.cli.places import refuse_inputs, require_file_place
     from clearance.errors import Unwritable
+    from clearance.files import refuse_inputs, require_file_place
 
     if not out_file.absolute().parent.is_dir():
         raise Unwritable(

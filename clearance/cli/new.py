@@ -202,8 +202,8 @@ def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
     from clearance.case.new_case.files import CASE, TRAJECTORY
     from clearance.case.new_case.scene import SCENE
-    from clearance.cli.written_files import write_files
     from clearance.errors import Unwritable
+    from clearance.files import write_files
 
     if out_dir.exists() and not out_dir.is_dir():
         raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")

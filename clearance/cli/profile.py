@@ -1,4 +1,4 @@
-"""`clearance profile`: sweeps, fits and comparisons of outlines; here `compare`, others in files of their own."""
+"""`clearance profile`: outlines in the plane compared, fitted to a sketch, and swept by a robot."""
 
 from __future__ import annotations
 
@@ -7,20 +7,15 @@ from pathlib import Path
 import click
 
 from clearance.cli.options import OutputPath, SortParamType
-from clearance.cli.profile_fit import fit
-from clearance.cli.profile_sweep import sweep
 from clearance.options import LENGTH
+from clearance.run.options import MOTIONS
 
-_FILES = ("comparison.svg", "comparison.png", "comparison.json")
+_OF_COMPARISON = ("comparison.svg", "comparison.png", "comparison.json")
 
 
 @click.group()
 def profile() -> None:
     """Profiles: outlines in the plane."""
-
-
-profile.add_command(fit)
-profile.add_command(sweep)
 
 
 @profile.command()
@@ -47,20 +42,20 @@ def compare(
 
 
 def _compare(a: str, b: str, out: Path | None, field: bool, limit: float | None) -> bool:
-    from clearance.cli.places import refuse_inputs
+    from clearance.files import refuse_inputs
     from clearance.planar.entries import checked_number
     from clearance.profiles.compare import compare as compared
     from clearance.profiles.outline_file import read_outline
 
     if out is not None:
-        refuse_inputs([out, *(out / name for name in _FILES)], [a, b])
+        refuse_inputs([out, *(out / name for name in _OF_COMPARISON)], [a, b])
     limit = None if limit is None else checked_number(limit, "--limit", least=0.0)
     found = compared(read_outline(a), read_outline(b), limit=limit)
     for direction, directed in found.found.directed.items():
         click.echo(_line(direction, directed))
     whole = found.found
     click.echo(f"hausdorff {whole.distance:.12g} ± {whole.error_bound:.1e} ({whole.direction})")
-    _tell(found)
+    _tell_comparison(found)
     if out is not None:
         _write(found, out, field)
     if limit is None:
@@ -84,7 +79,7 @@ def _line(direction: str, directed) -> str:
     )
 
 
-def _tell(found) -> None:
+def _tell_comparison(found) -> None:
     for name, one in (("a_to_b", found.forth), ("b_to_a", found.back)):
         shares = ", ".join(f"{p} % {one.percentile(p):.6g}" for p in (50, 95, 99))
         click.echo(f"deviation {name}: mean {one.mean:.6g}, {shares}")
@@ -117,10 +112,10 @@ def _write(found, out: Path, field: bool) -> None:
         draw_outlines(found.a, found.b, _array(ends), title, out)
         click.echo(f"picture {out}")
         return
-    from clearance.cli.places import require_folder_place
+    from clearance.files import require_folder_place
 
     require_folder_place(out)
-    *pictures, data = _FILES
+    *pictures, data = _OF_COMPARISON
     for name in pictures:
         draw_outlines(found.a, found.b, _array(ends), title, out / name)
     _write_data(found, out / data)
@@ -139,3 +134,198 @@ def _array(ends):
     import numpy as np
 
     return np.stack(ends)
+
+
+@profile.command()
+@click.argument("sketch_file", metavar="SKETCH.yaml", type=click.Path(path_type=Path))
+@click.argument("profile_file", metavar="PROFILE", type=click.Path(path_type=Path))
+@click.option(
+    "--nearest", "mode", flag_value="nearest", default=True, help="Least Hausdorff distance."
+)
+@click.option("--outside", "mode", flag_value="outside", help="Least area that contains it.")
+@click.option("--inside", "mode", flag_value="inside", help="Largest area that stays clear of it.")
+@click.option(
+    "--margin-mm", type=SortParamType(LENGTH), default="0", help="Least gap to keep.  [default: 0]"
+)
+@click.option(
+    "--free", help="Dimensions to change, separated by commas.  [default: the driven ones]"
+)
+@click.option(
+    "--most-seconds",
+    type=click.FloatRange(min=0.0),
+    default=10.0,
+    help="Processor time after which the solve of the sketch stops [s].  [default: 5]",
+)
+@click.option("--out", required=True, type=OutputPath(), help="Sketch to write, .yaml.")
+@click.option("--picture", type=OutputPath(), help="Picture to write, .svg or .png.")
+def fit(
+    sketch_file: Path,
+    profile_file: Path,
+    mode: str,
+    margin_mm: float,
+    free: str | None,
+    most_seconds: float,
+    out: Path,
+    picture: Path | None,
+) -> None:
+    """Changes the free dimensions of SKETCH.yaml, and its place if nothing holds it, to suit PROFILE.
+
+    PROFILE is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf).
+    """
+    from clearance.errors import BadInput, at
+    from clearance.files import refuse_inputs, require_file_place
+    from clearance.profiles.fit import fit as fitted
+    from clearance.profiles.outline_file import DrawnOutline, read_outline
+    from clearance.sketch import Sketch
+
+    if out.suffix.lower() not in (".yaml", ".yml"):
+        raise BadInput(f"a sketch {out.suffix or 'without suffix'}", where=str(out), valid=".yaml")
+    require_file_place(out)
+    refuse_inputs([out, *([] if picture is None else [picture])], [sketch_file, profile_file])
+    outline = read_outline(profile_file)
+    sketch = Sketch.load(sketch_file)
+    sketch.most_seconds = most_seconds
+    names = None if free is None else [name.strip() for name in free.split(",")]
+    with at(str(sketch_file)):
+        found = fitted(sketch, outline, mode, free=names, margin=margin_mm)
+    found.sketch.save(out)
+    _tell_fit(found)
+    click.echo(f"written {out}")
+    if picture is not None:
+        from clearance.profiles.picture import draw_outlines
+
+        drawn = DrawnOutline(out.name, found.curve)
+        shade = ("only in the sketch", "only in the outline")
+        draw_outlines(outline, drawn, found.ends, found.title, picture, shade=shade)
+        click.echo(f"picture {picture}")
+
+
+def _tell_fit(found) -> None:
+    what = "distance" if found.mode == "nearest" else "gap"
+    for name, value in found.dimensions.items():
+        up, down = found.sensitivity[name]
+        click.echo(f"{name} {value:.12g}  ({what} changes {up:+.4g} a unit up, {down:+.4g} down)")
+    if found.shift.any() or found.turn:
+        x, y = found.shift
+        click.echo(f"placed by ({x:.9g}, {y:.9g}) m, {found.turn:.9g} rad")
+    whole = found.distance
+    (ax, ay), (bx, by) = whole.point_a, whole.point_b
+    click.echo(
+        f"hausdorff {whole.distance:.12g} ± {whole.error_bound:.1e} "
+        f"at ({ax:.6g}, {ay:.6g}) and ({bx:.6g}, {by:.6g})"
+    )
+    if found.clearance is not None:
+        what = "contains the outline" if found.mode == "outside" else "stays clear of the outline"
+        click.echo(f"{what}, proven gap {1000 * found.clearance:.6g} mm; area {found.area:.9g} m2")
+    unit = "distance" if found.mode == "nearest" else "area"
+    for name, rate in list(found.active.items())[:6]:
+        click.echo(f"held by {name}: {unit} changes by {rate:+.4g} a unit of it")
+    click.echo(f"touches at {len(found.touching)} places; best of {found.n_starts} starts")
+
+
+@profile.command()
+@click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
+@click.option(
+    "--plane",
+    default="xy",
+    show_default=True,
+    help='xy, xz, yz or "px py pz nx ny nz": a point and a normal.',
+)
+@click.option("--links", help="Only these links, separated by commas; '' for none.")
+@click.option("--obstacles", help="These obstacles as well, separated by commas.")
+@click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
+@click.option(
+    "--tolerance", type=SortParamType(LENGTH), help="[mm] How far it may exceed.  [default: 0.5]"
+)
+@click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
+@click.option(
+    "--motion",
+    type=click.Choice(MOTIONS[:2]),
+    default=MOTIONS[0],
+    show_default=True,
+    help="Motion to sweep: the trajectory itself, or a simulated robot that follows it.",
+)
+@click.option(
+    "--out",
+    required=True,
+    type=OutputPath(),
+    help="File to write: .yaml, .dxf, .svg or .geojson.",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+def sweep(
+    case_file: Path,
+    plane: str,
+    links: str | None,
+    obstacles: str | None,
+    section: float | None,
+    tolerance: float | None,
+    per_link: bool,
+    motion: str,
+    out: Path,
+    quiet: bool,
+) -> None:
+    """Writes the outline that the links of CASE.yaml sweep in a plane: nothing swept lies outside it.
+
+    The motion between the samples is included, joints moving linearly, or on cubics where the
+    trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
+    """
+    from clearance.case.case_file import load_case
+    from clearance.cli.notices import say_notices
+    from clearance.cli.progress import shown_progress
+    from clearance.files import refuse_inputs, require_file_place
+    from clearance.profiles.profile_file import require_suffix, write_profile
+    from clearance.profiles.sweep import TOLERANCE, swept_profile
+
+    require_suffix(out)
+    require_file_place(out)
+    case = load_case(case_file)
+    refuse_inputs([out], case.files_read)
+    if not quiet:
+        say_notices(case)
+    moved = _moved(case, motion)
+    with shown_progress(quiet, ["covering", "sweeping"]) as progress:
+        found = swept_profile(
+            moved,
+            plane,
+            links=None if links is None else _names(links),
+            obstacles=_names(obstacles or ""),
+            section=section,
+            tolerance=TOLERANCE if tolerance is None else tolerance,
+            per_link=per_link,
+            progress=progress,
+        )
+    write_profile(found, out)
+    if not quiet:
+        _tell_sweep(found, out)
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _moved(case, motion: str):
+    """What is swept: the case as its trajectory says, or as the physics engine moves it."""
+    if motion == "kinematic":
+        return case
+    from clearance.run import check
+
+    return check(case, motion=motion)
+
+
+def _tell_sweep(found, out: Path) -> None:
+    holes = sum(contour.area < 0.0 for contour in found.contours)
+    outer = len(found.contours) - holes
+    what = f"section at {found.section:g} m" if found.section is not None else "silhouette"
+    click.echo(f"{what} in {found.plane}, {found.n_steps} steps: {found.name}")
+    click.echo(
+        f"outlines {outer}, holes {holes}, {found.n_pieces} lines and arcs, "
+        f"{found.length:.6g} m long, area {found.area:.6g} m2"
+    )
+    click.echo(f"contains all that is swept, exceeds it by at most {1000 * found.bound:.4g} mm")
+    if found.facets:
+        click.echo(f"facets of round shapes stand out by up to {1000 * found.facets:.4g} mm more")
+    for name, part in found.parts.items():
+        click.echo(f"  {name}: {part.n_pieces} pieces, area {part.area:.6g} m2")
+    for note in found.notes:
+        click.echo(f"note: {note}")
+    click.echo(f"written {out}")

@@ -103,9 +103,9 @@ def make(
 
     What can meet, and what is undecided, is told in comments. Exit code: 0, or 2 for bad input.
     """
-    from clearance.cli.places import refuse_inputs, require_file_place
     from clearance.cli.progress import shown_progress
     from clearance.errors import unwritable
+    from clearance.files import refuse_inputs, require_file_place
     from clearance.report.srdf import proposal_headline, proposed_srdf
     from clearance.simulate.answers.audit.srdf import propose
 

@@ -59,14 +59,15 @@ def workspace(
     """
     from clearance.case.case_file import load_case
     from clearance.cli.notices import say_notices
-    from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
+    from clearance.files import refuse_inputs, require_folder_place
     from clearance.report.workspace import OWN
     from clearance.simulate.answers.workspace.workspace import WITHIN, shared_workspace
 
     require_folder_place(out)
     cases = [load_case(path) for path in case_files]
     if out is not None:
-        refuse_inputs_of_cases(cases, [out / name for name in OWN])
+        read = [path for case in cases for path in case.files_read]
+        refuse_inputs([out / name for name in OWN], read)
     for case in cases:
         say_notices(case)
     found = shared_workspace(

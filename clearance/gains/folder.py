@@ -42,7 +42,7 @@ def save_gain(gain: Gain, folder: Path, *, force: bool = False) -> Path:
     made = case_files(gain, folder)
     drawn = all(is_installed(library) for library in LIBRARIES["report"])
     names = [*dict.fromkeys((*OF_CASE, FIGURES, PAGE, *made.files))]
-    sources = [one.read_from for one in gain.before.record.case.sources if one.is_file]
+    sources = gain.before.record.case.files_read
     refuse_taken(folder, names, force=force)
     refuse_inputs([folder / name for name in names], sources)
     page = page_of(gain, made.notes, with_reports=drawn)

@@ -136,7 +136,7 @@ def print_comparison(comparison: Comparison) -> None:
 
 def print_batch_comparison(found: BatchComparison) -> None:
     """What became of cases and findings of a batch, on stdout: what alarms first."""
-    _print([f"since the baseline: {_batch_text(found)}"])
+    _print([f"since the baseline: {_batch_verdict(found)}"])
     _print([f"waivers: {line}" for line in found.stale])
     _print(_shared_doubts(found))
     alone = [one for one in found.cases if one.comparison is None]
@@ -144,7 +144,7 @@ def print_batch_comparison(found: BatchComparison) -> None:
     _print(_changed(found))
 
 
-def _batch_text(found: BatchComparison) -> str:
+def _batch_verdict(found: BatchComparison) -> str:
     told = []
     if found.failing:
         told.append(f"NEW, WORSE OR LESS KNOWN in {count(len(found.failing), 'case')}")

@@ -322,6 +322,11 @@ class Case:
         object.__setattr__(self, "allow", tuple(allow))
         _require_bodies(self)
 
+    @property
+    def files_read(self) -> tuple[str, ...]:
+        """Where the files were found that it was made from."""
+        return tuple(one.read_from for one in self.sources if one.is_file)
+
     @cached_property
     def cell(self) -> Cell:
         """The part of it that no trajectory changes, as a key."""

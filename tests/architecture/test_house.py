@@ -93,10 +93,8 @@ def test_no_room_has_a_name_that_says_nothing():
 
 
 COMMANDS = {
-    "clearance/cli/batch.py",
-    "clearance/cli/check.py",
     "clearance/cli/new.py",
-    "clearance/cli/profile_sweep.py",
+    "clearance/cli/profile.py",
 }
 """Where click hands over one argument for each option."""
 

@@ -15,7 +15,7 @@ from clearance.batch.outcome import Outcome
 from clearance.batch.output import write_answer
 from clearance.batch.run import run_batch
 from clearance.batch.store import open_store
-from clearance.cli.batch_progress import SilentWatch
+from clearance.cli.batch_run import SilentWatch
 from tests.batch.batches import write_cell
 
 FEW, MANY = 200, 1200

@@ -5,8 +5,8 @@ import io
 import pytest
 
 from clearance.batch.measuring import Fault, ItemResult
-from clearance.cli import batch_progress
-from clearance.cli.batch_progress import PipeWatch, shown_progress
+from clearance.cli import batch_run
+from clearance.cli.batch_run import PipeWatch, shown_progress
 
 NAMES = ["a", "b", "c", "d"]
 
@@ -31,7 +31,7 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
 def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch):
     told = io.StringIO()
     monkeypatch.setattr("sys.stderr", told)
-    monkeypatch.setattr(batch_progress, "EVERY", 0.001)
+    monkeypatch.setattr(batch_run, "EVERY", 0.001)
     with shown_progress(False, NAMES.__getitem__) as watch:
         watch.begin(NAMES, 0)
         while told.getvalue().count("\n") < 2:
@@ -42,7 +42,7 @@ def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch):
 
 @pytest.mark.parametrize("every", [0.001, 10.0])
 def test_quiet_is_silent_and_a_short_batch_too(every, monkeypatch, capsys):
-    monkeypatch.setattr(batch_progress, "EVERY", every)
+    monkeypatch.setattr(batch_run, "EVERY", every)
     with shown_progress(every < 1, NAMES.__getitem__) as watch:
         watch.begin(NAMES, 0)
         watch.tell([result(0, "clear", 0, 0.4)], [])

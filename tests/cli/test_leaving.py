@@ -23,7 +23,7 @@ TIMES = 10
 
 LEAVING = """
 import json, os, sys
-import clearance.cli.check, clearance.cli.commands, clearance.cli.places
+import clearance.cli.check, clearance.cli.commands, clearance.files
 import clearance.compile.calls, clearance.case.case_file
 import clearance.formats.message.times, clearance.formats.robot.urdf.robot
 import clearance.query.pair_query, clearance.files, clearance.report.output, clearance.run
