@@ -8,6 +8,7 @@ from clearance.batch import measuring
 from clearance.batch.keys import program
 from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, TaskResult, measure
+from clearance.errors import Incomplete
 from tests.batch.batches import write_cell
 
 NEAREST = [0.5, 0.02, 0.2, 0.4, 0.01, 0.3, 0.25, 0.6, 0.1]
@@ -46,3 +47,8 @@ def test_a_fault_of_the_program_in_one_case_is_told_of_that_alone(items, monkeyp
     assert [(fault.number, bool(fault.trace)) for fault in found.faults] == [(2, True), (4, False)]
     assert "ZeroDivisionError" in found.faults[0].trace
     assert len(found.measured) == len(items) - 2
+
+
+def test_a_process_of_another_program_measures_nothing(items):
+    with pytest.raises(Incomplete, match="another version of clearance"):
+        measure(Task(items, 1e9, "another", "a batch"))

@@ -3,7 +3,6 @@
 import hashlib
 from datetime import date
 
-import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import trimesh
@@ -30,6 +29,7 @@ from tests.batch.batches import (
     write_cell,
     write_path,
 )
+from tests.run.test_options import BESIDE, EVERY
 
 NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
 
@@ -134,16 +134,12 @@ def test_the_key_is_of_all_that_decides_a_row(manifest):
     key = key_of(item, files)
     assert key == key_of(item, files[::-1])
     assert key != key_of(item, [("cell.yaml", "a"), ("t000.csv", "c")])
-    others = [
-        dict(need="steps"),
-        dict(certify=False),
-        dict(certify_gap=0.001),
-        dict(fail=0.1),
-        dict(warn=0.5),
-        dict(accept=("units",)),
-    ]
+    without = ("today", "tolerance", "waivers", "unproven_ok")  # of files, and of cases with some
+    names = [name for name in EVERY if name not in without and "recorded" not in name]
+    others = [{"need": "steps"}]
+    others += [{"need": "steps"} | BESIDE.get(name, {}) | {name: EVERY[name][0]} for name in names]
     keys = {key_of(items_of([str(manifest)], one)[0], files) for one in others}
-    assert len(keys | {key}) == 7
+    assert len(keys | {key}) == len(names) + 2 > 12
 
 
 def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
@@ -299,20 +295,3 @@ def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
     assert any("with the tolerances" in reason for reason in row["reasons"])
     page = (tmp_path / "store" / "batch.html").read_text()
     assert '"not proven"' in page and ".tag.not" in page
-
-
-@pytest.mark.slow
-def test_one_of_a_thousand_that_cannot_be_read_costs_no_other(tmp_path):
-    nearest = np.random.default_rng(28).uniform(0.06, 0.75, 1000)
-    nearest[::7] = 0.01
-    manifest = write_cell(tmp_path / "in", nearest)
-    (tmp_path / "in" / "t500.csv").write_text("time,rail\n0,0\n1,oops\n")
-    asked = dict(need="limit", certify=False)
-    _, answer = run_here(manifest, tmp_path / "out", changes=asked)
-    expected = {
-        f"t{i:03d}": "violated" if one < 0.05 else "near" if one < 0.3 else "clear"
-        for i, one in enumerate(nearest)
-    } | {"t500": "error"}
-    assert statuses(answer) == expected and answer.exit_code == 1
-    told, strict = run_here(manifest, tmp_path / "out", changes=asked, strict=True)
-    assert told.measured == ["t500"] and strict.exit_code == 2

@@ -64,12 +64,6 @@ def test_workers_that_die_as_they_start_are_told_in_one_line(items, monkeypatch)
         list(engine.results(Queue(items, "batch")))
 
 
-def test_a_worker_of_another_program_stops_the_batch(items, monkeypatch):
-    monkeypatch.setattr("clearance.batch.engine.program", lambda: "another")
-    with local_workers(1) as engine, pytest.raises(Incomplete, match="another version"):
-        list(engine.results(Queue(items, "batch")))
-
-
 def test_no_process_is_left(items):
     with local_workers(2) as engine:
         list(engine.results(Queue(items[:3], "batch")))

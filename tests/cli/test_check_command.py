@@ -1,4 +1,4 @@
-"""The command line from outside: exit codes, output, files, every bad input."""
+"""`clearance check`: exit codes, output, files, one line for each class of fault; what a killed run leaves."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import pyarrow as pa
 import pytest
 
+import clearance.crosscheck as crosscheck
+from clearance.cli import run
 from clearance.files import LAST
 from clearance.report.withdrawn import OLDER_SUMMARY
 from tests.cart import URDF
@@ -30,17 +34,19 @@ PATH = "time,rail\n0,0\n1,0.3\n2,0.7\n"  # 0.8, 0.5 and 0.1 m from the wall
 
 
 @pytest.fixture
-def folder(tmp_path):
+def folder(tmp_path, monkeypatch):
     (tmp_path / "cart.urdf").write_text(URDF)
     (tmp_path / "case.yaml").write_text(CASE)
     (tmp_path / "path.csv").write_text(PATH)
+    monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def clearance(folder: Path, *arguments: str, case: str = "case.yaml"):
-    command = [sys.executable, "-m", "clearance", "check", str(folder / case), *arguments]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+def check(capsys, *arguments: str, case: str = "case.yaml") -> tuple[int, str, str]:
+    """Exit code, output and errors."""
+    capsys.readouterr()
+    code = run(["check", case, *arguments])
+    return (code, *capsys.readouterr())
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -51,71 +57,82 @@ def files(folder: Path) -> dict[str, bytes]:
     }
 
 
-def test_near_passes_and_nothing_is_written(folder):
+def test_near_passes_and_nothing_is_written(folder, capsys):
     before = files(folder)
-    done = clearance(folder, "--cross-check")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.startswith("NEAR  rail: least clearance 100.0 mm")
-    assert done.stdout.splitlines()[1].strip() == "self-collision not checked"
-    assert "slider - wall" in done.stdout and "agrees at all 3 steps" in done.stdout
+    code, out, err = check(capsys, "--cross-check")
+    assert (code, err) == (0, "") and out.startswith("NEAR  rail: least clearance 100.0 mm")
+    assert out.splitlines()[1].strip() == "self-collision not checked"
+    assert "slider - wall" in out and "agrees at all 3 steps" in out
+    assert "certified   at least" in out and "joints moving linearly" in out
     assert files(folder) == before
 
 
-def test_limits_from_the_command_line_decide(folder):
-    violated = clearance(folder, "--fail-mm", "150")
-    assert violated.returncode == 1 and violated.stdout.startswith("VIOLATED")
-    clear = clearance(folder, "--fail-mm", "1", "--warn-mm", "2", "--quiet")
-    assert (clear.returncode, clear.stdout, clear.stderr) == (0, "", "")
+def test_limits_from_the_command_line_decide(folder, capsys):
+    code, out, _ = check(capsys, "--fail-mm", "150")
+    assert code == 1 and out.startswith("VIOLATED")
+    assert check(capsys, "--fail-mm", "1", "--warn-mm", "2", "--quiet") == (0, "", "")
 
 
-def test_json_is_all_that_is_printed(folder):
-    done = clearance(folder, "--json", "--motion", "simulated")
-    summary = json.loads(done.stdout)
-    assert done.stderr == "" and summary["motion"] == "simulated"
-    assert summary["worst"]["link"] == "slider" and summary["n_steps"] > 480
+def test_a_limit_that_is_only_kept_at_the_samples_is_violated(folder, capsys):
+    """On the cubic from 0.7 m at 0.1 m/s back to 0.7 m, the slider is at 0.725 m at half time."""
+    (folder / "path.csv").write_text(
+        "time,rail,rail/velocity\n0,0,0\n1,0.7,0.1\n2,0.7,-0.1\n3,0.1,0\n"
+    )
+    code, out, _ = check(capsys, "--fail-mm", "80")
+    assert code == 1 and "75.00 mm" in out.splitlines()[0]
+    code, out, _ = check(capsys, "--fail-mm", "80", "--samples-only")
+    assert code == 0 and out.startswith("NEAR at the samples only") and "certified   no" in out
 
 
-def test_report_and_junit_are_where_they_were_asked_for(folder):
-    done = clearance(folder, "--out", "deep/report", "--junit", "junit.xml")
-    assert done.returncode == 0, done.stderr
+def test_the_algorithm_of_the_paper_proves_nothing_and_says_so(folder, capsys):
+    assert check(capsys, "--method", "paper")[1].startswith("NEAR at the samples only")
+
+
+def test_a_gap_below_rounding_is_a_warning_below_the_headline(folder, capsys):
+    code, out, _ = check(capsys, "--certify-mm", "1e-300", "--need", "minimum")
+    told = out.splitlines()[2]
+    assert code == 0 and "rounding" in told and "warning" in told
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+def test_every_need_is_certified_and_json_is_all_that_is_printed(folder, capsys, need):
+    peer = ("--cross-check",) if need in ("steps", "pairs") else ()
+    code, out, err = check(capsys, "--need", need, "--json", "--certify-mm", "0.5", *peer)
+    told = json.loads(out)
+    assert (code, err, told["basis"], told["worst"]["link"]) == (0, "", "motion", "slider")
+    assert told["certified"]["allowed_gap"] == 0.0005 >= told["certified"]["greatest_gap"]
+    assert 0.0 < told["certified"]["lower_bound"] <= told["worst"]["clearance"]
+    assert not peer or told["cross_check"]["agrees"]
+
+
+@pytest.mark.slow
+def test_a_simulated_motion_is_measured(folder, capsys):
+    pytest.importorskip("pybullet")
+    told = json.loads(check(capsys, "--json", "--motion", "simulated")[1])
+    assert told["motion"] == "simulated" and told["n_steps"] > 480
+
+
+def test_report_and_junit_are_where_they_were_asked_for(folder, capsys):
+    assert check(capsys, "--out", "deep/report", "--junit", "junit.xml")[0] == 0
     written = {path.name for path in (folder / "deep/report").iterdir()}
     assert {"steps.csv", "steps.parquet", "summary.json", "report.html"} <= written
     assert (folder / "junit.xml").read_bytes().startswith(b"<?xml")
 
 
-DISAGREEING = """
-from dataclasses import replace
-import pyarrow as pa
-import clearance.crosscheck as crosscheck
-from clearance import cli
-ask = crosscheck.cross_check
-def asked_about_a_wrong_answer(record, progress=None):
-    clearances = record.clearances.copy()
-    clearances[1] += 1e-6
-    i_column = record.steps.column_names.index("clearance")
-    wrong = record.steps.set_column(i_column, "clearance", pa.array(clearances))
-    return ask(replace(record, table=wrong), progress)
-crosscheck.cross_check = asked_about_a_wrong_answer
-cli.main()
-"""
-
-
 @pytest.mark.parametrize("limit", ["50", "150"])
-def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
-    command = [
-        sys.executable,
-        "-c",
-        DISAGREEING,
-        "check",
-        "case.yaml",
-        "--cross-check",
-        "--fail-mm",
-        limit,
-    ]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (3, "")
-    assert "DISAGREES at 1 step" in done.stdout
+def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, capsys, monkeypatch, limit):
+    ask = crosscheck.cross_check
+
+    def asked_about_a_wrong_answer(record, progress=None):
+        clearances = record.clearances.copy()
+        clearances[1] += 1e-6
+        i_column = record.steps.column_names.index("clearance")
+        wrong = record.steps.set_column(i_column, "clearance", pa.array(clearances))
+        return ask(replace(record, table=wrong), progress)
+
+    monkeypatch.setattr(crosscheck, "cross_check", asked_about_a_wrong_answer)
+    code, out, err = check(capsys, "--cross-check", "--fail-mm", limit)
+    assert (code, err) == (3, "") and "DISAGREES at 1 step" in out
 
 
 KILLED = """
@@ -131,138 +148,102 @@ cli.main()
 """
 
 
-def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder):
-    """The command line's own: the same command again, one line on stderr, the bytes of a whole run."""
+@pytest.mark.slow
+def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder, capsys):
+    """The same command again, one line on stderr, the bytes of a whole run."""
     rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(20_000))
     (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
-    command = [sys.executable, "-c", KILLED, "check", str(folder / "case.yaml"), "--out", "report"]
-    killed = subprocess.run(
-        command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False
-    )
+    command = [sys.executable, "-c", KILLED, "check", "case.yaml", "--out", "report"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    killed = subprocess.run(command, cwd=folder, env=environment, check=False)
     assert killed.returncode == -signal.SIGKILL
     kept = folder / ".report.unfinished"
     assert list(kept.glob("*.state")) and not (folder / "report").exists()
-    resumed = clearance(folder, "--out", "report")
-    assert resumed.returncode == 0, resumed.stderr
-    assert resumed.stderr.startswith("resuming: ") and resumed.stderr.count("\n") == 1
-    whole = clearance(folder, "--out", "whole")
-    assert whole.stderr == "" and files(folder / "report") == files(folder / "whole")
-    assert not kept.exists()
+    code, _, err = check(capsys, "--out", "report")
+    assert code == 0 and err.startswith("resuming: ") and err.count("\n") == 1
+    assert check(capsys, "--out", "whole")[2] == ""
+    assert files(folder / "report") == files(folder / "whole") and not kept.exists()
 
 
 BAD = {
-    "unknown joint": ("path.csv", "time,rail", "time,rale", "rale"),
-    "unknown link in allow": ("case.yaml", "allow: []", "allow: [[slidr, wall]]", "slidr"),
-    "NaN in the trajectory": ("path.csv", "1,0.3", "1,nan", "path.csv"),
-    "too few columns": ("path.csv", "1,0.3", "1", "path.csv"),
-    "unknown key": ("case.yaml", "limits:", "limit:", "limits"),
-    "mesh without faces": (
-        "case.yaml", "box: {size: [0.2, 1, 1]}", "mesh: {file: none.stl}", "none",
-    ),
-    "negative radius": (
-        "case.yaml", "box: {size: [0.2, 1, 1]}", "sphere: {radius: -1}", "radius",
-    ),
-    "bad quaternion": ("case.yaml", "[0, 0, 0, 1]", "[0, 0, 0, 2]", "quat_xyzw"),
-    "time not increasing": ("path.csv", "2,0.7", "1,0.7", "time"),
-    "URDF that is not XML": ("cart.urdf", "<robot", "robot", "cart.urdf"),
-    "missing trajectory": ("case.yaml", "path.csv", "gone.csv", "gone.csv"),
-}  # fmt: skip
+    # a fault of each layer: file, what is there, what is put there, what is named
+    "case": ("case.yaml", "limits:", "limit:", "limits"),
+    "scene": ("case.yaml", "box: {size: [0.2, 1, 1]}", "mesh: {file: none.stl}", "none"),
+    "pairs": ("case.yaml", "allow: []", "allow: [[slidr, wall]]", "slidr"),
+    "trajectory": ("path.csv", "1,0.3", "1,nan", "path.csv"),
+    "robot": ("cart.urdf", "<robot", "robot", "cart.urdf"),
+}
 
 
 @pytest.mark.parametrize("fault", BAD)
-def test_bad_input_is_one_line_and_exit_2(folder, fault):
+def test_bad_input_is_one_line_and_exit_2(folder, capsys, fault):
     name, good, bad, named = BAD[fault]
     text = (folder / name).read_text()
     assert good in text
     (folder / name).write_text(text.replace(good, bad, 1))
     (folder / "none.stl").write_text("solid none\nendsolid none\n")
-    assert_refused(folder, clearance(folder, "--out", "report"), named)
+    assert_refused(folder, check(capsys, "--out", "report"), named)
 
 
-def test_two_obstacles_with_one_name(folder):
-    text = (folder / "case.yaml").read_text()
-    row = next(line for line in text.splitlines() if "wall" in line)
-    (folder / "case.yaml").write_text(text.replace(row, f"{row}\n{row}"))
-    assert_refused(folder, clearance(folder, "--out", "report"), "wall")
-
-
-def test_a_case_that_is_not_there(folder):
-    assert_refused(folder, clearance(folder, "--out", "report", case="gone.yaml"), "gone.yaml")
+def test_a_case_that_is_not_there(folder, capsys):
+    assert_refused(folder, check(capsys, "--out", "report", case="gone.yaml"), "gone.yaml")
 
 
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [
-        (("--fail-mm", "-1"), "-1"),
-        (("--warn-mm", "nan"), "nan"),
-        (("--fail-mm", "5", "--warn-mm", "2"), "below"),
-        (("--method", "fast"), "fast"),
+        (("--fail-mm", "5", "--warn-mm", "2"), "the warn limit 2 mm is below the fail limit 5 mm"),
+        (("--unproven-ok",), "--unproven-ok: the case has no tolerances"),
         (("--colour",), "--colour"),
-        (("--accept", "unit"), "unit"),
-        (("--out", "case.yaml"), "case.yaml"),
         (("--out", "case.yaml/below"), "case.yaml"),
         (("--out", "/proc/report"), "/proc/report"),
+        (("--out", "link/deeper"), "leads nowhere"),
         (("--junit", "."), "--junit"),
     ],
 )
-def test_bad_arguments_are_one_line_and_exit_2(folder, arguments, named):
-    assert_refused(folder, clearance(folder, *arguments), named)
+def test_bad_arguments_are_one_line_and_exit_2(folder, capsys, arguments, named):
+    (folder / "link").symlink_to("nowhere")
+    assert_refused(folder, check(capsys, *arguments), named)
 
 
-def assert_refused(folder: Path, done: subprocess.CompletedProcess, named: str) -> None:
-    assert done.returncode == 2, done.stdout + done.stderr
-    assert done.stdout == "" and done.stderr.startswith("error: ")
-    assert done.stderr.count("\n") == 1 and named in done.stderr
+def assert_refused(folder: Path, done: tuple[int, str, str], named: str) -> None:
+    code, out, err = done
+    assert (code, out) == (2, "") and err.startswith("error: ")
+    assert err.count("\n") == 1 and named in err
     assert not (folder / "report").exists()
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device to write to")
-def test_a_full_disk_under_stdout_is_no_verdict(folder):
-    command = [sys.executable, "-m", "clearance", "check", str(folder / "case.yaml"), "--json"]
-    with open("/dev/full", "w") as full:
-        done = subprocess.run(
-            command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False
-        )
-    assert done.returncode not in (0, 1)
-
-
-INTERRUPTED = """
-import os, signal
-signal.signal(signal.SIGINT, signal.default_int_handler)
-import clearance.crosscheck.compare as compare
-from clearance import cli
-def interrupted(run, progress=None):
-    os.kill(os.getpid(), signal.SIGINT)
-compare.PeerRun.measure = interrupted
-cli.main()
-"""
-
-
-def test_an_interrupted_run_leaves_the_older_report_marked_as_such(folder):
-    assert clearance(folder, "--out", "report").returncode == 0
+def test_an_interrupted_run_leaves_the_older_report_marked_as_such(folder, capsys, monkeypatch):
+    assert check(capsys, "--out", "report")[0] == 0
     before = files(folder / "report")
     (folder / "path.csv").write_text(PATH.replace("0.7", "0.6"))
-    command = [
-        sys.executable,
-        "-c",
-        INTERRUPTED,
-        "check",
-        "case.yaml",
-        "--cross-check",
-        "--out",
-        "report",
-    ]
-    done = subprocess.run(
-        command,
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
-    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("clearance.crosscheck.compare.PeerRun.measure", interrupted)
+    stopped = check(capsys, "--cross-check", "--out", "report")
+    assert stopped == (130, "", "interrupted\n")
     left = files(folder / "report")
     assert left.pop(OLDER_SUMMARY) == before.pop(LAST)
     assert "what follows is older" in left.pop("report.html").decode()
     before.pop("report.html")
-    assert left == before
-    assert not list(folder.glob("**/*.partial"))
+    assert left == before and not list(folder.glob("**/*.partial"))
+
+
+def test_each_pass_has_its_own_bar(monkeypatch):
+    from rich import progress as rich_progress
+
+    from clearance.cli.progress import shown_progress
+
+    told = []
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(
+        rich_progress.Progress,
+        "update",
+        lambda bars, task, **values: told.append((task, values["completed"])),
+    )
+    with shown_progress(False, ["measuring", "certifying", "cross-checking"]) as progress:
+        for done in (5, 10, 5, 10, 1, 10):
+            progress(done, 10)
+    assert told == [(0, 5), (0, 10), (1, 5), (1, 10), (2, 1), (2, 10)]

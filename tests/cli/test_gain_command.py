@@ -153,36 +153,12 @@ def test_the_paths_of_two_robots_are_written_each(tmp_path, capsys):
     [
         (["--kind", "obstacle"], "which obstacle may be moved is not said; one of left, right"),
         (["--kind", "obstacle", "--obstacle", "lift"], "did you mean 'left'?"),
-        (
-            ["--kind", "base", "--robot", "bar", "--robot", "bat"],
-            "2 robots are named, of which one",
-        ),
-        (["--kind", "base", "--robot", "bat"], "did you mean 'bar'?"),
         (["--kind", "all", "--robot", "bat"], "did you mean 'bar'?"),
-        (["--kind", "timing"], "a delay of robot 'bar' changes no clearance"),
-        (
-            ["--kind", "waypoints", "--keep", "5:6"],
-            "which is not in the run; times from 0.5 s to 1.5",
-        ),
-        (["--kind", "base", "--keep", "2:1"], "'2:1' is given; start and end of a stretch"),
+        (["--kind", "waypoints", "--keep", "5:6"], "is not in the run; times from 0.5 s to 1.5"),
         (["--kind", "base", "--keep", "1:2"], "keep says nothing with kind base; kind waypoints"),
-        (
-            ["--kind", "waypoints", "--obstacle", "left"],
-            "obstacle says nothing with kind waypoints; kind obstacle",
-        ),
-        (
-            ["--kind", "obstacle", "--robot", "bar"],
-            "robot says nothing with kind obstacle; kind waypoints or base or timing",
-        ),
-        (["--kind", "base", "--margin-mm", "-1"], "'-1' is given; a length, 0 or more [mm]"),
-        (["--kind", "waypoints", "--keep-tool", "1=2,1"], "on the command line as 12.0=2mm,1deg"),
-        (["--kind", "waypoints", "--keep-tool", "1=2mm,1deg", "--tool", "toll"], "mean 'tool'?"),
-        (["--kind", "base", "--within-mm", "0,0,0"], "a box of zero leaves nothing to move"),
+        (["--kind", "all", "--about-mm", "1,2,3"], "--about-mm says nothing without --turn"),
         (["--kind", "base", "--within-mm", "5,5"], "'5,5' is given; ranges of x, y and z"),
-        (["--kind", "base", "--within-mm", "5,5,3:9"], "along z from 3 to 9 mm leaves out where"),
-        (["--kind", "waypoints", "--turn", "z"], "turn says nothing with kind waypoints"),
-        (["--kind", "base", "--about-mm", "1,2,3"], "--about-mm says nothing without --turn"),
-        (["--kind", "base", "--turn", "z", "--most-turn-deg", "0"], "up to 180 deg"),
+        (["--kind", "waypoints", "--keep-tool", "1=2mm,1deg", "--tool", "toll"], "mean 'tool'?"),
     ],
 )
 def test_bad_input_is_one_line(slot, tmp_path, capsys, options, told):

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from clearance.cli import run
+from clearance.errors import Unwritable
+from clearance.files import refuse_inputs
 from tests.cli.test_check_command import CASE, PATH, ROOT, URDF, files
 
 
@@ -33,10 +35,6 @@ def refused(arguments: list[str], said: str, capsys: pytest.CaptureFixture) -> N
     assert files(Path.cwd().parent) == before
 
 
-def as_it_is(path: Path) -> str:
-    return str(path)
-
-
 def by_a_detour(path: Path) -> str:
     return f"../{path.parent.name}/./{path.name}"
 
@@ -56,14 +54,20 @@ def by_a_hard_link(path: Path) -> str:
     return "hard"
 
 
-@pytest.mark.parametrize("name", ["case.yaml", "cart.urdf", "steps.csv"])
 @pytest.mark.parametrize(
-    "spelt", [as_it_is, by_a_detour, by_a_link, by_a_link_to_the_folder, by_a_hard_link]
+    "spelt", [str, by_a_detour, by_a_link, by_a_link_to_the_folder, by_a_hard_link]
 )
+def test_an_input_is_known_by_any_name(folder: Path, spelt: Callable[[Path], str]) -> None:
+    name = Path(spelt(folder / "steps.csv"))
+    with pytest.raises(Unwritable, match="which this run reads"):
+        refuse_inputs([Path("new.csv"), name], ["cart.urdf", folder / "steps.csv"])
+
+
+@pytest.mark.parametrize("name", ["case.yaml", "cart.urdf", "steps.csv"])
 def test_junit_over_an_input_is_refused(
-    folder: Path, capsys: pytest.CaptureFixture, name: str, spelt: Callable[[Path], str]
+    folder: Path, capsys: pytest.CaptureFixture, name: str
 ) -> None:
-    refused(["check", "case.yaml", "--junit", spelt(folder / name)], "which this run reads", capsys)
+    refused(["check", "case.yaml", "--junit", name], "which this run reads", capsys)
 
 
 def test_a_report_over_the_trajectory_is_refused(

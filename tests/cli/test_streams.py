@@ -39,19 +39,10 @@ def ended(folder: Path, line: str, **environment: str) -> tuple[int, str]:
 
 FAILING = {
     "clearance check case.yaml >/dev/full": "No space left",
-    "clearance check case.yaml --json >/dev/full": "No space left",
     "clearance --help >/dev/full": "No space left",
-    "clearance check case.yaml >&-": "standard output is closed",
     "clearance check case.yaml --json >&-": "standard output is closed",
-    "clearance check --help >&-": "standard output is closed",
     "clearance check $'caf\\xe9.yaml'": "not UTF-8",
-    "clearance check case.yaml --out $'caf\\xe9'": "not UTF-8",
-    "clearance workspace case.yaml --out $'caf\\xe9'": "not UTF-8",
-    f"clearance check {LONG}": "name too long",
     f"clearance check case.yaml --out {LONG}": "name too long",
-    f"clearance check case.yaml --out {LONG}/below": "name too long",
-    f"clearance check case.yaml --junit {LONG}": "name too long",
-    f"clearance check case.yaml --out {JUST_LEGAL}": "name too long",
     f"clearance check case.yaml --quiet --junit {JUST_LEGAL}": "name too long",
     f"clearance workspace case.yaml --out {LONG}": "name too long",
     f"clearance profile sweep case.yaml --out {LONG}.yaml": "name too long",
@@ -70,11 +61,9 @@ def test_it_is_told_in_one_line(folder: Path, line: str) -> None:
 @pytest.mark.parametrize(
     ("line", "code"),
     [
-        ("clearance check case.yaml --quiet >&-", 0),
         ("clearance check case.yaml --quiet <&- 2>&-", 0),
         ("clearance check case.yaml --quiet --fail-mm 150 >/dev/full 2>/dev/full", 1),
         ("clearance check gone.yaml 2>&-", 2),
-        ("clearance check gone.yaml 2>/dev/full", 2),
         ("clearance check gone.yaml <&- >&- 2>&-", 2),
         ("clearance check case.yaml >/dev/full 2>&1", 2),
     ],
@@ -83,14 +72,13 @@ def test_where_nothing_can_be_told_the_exit_code_tells(folder: Path, line: str, 
     assert ended(folder, line) == (code, "")
 
 
-@pytest.mark.parametrize("given", ["check case.yaml", "check case.yaml --json"])
-@pytest.mark.parametrize("limits", ["", "--fail-mm 150"])
-def test_who_stops_reading_is_told_by_141(folder: Path, given: str, limits: str) -> None:
+@pytest.mark.parametrize("given", ["check case.yaml --json", "check case.yaml --fail-mm 150"])
+def test_who_stops_reading_is_told_by_141(folder: Path, given: str) -> None:
     """Also where the verdict is "violated": nobody has read it. The pipe is closed before anything is written."""
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run(
-        [sys.executable, "-m", "clearance", *f"{given} {limits}".split()], cwd=folder, stdout=writing,
+        [sys.executable, "-m", "clearance", *given.split()], cwd=folder, stdout=writing,
         stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     os.close(writing)

@@ -46,24 +46,12 @@ def test_a_file_takes_the_place_of_the_case_s_own(case_file, tmp_path, capsys):
     assert "t.yaml" in [one["path"] for one in summary["inputs"]]
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("base: {xyz: 4}\n", "t.yaml: base.xyz: 4 m is given; at most 0.5 m, in metres"),
-        ("joints: {shulder: 0.001}\n", "did you mean 'shoulder'?"),
-        ("", "t.yaml: nothing is given"),
-    ],
-)
-def test_what_is_refused(case_file, tmp_path, capsys, text, told):
+def test_what_is_refused(case_file, tmp_path, capsys):
     own = tmp_path / "t.yaml"
-    own.write_text(text)
+    own.write_text("joints: {shulder: 0.001}\n")
     code, said = checked(capsys, case_file, "--tolerance", own)
-    assert code == 2 and told in said.err and len(said.err.splitlines()) == 1
-
-
-def test_there_is_nothing_to_be_lenient_with(case_file, capsys):
-    code, said = checked(capsys, case_file, "--unproven-ok")
-    assert code == 2 and "--unproven-ok: the case has no tolerances" in said.err
+    assert code == 2 and "did you mean 'shoulder'?" in said.err
+    assert len(said.err.splitlines()) == 1
 
 
 def test_the_file_is_not_written_over(case_file, tmp_path, capsys):
@@ -84,5 +72,3 @@ def test_the_same_in_python(case_file, tmp_path):
     assert isinstance(budget, Budget)
     accepted = cl.check(case_file, tolerance=block | {"unproven_ok": True})
     assert accepted.passed and accepted.status == "not proven"
-    with pytest.raises(cl.BadInput, match="no joint that moves matches 'elbow'"):
-        cl.check(case_file, tolerance={"joints": {"elbow": 0.1}})

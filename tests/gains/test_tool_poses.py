@@ -101,14 +101,6 @@ def test_the_usual_tool_is_the_first_that_all_joints_move():
         (cl.BadInput, "no joint of the path", {"keep_tool": [(0.5, 0.01, 0.1)], "tool": "base"}),
         (cl.BadInput, "at which its path is not", {"keep_tool": [(1.5, 0.01, 0.1)]}),
         (cl.BadInput, "0.001 mm", {"keep_tool": [(0.5, 0.0, 0.1)]}),
-        (cl.BadInput, "is given; time .s., way", {"keep_tool": [(0.5, "a")]}),
-        (
-            cl.BadInput,
-            "within: .* is given; ranges of x, y and z",
-            {"kind": "base", "within": ("a", 1, 2)},
-        ),
-        (cl.BadInput, "did you mean 'margin'", {"margins": 0.1}),
-        (cl.BadInput, "nothing is to be kept", {"tool": "tool"}),
     ],
 )
 def test_what_is_no_pose_to_keep(fault, told, how):
