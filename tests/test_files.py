@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from clearance.errors import Unwritable
-from clearance.files import fill_folder, write_file
+from clearance.files import fill_folder, write_file, write_files
 from clearance.report.output import OWN
 from tests.report.made import write
 from tests.report.records import record
@@ -213,3 +213,29 @@ def test_a_folder_that_cannot_be_moved_in_is_taken_back(tmp_path, monkeypatch):
     with pytest.raises(Unwritable):
         fill_folder(place, fill, ("before", "z.txt"))
     assert [path.name for path in place.iterdir()] == ["mine.txt"]
+
+
+FRESH = {"case.yaml": b"new", "path.csv": b"new"}
+
+
+def test_files_of_one_command_are_all_written_or_none(tmp_path, monkeypatch):
+    """Over nothing unasked, over no input, and nothing is left of a command that is interrupted."""
+    (tmp_path / "mine.txt").write_bytes(b"mine")
+    (tmp_path / "path.csv").write_bytes(b"mine")
+    for force, read, told in ((False, [], "--force"), (True, ["path.csv"], "this run reads")):
+        with pytest.raises(Unwritable, match=told):
+            write_files(tmp_path, FRESH, [tmp_path / one for one in read], force=force)
+    write = Path.write_bytes
+
+    def interrupted(path, content):
+        if path.name == "path.csv":
+            raise KeyboardInterrupt
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_files(tmp_path, FRESH, [], force=True)
+    assert contents(tmp_path) == {"mine.txt": b"mine", "path.csv": b"mine"}
+    monkeypatch.undo()
+    write_files(tmp_path, FRESH, [], force=True)
+    assert contents(tmp_path) == FRESH | {"mine.txt": b"mine"}

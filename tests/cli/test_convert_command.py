@@ -114,17 +114,14 @@ def test_one_of_several_is_chosen(tmp_path):
             ["a.yaml", "c.txt"],
             "'c.txt' has no suffix to write for a trajectory; one of .csv, .json, .yaml, .yml",
         ),
-        (["no.yaml", "c.csv"], "there is no file 'no.yaml'"),
         (["a.yaml", "c.csv", "--which", "3"], "which is 3, the file holds 1"),
         (["a.yaml", "no/c.csv"], "cannot write here"),
-        (["robot.urdf", "c.csv"], "robot.urdf: "),
     ],
 )
 def test_the_command_line_says_it_in_one_line(tmp_path, monkeypatch, capsys, arguments, says):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.yaml").write_text(ROS2)
     (tmp_path / "b.csv").write_text("mine")
-    (tmp_path / "robot.urdf").write_text("<robot/>")
     assert convert(*arguments) == 2
     told = capsys.readouterr().err.strip()
     assert says in told and told.count("\n") == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import shutil
 import subprocess
 import sys
@@ -108,11 +109,23 @@ def test_a_list_of_cases_by_patterns(inside, pytester):
         ("a: [", "not YAML"),
     ],
 )
-def test_a_bad_list_is_one_line_when_it_is_collected(text, told, inside, pytester):
-    (pytester.path / "all.clearance.yaml").write_text(text)
+def test_a_bad_list_is_one_line(text, told, tmp_path):
+    (tmp_path / "all.clearance.yaml").write_text(text)
+    with pytest.raises(BadInput, match=re.escape(told)):
+        list(cases_in(tmp_path / "all.clearance.yaml"))
+
+
+def test_a_bad_list_fails_when_it_is_collected(inside, pytester):
+    (pytester.path / "all.clearance.yaml").write_text("cases: 7")
     result = inside()
     result.assert_outcomes(errors=1)
-    assert told in result.stdout.str() and "Traceback" not in result.stdout.str()
+    assert "no list of cases" in result.stdout.str() and "Traceback" not in result.stdout.str()
+
+
+def test_options_of_a_check_are_taken(inside, pytester):
+    write_case(pytester.path)
+    inside("--clearance-fail-mm", "2").assert_outcomes(passed=2)
+    assert inside("--clearance-fail-mm", "-2").ret == pytest.ExitCode.USAGE_ERROR
 
 
 def test_a_bad_case_fails_in_one_line(inside, pytester):
