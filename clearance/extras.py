@@ -22,7 +22,7 @@ LIBRARIES = {
     "report": ("meshcat", "matplotlib"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
-    "view": ("meshcat", "tornado", "umsgpack"),
+    "view": ("meshcat",),
 }
 """The modules that each extra of `pyproject.toml` brings."""
 

@@ -30,6 +30,9 @@ from clearance.report.topics import BELOW, FIRST
 from clearance.report.topics.verdict import badge_text, header
 from clearance.world.rules import DEFAULT
 
+LEVELS = ("below_warn", "below_fail")
+"""Of which the chart shows the times below."""
+
 FINEST = 2000
 """Parts of the time axis that a screen can resolve."""
 
@@ -61,8 +64,10 @@ def page_of(
         Unavailable: meshcat is installed without its viewer.
     """
     summary = content.summary
-    data = _data(summary, replay) | _pairs(summary, replay, curves.pairs)
+    data = _data(replay) | _pairs(summary, replay, curves.pairs)
     data |= _more(curves.more) | _earlier(earlier)
+    least, found = (summary["end"] - summary["start"]) / FINEST, summary["intervals"]
+    data["intervals"] = {level: _bands(found[level], least) for level in LEVELS}
     return render(
         "report.html",
         title=f"{summary['name']}: {badge_text(summary)}",
@@ -70,6 +75,24 @@ def page_of(
         thinned=_thinned(replay),
         columns=[_sections(column, content) for column in FIRST],
         sections=_sections(BELOW, content),
+        data=data,
+        meshcat=_meshcat(),
+    )
+
+
+def replay_page(replay: Replay, section: Section) -> str:
+    """A page that plays a replay, with one section below it.
+
+    Raises:
+        Unavailable: meshcat is installed without its viewer.
+    """
+    data = _data(replay) | {"pairs": [], "curves": None}
+    data["intervals"] = {level: [] for level in LEVELS}
+    return render(
+        "view.html",
+        title=replay.name,
+        thinned="",
+        section=section,
         data=data,
         meshcat=_meshcat(),
     )
@@ -84,17 +107,13 @@ def _sections(topics: Iterable[Topic], content: PageContent) -> list[Section]:
     ]
 
 
-def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
+def _data(replay: Replay) -> dict[str, Any]:
     return {
         "statuses": STATUSES,
         "rules": [asdict(rule) for rule in replay.rules],
         "rule": replay.rule.tolist(),
         "default_rule": DEFAULT,
         "carries": [asdict(carry) for carry in replay.carries],
-        "intervals": {
-            level: _bands(summary["intervals"][level], (summary["end"] - summary["start"]) / FINEST)
-            for level in ("below_warn", "below_fail")
-        },
         "bodies": [
             {
                 "name": body.name,

@@ -10,7 +10,6 @@ from clearance.formats.mesh.mesh_file import mesh_from_bytes
 from clearance.report.glb import glb_of
 from clearance.report.picture import png_of
 from clearance.report.still import MOST_POINTS, as_solids, still_of
-from clearance.view import play
 from tests.made_cases import flying
 from tests.report.browser import chromium, executable
 
@@ -59,14 +58,6 @@ def test_the_page_draws_points(tmp_path):
         assert page.errors == []
     drawn = (np.abs(pixels - STANDING).max(axis=-1) <= 2).sum()
     assert drawn > 1000
-
-
-@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
-def test_the_live_viewer_draws_points():
-    points = "(() => { let n = 0; viewer.scene.traverse(o => { n += o.type === 'Points'; }); return n; })()"
-    with play(cl.check(scanned()).session.replay()) as playback, chromium() as page:
-        page.open(playback.url, f"window.viewer && {points}")
-        assert page.run(points) == 1
 
 
 @pytest.mark.slow

@@ -1,122 +1,61 @@
-"""The live viewer: meshcat holds what the replay holds, and its own controls move it."""
+"""The live viewer: it plays what the replay holds as a report's page does, and leads to the moments to look at."""
 
 from __future__ import annotations
 
-import json
 import re
 import signal
 import subprocess
 import sys
-from dataclasses import replace
 from urllib.error import URLError
 from urllib.request import ProxyHandler, build_opener
 
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.errors import BadSyntax, MissingFile
 from clearance.view import play, show
-from clearance.view.playback import line_tracks
-from tests.report.browser import Page, chromium, executable
+from clearance.view.playback import moments_of
+from tests.report.browser import chromium, executable
+from tests.report.cells import cell
 from tests.report.made import replay_of, write
 from tests.report.records import record, with_contacts
 
 RUN = with_contacts(record())
-WORLD = """(name) => {
-  const scene = viewer.scene; scene.updateMatrixWorld(true); const back =
-  scene.matrixWorld.clone().invert(); const node = viewer.scene_tree.find(name).object; const at =
-  (z) => new MeshCat.THREE.Vector3(0, 0,
-  z).applyMatrix4(node.matrixWorld).applyMatrix4(back).toArray(); return {visible: node.visible,
-  centre: at(0), ends: [at(-0.5), at(0.5)]};
-}"""
 
 
-@pytest.fixture(scope="module")
-def page() -> Page:
-    if executable() is None:
-        pytest.skip("no Chromium is installed")
-    with play(replay_of(RUN)) as playback, chromium() as page:
-        page.open(playback.url, "window.viewer && Object.keys(viewer.gui_controllers).length >= 4")
-        page.wait("viewer.animator.duration > 0")
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_it_plays_the_replay_and_its_links_lead_to_moments():
+    replay = replay_of(RUN)
+    with play(replay) as playback, chromium() as page:
+        page.open(playback.url, "window.clearance")
         page.settle()
-        yield page
+        state = page.run("window.clearance.state()")
+        ends = replay.lines[replay.i_worst].reshape(2, 3)
+        assert state["frame"] == replay.i_worst and np.abs(state["dots"] - ends).max() < 1e-9
+        links = page.run("[...document.querySelectorAll('main li a')].map((a) => a.textContent)")
+        assert links == [text for text, _ in moments_of(replay)]
+        for i, (_, time) in enumerate(moments_of(replay)):
+            page.run(f"document.querySelectorAll('main li a')[{i}].click()")
+            frame = page.run("window.clearance.state().frame")
+            assert replay.times[frame] == pytest.approx(time)
+        assert len(page.run("window.clearance.state().contacts")) == 1
+        assert page.run("document.querySelectorAll('.chart .curve').length") == 4
+        asked = {url for url in page.requests if not url.startswith(("data:", "blob:"))}
+        assert page.errors == [] and asked == {playback.url}
 
 
-def node(page: Page, *path: str) -> dict:
-    return page.run(f"({WORLD})({json.dumps(['meshcat', *path])})")
-
-
-def press(page: Page, start: str) -> None:
-    page.run(f"(() => {{ const all = viewer.gui_controllers;"
-             f"all[Object.keys(all).find((name) => name.startsWith({start!r}))].getValue()"
-             ".call(viewer); })()")  # fmt: skip
-    page.settle()
-
-
-def slide(page: Page, step: int) -> None:
-    page.run(f"void viewer.gui_controllers['step'].setValue({step})")
-    page.settle()
-
-
-def row(step: int) -> dict:
-    return RUN.steps.slice(step, 1).to_pylist()[0]
-
-
-@pytest.mark.parametrize("step", [0, 1, 44, 130, 239])
-def test_the_step_slider_puts_line_and_links_where_the_record_has_them(page, step):
-    slide(page, step)
-    expected = row(step)
-    ends = np.array(
-        [[expected[f"{body}_{axis}"] for axis in "xyz"] for body in ("link", "obstacle")]
-    )
-    line = node(page, "clearance", expected["status"], "line")
-    assert np.abs(np.array(line["ends"]) - ends).max() < 1e-5, "three.js keeps tracks in float32"
-    for i, body in enumerate(RUN.case.robots[0].robot.bodies):
-        drawn = node(page, "links", f"{i} {body.name}")["centre"]
-        assert np.abs(drawn - RUN.motions[0].poses(step, step + 1)[0, i, :3, 3]).max() < 1e-6
-
-
-@pytest.mark.parametrize("status", ["clear", "near", "violated", "contact"])
-def test_only_the_line_in_the_colour_of_the_status_is_visible(page, status):
-    slide(page, RUN.steps["status"].to_pylist().index(status))
-    visible = {
-        s for s in ("clear", "near", "violated", "contact") if node(page, "clearance", s)["visible"]
-    }
-    assert visible == {status}
-
-
-def test_the_button_jumps_to_the_worst_step(page):
-    slide(page, 200)
-    press(page, "worst")
-    expected = RUN.motions[0].poses(RUN.worst_step, RUN.worst_step + 1)[0, 3, :3, 3]
-    assert np.abs(node(page, "links", "3 gripper")["centre"] - expected).max() < 1e-6
-    assert not page.run("viewer.animator.playing")
-
-
-def test_the_button_jumps_to_the_deepest_contact_which_is_drawn_there_only(page):
-    press(page, "deepest")
-    at = [i for i, row in enumerate(RUN.contacts) if row.step == RUN.deepest.step]
-    drawn = [node(page, "contacts", str(i))["visible"] for i in range(len(RUN.contacts))]
-    assert [i for i, seen in enumerate(drawn) if seen] == at
-    slide(page, 0)
-    assert not any(node(page, "contacts", str(i))["visible"] for i in at)
-
-
-def test_it_plays_and_scrubs_with_meshcats_own_controls(page):
-    slide(page, 0)
-    page.run("viewer.animator.play()")
-    page.wait("viewer.animator.time > 0.5")
-    page.run("viewer.animator.pause()")
-    page.run("void viewer.animator.time_scrubber.setValue(3.0)")
-    expected = RUN.motions[0].poses(119, 120)[0, 3, :3, 3]
-    assert np.abs(node(page, "links", "3 gripper")["centre"] - expected).max() < 1e-6
-
-
-def test_the_picture_is_not_blank_and_nothing_failed(page):
-    press(page, "worst")
-    pixels = page.pixels("#meshcat-pane").astype(int)
-    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 200
-    assert [error for error in page.errors if "404" not in error] == [], "meshcat has no favicon"
+def test_moments_are_the_worst_the_first_of_each_kind_pick_ups_and_the_deepest_contact():
+    replay = replay_of(RUN)
+    told, status = dict(moments_of(replay)), RUN.steps["status"].to_pylist()
+    worst, *firsts, deepest = told
+    assert worst == f"worst: 0.000 mm at {RUN.worst.time:.3f} s" and "deepest contact" in deepest
+    assert firsts == ["first near miss", "first violation", "first contact"]
+    found = [told[name] for name in (*firsts, deepest)]
+    steps = [*(status.index(kind) for kind in ("near", "violated", "contact")), RUN.deepest.step]
+    assert found == RUN.motions[0].times[steps].tolist()
+    picked = dict(moments_of(cl.check(cell()).session.replay()))
+    assert picked["right/tool takes part at 2.000 s"] == 2.0
 
 
 @pytest.mark.slow
@@ -140,19 +79,6 @@ def test_a_damaged_replay_is_refused(tmp_path):
     (tmp_path / "replay.npz").write_bytes(b"PK nonsense")
     with pytest.raises(BadSyntax, match="run `clearance check` again"):
         play(tmp_path)
-
-
-def test_the_rod_reaches_from_point_to_point_in_every_direction():
-    from scipy.spatial.transform import Rotation
-
-    rng = np.random.default_rng(7)
-    lines = rng.normal(size=(60, 6))
-    lines[0, 3:] = lines[0, :3] - [0, 0, 2.0]  # straight down
-    lines[1, 3:] = lines[1, :3] + [1e-9, 0, -1.0]  # almost
-    lines[2, 3:] = lines[2, :3]  # contact
-    middles, turns, scales = map(np.array, line_tracks(lines))
-    half = Rotation.from_quat(turns).apply(np.column_stack([0 * scales[:, :2], 0.5 * scales[:, 2]]))
-    assert np.abs(np.column_stack([middles - half, middles + half]) - lines).max() < 3e-9
 
 
 ENDS = {
@@ -183,13 +109,3 @@ def test_the_server_ends_with_the_program(tmp_path, how):
     assert program.wait(timeout=120) == ENDS[how]
     with pytest.raises(URLError):
         ask(url, timeout=120)
-
-
-def test_a_run_that_ends_in_contact_plays(tmp_path):
-    """Each overlap is hidden in the frame after its own, where there is one."""
-    replay = replay_of(RUN)
-    last = len(replay.times) - 1
-    at_the_end = replace(replay, contacts=[replace(one, frame=last) for one in replay.contacts])
-    at_the_end.save(tmp_path / "replay.npz")
-    with play(tmp_path) as playback:
-        assert {contact.frame for contact in playback.replay.contacts} == {last}
