@@ -100,62 +100,56 @@ def _unseen(_: FileStart) -> bool:
     return False
 
 
-_AS_MESH = (
+_MESH = (
     "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 1}}}}]}}"
 )
-_AS_POINTS = "name it in a case file: scene: {{obstacles: [{{name: …, points: {{file: {name}, radius: …}}}}]}}"
-_AS_ROBOT = "name it in a case file: robot: {{urdf: {name}}}"
-_AS_SCENE = "name it in a case file: scene: {name}, beside robot and trajectory"
-_AS_MOTION = "name it in a case file: trajectory: {name}, beside robot and scene"
-_AS_MESSAGE = (
-    "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in .yaml "
-    "or .json"
+_CLOUD = "name it in a case file: scene: {{obstacles: [{{name: …, points: {{file: {name}, radius: …}}}}]}}"
+_MOTION = "name it in a case file: trajectory: {name}, beside robot and scene"
+_MESSAGE = (
+    "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in "
+    ".yaml or .json"
 )
-_MJCF_HINT = (
+_MJCF = (
     "call it .xml and name it in a case file: robot: {{urdf: {name}}} for a robot, scene: {name} for what stands "
     "around one"
 )
-_MESSAGE_KEYS = (
-    "joint_names",
-    "points",
-    "joint_trajectory",
-    "model_id",
-    "trajectory_start",
-    "multi_dof_joint_trajectory",
-    "planned_trajectory",
+_MOTION_KEYS = (
+    *("joint_names", "points", "joint_trajectory", "model_id", "trajectory_start"),
+    *("multi_dof_joint_trajectory", "planned_trajectory"),
 )
 _POSE_KEYS = ("pose", "poses", "transform", "transforms", "child_frame_id")
+_SCENE_KEYS = (
+    *("world", "robot_state", "allowed_collision_matrix", "collision_objects"),
+    *("fixed_frame_transforms", "robot_model_name"),
+)
 
 
 def _mesh(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Format:
-    return Format(name, Kind.MESH, suffixes, f"mesh.{read}", what="a mesh", hint=_AS_MESH, **more)
+    return Format(name, Kind.MESH, suffixes, f"mesh.{read}", what="a mesh", hint=_MESH, **more)
 
 
 def _cloud(name: str, suffixes: tuple[str, ...], read: str, **more: Any) -> Format:
-    return Format(
-        name, Kind.CLOUD, suffixes, f"cloud.{read}", what="a scan", hint=_AS_POINTS, **more
-    )
+    return Format(name, Kind.CLOUD, suffixes, f"cloud.{read}", what="a scan", hint=_CLOUD, **more)
 
 
-def _message(name: str, suffixes: tuple[str, ...], language: str) -> Format:
+def _message(language: str, suffixes: tuple[str, ...]) -> Format:
     """A JointTrajectory in YAML or JSON."""
+    read = f"motion.joint_points:read_{language.lower()}_trajectory"
+    write, name = (
+        f"motion.trajectory_writer:{language.lower()}_text",
+        f"JointTrajectory in {language}",
+    )
     return Format(
-        name,
-        Kind.TRAJECTORY,
-        suffixes,
-        f"motion.joint_points:read_{language}_trajectory",
-        f"motion.trajectory_writer:{language}_text",
-        sniff.is_joint_trajectory,
-        _MESSAGE_KEYS,
+        *(name, Kind.TRAJECTORY, suffixes, read, write, sniff.is_joint_trajectory, _MOTION_KEYS),
         what="a ROS JointTrajectory",
-        hint=_AS_MESSAGE,
+        hint=_MESSAGE,
     )
 
 
-def _stamped(name: str, suffixes: tuple[str, ...], language: str) -> Format:
+def _stamped(language: str, suffixes: tuple[str, ...]) -> Format:
     """Stamped poses in YAML or JSON."""
-    read = f"motion.pose_messages:read_{language}_poses"
-    write = f"motion.pose_writer:{language}_text"
+    read = f"motion.pose_messages:read_{language.lower()}_poses"
+    write, name = f"motion.pose_writer:{language.lower()}_text", f"stamped poses in {language}"
     return Format(name, Kind.POSES, suffixes, read, write, _unseen, _POSE_KEYS)
 
 
@@ -171,147 +165,44 @@ FORMATS = (
     Format("glTF", Kind.MESH, (".gltf",), what="a mesh", hint="export it as .glb, one binary file"),
     _cloud("PCD", (".pcd",), "pcd_file:read_pcd"),
     _cloud("points of a PLY", (".ply",), "points:read_ply_points", sniff=_unseen),
-    _cloud(
-        "points as text",
-        (".csv", ".xyz", ".txt", ".asc"),
-        "points_text:read_points_text",
-        sniff=_unseen,
-    ),
-    Format(
-        "URDF",
-        Kind.ROBOT,
-        (".urdf", ".xml", ANY),
-        "robot.urdf.robot:read_urdf",
-        sniff=sniff.is_urdf,
-        what="a URDF robot",
-        hint=f"{_AS_ROBOT}, beside scene and trajectory; or let `clearance new` write one",
-    ),
-    Format(
-        "xacro",
-        Kind.ROBOT,
-        (".xacro", ANY),
-        "robot.urdf.robot:read_urdf",
-        sniff=sniff.is_xacro,
-        extra="ros",
-        what="a xacro robot",
-        hint="name it in a case file: robot: {{urdf: {name}, xacro: true}}, which evaluates the Python in it",
-    ),
-    Format(
-        "MJCF robot",
-        Kind.ROBOT,
-        (".mjcf", ".xml"),
-        "robot.mjcf.robot:read_mjcf",
-        sniff=sniff.is_mjcf,
-        extra="mujoco",
-        what="a MuJoCo model",
-        hint=_MJCF_HINT,
-    ),
-    Format(
-        "SRDF",
-        Kind.SRDF,
-        (".srdf",),
-        sniff=sniff.is_srdf,
-        what="a MoveIt SRDF",
-        hint="name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf",
-    ),
-    Format(
-        "SDF",
-        Kind.SCENE,
-        (".sdf", ".world"),
-        "scene.sdf.scene:read_sdf",
-        sniff=sniff.is_sdf,
-        what="an SDF world or model",
-        hint="call it .sdf and name it in a case file: scene: {name}, beside robot (as URDF) and trajectory",
-    ),
-    Format(
-        "MJCF",
-        Kind.SCENE,
-        (".mjcf", ".xml"),
-        "scene.mjcf:read_mjcf_scene",
-        sniff=sniff.is_mjcf,
-        extra="mujoco",
-        what="a MuJoCo model",
-        hint=_MJCF_HINT,
-    ),
-    Format(
-        "MoveIt .scene",
-        Kind.SCENE,
-        (".scene",),
-        "scene.moveit.scene_file:read_moveit_scene",
-        sniff=sniff.is_moveit_scene,
-        what="a MoveIt scene",
-        hint="call it .scene and name it in a case file: scene: {name}, beside robot and trajectory",
-    ),
-    Format(
-        "CSV poses",
-        Kind.POSES,
-        (".csv", ANY),
-        "motion.pose_table_file:read_csv_poses",
-        "motion.pose_writer:csv_text",
-        sniff.is_pose_table,
-        left_to=Kind.TRAJECTORY,
-        what="a table of poses",
-        hint="name it in a case file: moves: {name}, beside an obstacle's shape",
-    ),
-    Format(
-        "CSV",
-        Kind.TRAJECTORY,
-        (".csv", ANY),
-        "motion.trajectory_csv:read_csv",
-        "motion.trajectory_writer:csv_text",
-        sniff.is_table,
-        left_to=Kind.POSES,
-        what="a table",
-        hint=_AS_MOTION,
-    ),
-    _message("JointTrajectory in JSON", (".json",), "json"),
-    _message("JointTrajectory in YAML", (".yaml", ".yml"), "yaml"),
-    Format(
-        "ROS bag",
-        Kind.TRAJECTORY,
-        BAGS,
-        "motion.rosbag_file:read_bag",
-        extra="ros",
-        what="a ROS bag",
-        hint=_AS_MOTION,
-    ),
-    _stamped("stamped poses in JSON", (".json",), "json"),
-    _stamped("stamped poses in YAML", (".yaml", ".yml"), "yaml"),
-    Format(
-        "MoveIt PlanningScene",
-        Kind.SCENE,
-        (".yaml", ".yml", ANY),
-        "scene.scene_yaml:read_scene_yaml",
-        sniff=sniff.is_planning_scene,
-        keys=(
-            "world",
-            "robot_state",
-            "allowed_collision_matrix",
-            "collision_objects",
-            "fixed_frame_transforms",
-            "robot_model_name",
-        ),
-        what="a MoveIt planning scene",
-        hint=_AS_SCENE,
-    ),
-    Format(
-        "YAML",
-        Kind.SCENE,
-        (".yaml", ".yml", ANY),
-        "scene.scene_yaml:read_scene_yaml",
-        "conversion.scene:converted_scene",
-        _unseen,
-        ("obstacles",),
-    ),
-    Format(
-        "case file",
-        Kind.CASE,
-        (".yaml", ANY),
-        sniff=sniff.is_case,
-        what="a case file",
-        hint="`clearance check {name}` checks it; what is asked for is one of the files that it names",
-    ),
-)
+    _cloud("points as text", (".csv", ".xyz", ".txt", ".asc"), "points_text:read_points_text", sniff=_unseen),
+    Format("URDF", Kind.ROBOT, (".urdf", ".xml", ANY), "robot.urdf.robot:read_urdf", sniff=sniff.is_urdf,
+           what="a URDF robot", hint="name it in a case file: robot: {{urdf: {name}}}, beside scene and "
+           "trajectory; or let `clearance new` write one"),
+    Format("xacro", Kind.ROBOT, (".xacro", ANY), "robot.urdf.robot:read_urdf", sniff=sniff.is_xacro, extra="ros",
+           what="a xacro robot", hint="name it in a case file: robot: {{urdf: {name}, xacro: true}}, which "
+           "evaluates the Python in it"),
+    Format("MJCF robot", Kind.ROBOT, (".mjcf", ".xml"), "robot.mjcf.robot:read_mjcf", sniff=sniff.is_mjcf,
+           extra="mujoco", what="a MuJoCo model", hint=_MJCF),
+    Format("SRDF", Kind.SRDF, (".srdf",), sniff=sniff.is_srdf, what="a MoveIt SRDF",
+           hint="name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf"),
+    Format("SDF", Kind.SCENE, (".sdf", ".world"), "scene.sdf.scene:read_sdf", sniff=sniff.is_sdf,
+           what="an SDF world or model", hint="call it .sdf and name it in a case file: scene: {name}, beside "
+           "robot (as URDF) and trajectory"),
+    Format("MJCF", Kind.SCENE, (".mjcf", ".xml"), "scene.mjcf:read_mjcf_scene", sniff=sniff.is_mjcf,
+           extra="mujoco", what="a MuJoCo model", hint=_MJCF),
+    Format("MoveIt .scene", Kind.SCENE, (".scene",), "scene.moveit.scene_file:read_moveit_scene",
+           sniff=sniff.is_moveit_scene, what="a MoveIt scene",
+           hint="call it .scene and name it in a case file: scene: {name}, beside robot and trajectory"),
+    Format("CSV poses", Kind.POSES, (".csv", ANY), "motion.pose_table_file:read_csv_poses",
+           "motion.pose_writer:csv_text", sniff.is_pose_table, left_to=Kind.TRAJECTORY, what="a table of poses",
+           hint="name it in a case file: moves: {name}, beside an obstacle's shape"),
+    Format("CSV", Kind.TRAJECTORY, (".csv", ANY), "motion.trajectory_csv:read_csv",
+           "motion.trajectory_writer:csv_text", sniff.is_table, left_to=Kind.POSES, what="a table", hint=_MOTION),
+    _message("JSON", (".json",)),
+    _message("YAML", (".yaml", ".yml")),
+    Format("ROS bag", Kind.TRAJECTORY, BAGS, "motion.rosbag_file:read_bag", extra="ros", what="a ROS bag",
+           hint=_MOTION),
+    _stamped("JSON", (".json",)),
+    _stamped("YAML", (".yaml", ".yml")),
+    Format("MoveIt PlanningScene", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
+           sniff=sniff.is_planning_scene, keys=_SCENE_KEYS, what="a MoveIt planning scene",
+           hint="name it in a case file: scene: {name}, beside robot and trajectory"),
+    Format("YAML", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
+           "conversion.scene:converted_scene", _unseen, ("obstacles",)),
+    Format("case file", Kind.CASE, (".yaml", ANY), sniff=sniff.is_case, what="a case file",
+           hint="`clearance check {name}` checks it; what is asked for is one of the files that it names"),
+)  # fmt: skip
 
 
 def rows_of(kind: Kind) -> list[Format]:
