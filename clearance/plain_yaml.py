@@ -1,22 +1,30 @@
-"""YAML text to plain data (YAML 1.2: `1e-3` is a number, `no` is text), in time and memory that follow its length.
+"""YAML text to plain data, in time and memory that follow its length: the one reader of YAML.
 
-What an alias repeats is counted wherever it is met, before anything is made of it: eight lines can otherwise ask
-for 10^8 values. Not for: which keys are valid, nor messages as ROS prints them (`formats.message.documents`).
+It is read event by event. An alias means the very same data, and what it repeats is counted before anything is
+made of it: eight lines can otherwise ask for 10^8 values. `plain_data` reads our own files (YAML 1.2: `1e-3` is a
+number, `no` is text); `events_to_data` takes other rules of what a value is, as for messages of ROS
+(`formats.message.documents`). Not for: which keys are valid.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
-from clearance.errors import BadSyntax, DuplicateName
-
-if TYPE_CHECKING:
-    from ruamel.yaml import YAML
-    from ruamel.yaml.nodes import Node
+from clearance.errors import BadSyntax, ClearanceError, DuplicateName, at
 
 MOST_REPEATED = 100_000
 """Values that a file may have beyond one for each of its bytes, aliases followed."""
+
+DEEPEST = 100
+"""Levels of lists and mappings in a file of ours."""
+
+_MERGED = object()
+"""The key `<<`, under which a mapping takes what others have."""
+
+_PLAIN = ("tag:yaml.org,2002:map", "tag:yaml.org,2002:seq")
 
 
 def plain_data(data: bytes) -> object:
@@ -26,36 +34,235 @@ def plain_data(data: bytes) -> object:
         BadSyntax: not YAML, not UTF-8, more than one document, or aliases that repeat too much; with the line.
         DuplicateName: a key twice in a mapping.
     """
-    from ruamel.yaml.constructor import DuplicateKeyError
+    text = text_of(data, "a YAML file is needed")
+    documents = events_to_data(text, PlainValues(MOST_REPEATED + len(text)))
+    if len(documents) > 1:
+        raise BadSyntax("not YAML: there is another document", valid="one document")
+    return documents[0] if documents else None
 
-    text = _text(data)
+
+def parse_yaml(data: bytes, shown: str) -> object:
+    """The same; `shown` is the file's name in errors."""
+    with at(shown):
+        return plain_data(data)
+
+
+def text_of(data: bytes, valid: str = "") -> str:
+    """The text in a file.
+
+    Raises:
+        BadSyntax: it is not UTF-8.
+    """
     try:
-        if "*" in text:
-            _refuse_repetition(_reader().compose(text), len(text))
-        return _reader().load(text)
-    except BadSyntax:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise BadSyntax(f"byte {error.start} is not UTF-8 text", valid=valid) from None
+
+
+def events_to_data(text: str, values: PlainValues) -> list[Any]:
+    """The documents of a YAML text.
+
+    Args:
+        values: what becomes of its scalars.
+
+    Raises:
+        BadSyntax, DuplicateName: with the line.
+    """
+    builder = _Builder(values)
+    with _as_ours():
+        for event in values.reader.parse(text):
+            builder.take(event)
+    return builder.documents
+
+
+@contextmanager
+def _as_ours() -> Iterator[None]:
+    """Whatever a parser that is not ours dies of, the file brought it."""
+    try:
+        yield
+    except ClearanceError:
         raise
-    except DuplicateKeyError as error:
-        problem = (error.problem or "a key twice").split(" with value")[0]
-        raise DuplicateName(problem, where=_line(error), valid="each key once") from None
-    except RecursionError:
-        raise BadSyntax("not YAML: too deeply nested") from None
-    except Exception as error:  # whatever a parser that is not ours dies of, the file brought it
+    except Exception as error:
+        mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or str(error) or type(error).__name__
-        raise BadSyntax(f"not YAML: {problem}", where=_line(error)) from None
+        raise BadSyntax(f"not YAML: {problem}", where=_line(mark)) from None
 
 
-def _reader() -> YAML:
-    """A reader of plain data; a day that does not exist stays the text that it is, for who knows its field."""
-    from ruamel.yaml import YAML
+class PlainValues:
+    """Numbers, truths, days and text as YAML 1.2 has them.
 
-    reader = YAML(typ="safe", pure=True)
-    reader.Constructor = _constructor()
-    return reader
+    Args:
+        most: values that a list or mapping may hold, aliases followed. deepest: levels of them.
+    """
+
+    def __init__(self, most: float, deepest: int = DEEPEST) -> None:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.nodes import ScalarNode
+
+        self.most, self.deepest = most, deepest
+        self.reader = YAML(typ="safe", pure=True)
+        self.reader.Constructor = _constructor()
+        self._node = ScalarNode
+        self._known: dict[tuple[Any, ...], Any] = {}
+
+    def value(self, event: Any) -> Any:
+        """What a scalar means."""
+        asked = event.value, event.implicit, event.tag
+        if asked not in self._known:
+            self._known[asked] = self._new(event)
+        return self._known[asked]
+
+    def _new(self, event: Any) -> Any:
+        tag = event.tag
+        if tag is None or tag == "!":
+            tag = self.reader.resolver.resolve(self._node, event.value, event.implicit)
+        node = self._node(tag, event.value, event.start_mark, event.end_mark, style=event.style)
+        return self.reader.constructor.construct_non_recursive_object(node)
+
+    def key(self, event: Any) -> Any:
+        """What a scalar means as a key."""
+        is_merge = event.value == "<<" and event.implicit[0] and event.tag is None
+        return _MERGED if is_merge else self.value(event)
+
+    def mapping(self, event: Any) -> dict[Any, Any]:
+        """An empty mapping that begins here."""
+        return {}
+
+
+class _OpenNode:
+    """A list or mapping that has not ended, and how many values it has so far, aliases followed."""
+
+    def __init__(self, made: list[Any] | dict[Any, Any], event: Any) -> None:
+        self.made, self.anchor, self.mark = made, event.anchor, event.start_mark
+        self.key: list[Any] = []
+        self.merged: list[dict[Any, Any]] = []
+        self.n_values = 1
+
+
+class _Anchored(NamedTuple):
+    value: Any
+    n_values: int
+
+
+class _Builder:
+    """Takes the events of a YAML parser one by one."""
+
+    def __init__(self, values: PlainValues) -> None:
+        self._values = values
+        self.documents: list[Any] = []
+        self._open: list[_OpenNode] = []
+        self._anchors: dict[str, _Anchored] = {}
+
+    def take(self, event: Any) -> None:
+        """Adds what an event says.
+
+        Raises:
+            BadSyntax, DuplicateName: with the line.
+        """
+        kind = type(event).__name__
+        if kind == "ScalarEvent":
+            is_key = self._waits_for_key()
+            value = self._values.key(event) if is_key else self._values.value(event)
+            self._put(_Anchored(value, 1), event.start_mark, event.anchor)
+        elif kind == "MappingStartEvent":
+            self._begin(event, self._values.mapping(event))
+        elif kind == "SequenceStartEvent":
+            self._begin(event, [])
+        elif kind in ("MappingEndEvent", "SequenceEndEvent"):
+            self._end()
+        elif kind == "AliasEvent":
+            self._put(self._repeated(event), event.start_mark, None)
+        elif kind == "DocumentStartEvent":
+            self._anchors = {}
+
+    def _waits_for_key(self) -> bool:
+        return bool(self._open) and isinstance(self._open[-1].made, dict) and not self._open[-1].key
+
+    def _begin(self, event: Any, made: list[Any] | dict[Any, Any]) -> None:
+        if event.tag is not None and event.tag not in _PLAIN:
+            raise not_plain(event)
+        if len(self._open) >= self._values.deepest:
+            levels = f"{self._values.deepest} levels or fewer"
+            raise BadSyntax("nested too deep", where=_line(event.start_mark), valid=levels)
+        self._open.append(_OpenNode(made, event))
+
+    def _end(self) -> None:
+        ended = self._open.pop()
+        if ended.n_values > self._values.most:
+            raise BadSyntax(
+                "the aliases repeat too much",
+                where=_line(ended.mark),
+                valid=f"{self._values.most:,} values at most",
+            )
+        made = ended.made
+        if ended.merged and isinstance(made, dict):
+            own, made = made, {}
+            for other in (*reversed(ended.merged), own):
+                made |= other
+        self._put(_Anchored(made, ended.n_values), ended.mark, ended.anchor)
+
+    def _repeated(self, event: Any) -> _Anchored:
+        """What an alias means."""
+        if any(node.anchor == event.anchor for node in self._open):
+            raise BadSyntax(
+                "an alias stands in what it repeats",
+                where=_line(event.start_mark),
+                valid="plain lists and mappings",
+            )
+        if event.anchor not in self._anchors:
+            raise BadSyntax(
+                f"*{event.anchor} refers to nothing before it", where=_line(event.start_mark)
+            )
+        return self._anchors[event.anchor]
+
+    def _put(self, part: _Anchored, mark: Any, anchor: str | None) -> None:
+        if anchor is not None:
+            self._anchors[anchor] = part
+        if not self._open:
+            self.documents.append(part.value)
+            return
+        parent = self._open[-1]
+        parent.n_values += part.n_values
+        if isinstance(parent.made, list):
+            parent.made.append(part.value)
+        elif not parent.key:
+            self._put_key(parent, part.value, mark)
+        elif (key := parent.key.pop()) is _MERGED:
+            parent.merged += _mappings(part.value, mark)
+        else:
+            parent.made[key] = part.value
+
+    def _put_key(self, parent: _OpenNode, key: Any, mark: Any) -> None:
+        if isinstance(key, list | dict):
+            raise BadSyntax("a key is not plain text", where=_line(mark))
+        if key in parent.made or (key is _MERGED and parent.merged):
+            shown = "<<" if key is _MERGED else f"{key!r:.60}"
+            raise DuplicateName(
+                f"key {shown} is there twice", where=_line(mark), valid="each key once"
+            )
+        parent.key.append(key)
+
+
+def _mappings(value: Any, mark: Any) -> list[dict[Any, Any]]:
+    """What stands under `<<`: the first goes before the others."""
+    given = value if isinstance(value, list) else [value]
+    if not all(isinstance(one, dict) for one in given):
+        raise BadSyntax("<< is not a mapping, or a list of them", where=_line(mark))
+    return given
+
+
+def not_plain(event: Any) -> BadSyntax:
+    """The error for a tag that asks for something else than plain data."""
+    return BadSyntax(
+        f"the tag {str(event.tag)!r:.60} makes something else than plain data",
+        where=_line(event.start_mark),
+        valid="lists, mappings, numbers and text",
+    )
 
 
 @cache
 def _constructor() -> type:
+    """Makes scalars; a day that does not exist stays the text that it is, for who knows its field."""
     from ruamel.yaml.constructor import SafeConstructor
 
     class Constructor(SafeConstructor):
@@ -71,45 +278,5 @@ def _constructor() -> type:
     return Constructor
 
 
-def _text(data: bytes) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BadSyntax(
-            f"byte {error.start} is not UTF-8 text", valid="a YAML file is needed"
-        ) from None
-
-
-def _refuse_repetition(root: Node | None, n_letters: int) -> None:
-    """Nothing, if what the aliases repeat is not much more than the file, and none holds itself."""
-    most = MOST_REPEATED + n_letters
-    sizes: dict[int, int] = {}
-    begun: set[int] = set()
-    pending = [] if root is None else [(root, False)]
-    while pending:
-        node, has_sizes = pending.pop()
-        if has_sizes:
-            sizes[id(node)] = 1 + sum(sizes[id(part)] for part in _parts(node))
-            if sizes[id(node)] > most:
-                raise _at(node, "the aliases repeat too much", f"{most:,} values at most")
-        elif id(node) not in sizes:
-            if id(node) in begun:
-                raise _at(node, "an alias stands in what it repeats", "plain lists and mappings")
-            begun.add(id(node))
-            pending += [(node, True), *((part, False) for part in _parts(node))]
-
-
-def _parts(node: Node) -> list[Node]:
-    """What a list or mapping holds, keys and values alike."""
-    if not isinstance(node.value, list):
-        return []
-    return [part for one in node.value for part in (one if isinstance(one, tuple) else (one,))]
-
-
-def _at(node: Node, problem: str, valid: str) -> BadSyntax:
-    return BadSyntax(problem, where=f"line {node.start_mark.line + 1}", valid=valid)
-
-
-def _line(error: Exception) -> str:
-    mark = getattr(error, "problem_mark", None)
+def _line(mark: Any) -> str:
     return "" if mark is None else f"line {mark.line + 1}"

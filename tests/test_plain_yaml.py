@@ -63,6 +63,18 @@ def test_what_no_plain_data_is_made_of_is_refused_in_one_line(text):
 def test_a_key_twice_is_refused_with_its_line():
     with pytest.raises(DuplicateName, match="line 2: "):
         plain_data(b"a: 1\na: 2")
+    with pytest.raises(DuplicateName, match="key << is there twice"):
+        plain_data(b"{<<: {a: 1}, <<: {b: 2}}")
+
+
+def test_what_a_mapping_takes_gives_way_to_its_own_and_the_first_goes_before():
+    text = b"a: &a {x: 1, y: 1}\nb: &b {y: 2, z: 2}\nc: {<<: [*a, *b], x: 3}"
+    assert plain_data(text)["c"] == {"x": 3, "y": 1, "z": 2}
+
+
+def test_lists_in_lists_without_end_are_refused():
+    with pytest.raises(BadSyntax, match="nested too deep; 100 levels or fewer"):
+        plain_data(b"[" * 101 + b"]" * 101)
 
 
 def test_every_file_of_ours_is_bounded(tmp_path):

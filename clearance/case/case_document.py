@@ -13,7 +13,7 @@ from clearance.formats.scene.formats import read_scene, with_own_words
 from clearance.formats.scene.request import SceneContent, SceneRequest, includes_of
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.strict_model import validated
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 
 _NOTHING = SceneContent(None)
 """Of a scene that is in the case file itself."""

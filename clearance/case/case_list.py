@@ -7,7 +7,7 @@ from typing import Any
 
 from clearance.errors import BadInput, MissingFile
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 
 CASES = "cases"
 """The key of a file that lists cases, by patterns seen from its folder."""

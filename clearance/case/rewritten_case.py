@@ -13,7 +13,7 @@ from typing import Any
 
 from clearance.errors import BadInput
 from clearance.formats.files.input_files import PYBULLET_DATA, path_from
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 
 Node = dict[str, Any]
 """A mapping of a case file, plain or with its comments."""

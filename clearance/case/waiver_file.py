@@ -14,7 +14,7 @@ from clearance.errors import BadInput, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.limits import TwoPatterns
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 from clearance.world.case import Case
 from clearance.world.waiver import Waiver
 

@@ -230,7 +230,7 @@ class _Files:
 
     @property
     def _scene_request(self) -> SceneRequest:
-        from clearance.formats.text.yaml_file import parse_yaml
+        from clearance.plain_yaml import parse_yaml
 
         raw = parse_yaml(self.read.read(self.file), self.file.name)
         assert isinstance(raw, dict)

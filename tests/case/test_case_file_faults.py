@@ -104,7 +104,7 @@ OF_ITS_FILES = [
     (CASE + "allow: [[base, post], [base, pots]]\n", UnknownObstacle, "allow[1]: unknown obstacle 'pots'"),
     (CASE + "allow: [['arm_*', post]]\n", UnknownLink, "no link matches 'arm_*'"),
     (CASE + "allow: [[post, bse]]\n", UnknownLink, "allow[0]: unknown link 'bse'; did you mean 'base'?"),
-    (CASE + "name: again\n", DuplicateName, 'line 10: found duplicate key "name"'),
+    (CASE + "name: again\n", DuplicateName, "line 10: key 'name' is there twice"),
     (CASE + "  - [", BadSyntax, "case.yaml: line"),
     ("a: 1\n---\nb: 2\n", BadSyntax, "another document"),
     ("a: !!python/object:os.system x", BadSyntax, "line 1: not YAML"),

@@ -7,8 +7,8 @@ from clearance.formats.motion.trajectory_file import parse_trajectory
 from clearance.formats.robot.urdf.elements import parse_document
 from clearance.formats.schema.obstacle import Obstacle
 from clearance.formats.schema.strict_model import validated
-from clearance.formats.text.yaml_file import parse_yaml
 from clearance.geometry.pose import pose_from_quaternion
+from clearance.plain_yaml import parse_yaml
 from clearance.world.names import checked_name
 from clearance.world.rules import matches
 

@@ -12,8 +12,8 @@ from ruamel.yaml import YAML
 from clearance import load_case
 from clearance.cli import run
 from clearance.formats.files.input_files import path_from
-from clearance.formats.text.yaml_file import parse_yaml
 from clearance.formats.text.yaml_text import flow
+from clearance.plain_yaml import parse_yaml
 from tests.formats.making import CASE, CUBE, PATH, cube_stl
 from tests.formats.making_case import TWO_JOINTS
 from tests.formats.making_messages import ROS2

@@ -36,7 +36,7 @@ from clearance.formats.schema.tolerance import (
     checked_angle,
     checked_offset,
 )
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 from clearance.world.budget import (
     Budget,
     JointTolerance,

@@ -27,7 +27,7 @@ from clearance.errors import (
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.tolerance import Tolerance, checked_angle, checked_offset
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 from clearance.world.budget import Budget, PlacementTolerance
 from clearance.world.case import Case
 

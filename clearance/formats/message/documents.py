@@ -1,20 +1,22 @@
 """YAML and JSON dumps of messages to plain data, which remembers the line of each mapping.
 
-YAML is read event by event: numbers are those of JSON and YAML 1.2, tags are refused, an alias means the very same
-data, so that a small file cannot ask for much; nothing is made but lists, mappings, text and numbers. Not for:
-case files (`yaml_file`), nor which messages there are (`joint_messages`).
+Numbers are those of JSON and YAML 1.2, tags are refused, an alias means the very same data, so that a small file
+cannot ask for much; nothing is made but lists, mappings, text and numbers. Not for: reading YAML (`plain_yaml`),
+nor which messages there are (`joint_messages`).
 """
 
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadSyntax, ClearanceError, DuplicateName
+from clearance.errors import BadSyntax, DuplicateName
+from clearance.plain_yaml import PlainValues, events_to_data, not_plain, text_of
 
 MOST_YAML = 16_000_000
 """[bytes] Read in some 45 s: 25,000 points of 7 joints with velocities."""
@@ -45,22 +47,11 @@ def yaml_documents(data: bytes, factors: Mapping[str, float] | None = None) -> l
     Raises:
         BadSyntax: not YAML, with a tag, too long or too deep. DuplicateName: a key twice.
     """
-    from ruamel.yaml import YAML
-
     _refuse_long(data, MOST_YAML)
-    text = _text(data)
+    text = text_of(data)
     _refuse_deep_brackets(data)
-    builder = _Builder(factors or {})
-    try:
-        for event in YAML(typ="safe", pure=True).parse(text):
-            builder.take(event)
-    except ClearanceError:
-        raise
-    except Exception as error:  # whatever a parser that is not ours dies of, the file brought it
-        mark = getattr(error, "problem_mark", None)
-        problem = getattr(error, "problem", None) or str(error) or type(error).__name__
-        raise BadSyntax(f"not YAML: {problem}", where=_line(mark)) from None
-    return [document for document in builder.documents if document not in (None, "")]
+    found = events_to_data(text, _MessageValues(factors or {}))
+    return [document for document in found if document not in (None, "")]
 
 
 def json_documents(data: bytes) -> list[Any]:
@@ -70,7 +61,7 @@ def json_documents(data: bytes) -> list[Any]:
         BadSyntax: not JSON, too long or too deep. DuplicateName: a key twice.
     """
     _refuse_long(data, MOST_JSON)
-    text = _text(data)
+    text = text_of(data)
     _refuse_deep_brackets(data)
     decoder = json.JSONDecoder(object_pairs_hook=_fields, parse_int=_number)
     documents, begin = [], _end_of_space(text, 0)
@@ -84,92 +75,32 @@ def json_documents(data: bytes) -> list[Any]:
     return documents
 
 
-class _OpenNode(NamedTuple):
-    """A list or mapping that has not ended; `key` holds the key that waits for its value, or nothing."""
-
-    made: list[Any] | Fields
-    anchor: str | None
-    key: list[str]
-
-
-class _Builder:
-    """Takes the events of a YAML parser one by one."""
+class _MessageValues(PlainValues):
+    """Numbers of JSON and YAML 1.2, and text; truths stay text, for who knows the field."""
 
     def __init__(self, factors: Mapping[str, float]) -> None:
+        super().__init__(math.inf, DEPTH)  # who goes through a message counts what it repeats
         self._factors = factors
-        self.documents: list[Any] = []
-        self._open: list[_OpenNode] = []
-        self._anchors: dict[str, Any] = {}
 
-    def take(self, event: Any) -> None:
-        """Adds what an event says.
+    def value(self, event: Any) -> Any:
+        factor = self._factor(event)
+        value = _plain(event.value) if event.implicit[0] or factor else event.value
+        return value * factor if factor is not None and isinstance(value, int | float) else value
 
-        Raises:
-            BadSyntax, DuplicateName: with the line.
-        """
-        kind = type(event).__name__
-        if kind == "ScalarEvent":
-            self._take_scalar(event)
-        elif kind in ("MappingStartEvent", "SequenceStartEvent"):
-            self._begin(event, Fields() if kind == "MappingStartEvent" else [])
-        elif kind in ("MappingEndEvent", "SequenceEndEvent"):
-            ended = self._open.pop()
-            self._put(ended.made, event, ended.anchor)
-        elif kind == "AliasEvent":
-            if event.anchor not in self._anchors:
-                raise BadSyntax(
-                    f"*{event.anchor} refers to nothing before it", where=_line(event.start_mark)
-                )
-            self._put(self._anchors[event.anchor], event, None)
-        elif kind == "DocumentStartEvent":
-            self._anchors = {}
+    def key(self, event: Any) -> str:
+        self._factor(event)
+        return str(event.value)
 
-    def _begin(self, event: Any, made: list[Any] | Fields) -> None:
-        self._refuse_tag(event)
-        if isinstance(made, Fields):
-            made.line = event.start_mark.line + 1
-        if len(self._open) >= DEPTH:
-            raise BadSyntax("nested too deep", where=_line(event.start_mark), valid=_LEVELS)
-        self._open.append(_OpenNode(made, event.anchor, []))
+    def mapping(self, event: Any) -> Fields:
+        made = Fields()
+        made.line = event.start_mark.line + 1
+        return made
 
-    def _take_scalar(self, event: Any) -> None:
+    def _factor(self, event: Any) -> float | None:
         factor = self._factors.get(str(event.tag))
-        if factor is None:
-            self._refuse_tag(event)
-        parent = self._open[-1] if self._open else None
-        if parent is not None and isinstance(parent.made, Fields) and not parent.key:
-            if event.value in parent.made:
-                raise DuplicateName(
-                    f"key {event.value!r:.60} is there twice", where=_line(event.start_mark)
-                )
-            parent.key.append(event.value)
-        else:
-            value = _plain(event.value) if event.implicit[0] or factor else event.value
-            if factor is not None and isinstance(value, int | float):
-                value *= factor
-            self._put(value, event, event.anchor)
-
-    def _put(self, value: Any, event: Any, anchor: str | None) -> None:
-        if anchor is not None:
-            self._anchors[anchor] = value
-        if not self._open:
-            self.documents.append(value)
-            return
-        parent = self._open[-1]
-        if isinstance(parent.made, list):
-            parent.made.append(value)
-        elif parent.key:
-            parent.made[parent.key.pop()] = value
-        else:
-            raise BadSyntax("a key is not plain text", where=_line(event.start_mark))
-
-    def _refuse_tag(self, event: Any) -> None:
-        if event.tag is not None:
-            raise BadSyntax(
-                f"the tag {str(event.tag)!r:.60} makes something else than plain data",
-                where=_line(event.start_mark),
-                valid="lists, mappings, numbers and text",
-            )
+        if factor is None and event.tag is not None:
+            raise not_plain(event)
+        return factor
 
 
 def told(value: object) -> str:
@@ -203,10 +134,6 @@ def _fields(pairs: list[tuple[str, Any]]) -> Fields:
     return made
 
 
-def _line(mark: Any) -> str:
-    return "" if mark is None else f"line {mark.line + 1}"
-
-
 def _end_of_space(text: str, begin: int) -> int:
     found = re.compile(r"\s*").match(text, begin)
     return found.end() if found else begin
@@ -220,13 +147,6 @@ def _refuse_long(data: bytes, most: int) -> None:
         raise BadSyntax(
             f"the file has more than {most:,} bytes", valid="a longer trajectory goes as CSV"
         )
-
-
-def _text(data: bytes) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise BadSyntax(f"byte {error.start} is not UTF-8 text") from None
 
 
 def _refuse_deep_brackets(data: bytes) -> None:

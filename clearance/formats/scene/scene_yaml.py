@@ -5,7 +5,7 @@ from __future__ import annotations
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.moveit.planning_scene import is_planning_scene, planning_scene
 from clearance.formats.scene.request import SceneContent, SceneRequest
-from clearance.formats.text.yaml_file import parse_yaml
+from clearance.plain_yaml import parse_yaml
 
 
 def read_scene_yaml(asked: SceneRequest) -> SceneContent:

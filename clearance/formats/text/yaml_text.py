@@ -1,4 +1,4 @@
-"""Plain data to YAML text on one line, which `yaml_file` reads back. Not for: comments (`new_case.text`)."""
+"""Plain data to YAML text on one line, which `plain_yaml` reads back. Not for: comments (`new_case.text`)."""
 
 from __future__ import annotations
 

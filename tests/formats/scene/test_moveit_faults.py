@@ -12,7 +12,7 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
 @pytest.mark.parametrize(
     ("document", "says"),
     [
-        (OBJECT % "id: b", "cell.yaml: line 1: found duplicate key"),
+        (OBJECT % "id: b", "cell.yaml: line 1: key 'id' is there twice"),
         ("world: {collision_objects: [1]}", "collision_objects[0]: 1 is given; a mapping"),
         (OBJECT % "operation: 0", "'a': it has no shape"),
         (OBJECT % f"operation: 1, {SPHERE}", "'a': operation: 1 is given; ADD (0)"),
