@@ -25,7 +25,6 @@ from clearance.errors import (
     NotFinite,
 )
 from clearance.formats.files.input_files import SHORT
-from clearance.formats.table.plain_table import plain_numbers
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -184,9 +183,6 @@ def columns_of(
     Raises:
         BadShape, BadSyntax, NotFinite: with the line in the file.
     """
-    plain = _plain(table, n_bytes, len(names))
-    if plain is not None:
-        return [plain.take([names.index(name) for name in part], axis=1) for part in parts]
     wanted = list(dict.fromkeys(name for part in parts for name in part))
     # a cell ends with a comma, and one that is wanted has a digit; what is not filled takes no memory
     most = n_bytes // (len(names) + len(wanted)) + 2
@@ -206,16 +202,6 @@ def columns_of(
         )  # gives the rest back, without a copy
     _refuse_not_finite(found, parts, names, table)
     return found
-
-
-def _plain(table: TextTable, n_bytes: int, n_columns: int) -> np.ndarray | None:
-    """(n, `n_columns`) all numbers of a short table that holds nothing else; None of others, or without a row."""
-    if n_bytes > SHORT:
-        return None
-    with table.opened() as file:
-        content = file.read()
-    found = plain_numbers(content, _header_line(table), n_columns, table.delimiter, table.decimal)
-    return found if found is not None and len(found) else None
 
 
 def _batches(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[pa.RecordBatch]:
