@@ -6,12 +6,27 @@ Numbers go as columns, curves as one byte a number, and only the rows that are i
 
 from __future__ import annotations
 
+import base64
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
-from clearance.batch.answer import BASES, BatchAnswer
-from clearance.batch.page_data import page_data
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from clearance.batch.answer import BASES, STATUSES, BatchAnswer
+from clearance.batch.case_page import FOLDER, folder_of
+from clearance.batch.rows import CURVE
+from clearance.findings.finding import NOT_PROVEN
 from clearance.record.wording import count
 from clearance.report.rendering import render
+
+TOPS = 4.0
+"""[-] Of the warn limit, the clearance at the top of a curve."""
+
+ABOVE = 255
+"""The byte of a clearance at the top or above."""
 
 
 def page_of(answer: BatchAnswer, place: Path) -> str:
@@ -47,3 +62,109 @@ def _basis(answer: BatchAnswer) -> str:
         if n:
             parts.append(f"{n:,} {what}")
     return ", ".join(parts)
+
+
+def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
+    """The data of a page.
+
+    Args:
+        place: the store's folder; a case whose own page lies in it is linked.
+    """
+    column, statuses, bodies, rules = answer.column, _statuses(answer), _Texts(), _Texts()
+    return {
+        "store": place.name,
+        "statuses": statuses,
+        "names": column("case"),
+        "status": [*map(statuses.index, column("status"))],
+        "clearance": _millimetres(answer.reached),
+        "bound": _millimetres(column("lower_bound")),
+        "time": [None if time is None else round(time, 3) for time in column("time")],
+        "steps": column("n_steps"),
+        "a": bodies.numbers(column("body_a")),
+        "b": bodies.numbers(column("body_b")),
+        "rule": rules.numbers(column("rule")),
+        "bodies": bodies.texts,
+        "rules": rules.texts,
+        "reasons": [lines or [] for lines in column("reasons")],
+        "beside": [*map(_beside, column("warnings"), column("waived"))],
+        "waived": [int(bool(lines)) for lines in column("waived")],
+        "levels": _levels(column("fail"), column("warn")),
+        "curves": base64.b64encode(_curves(answer.rows)).decode(),
+        "n_curve": CURVE,
+        "pages": _Pages(place).folders(column("case"), column("key")),
+    }
+
+
+class _Pages:
+    """The folders of the pages of cases that are written."""
+
+    def __init__(self, place: Path) -> None:
+        self._written = {path.parent.name for path in place.glob(f"{FOLDER}/*/report.html")}
+
+    def folders(self, names: list[str], keys: list[str | None]) -> list[str]:
+        """That of each case; empty where it has none."""
+        pairs = zip(names, keys, strict=True) if self._written else ()
+        found = [folder_of(name, key) if key else "" for name, key in pairs]
+        return [folder if folder.rpartition("/")[2] in self._written else "" for folder in found]
+
+
+def _statuses(answer: BatchAnswer) -> list[str]:
+    """All statuses, the better before the worse; "not proven" only where tolerances made a case so."""
+    return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
+
+
+def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
+    return [f"warning: {line}" for line in warnings or ()] + [
+        f"waived: {line}" for line in waived or ()
+    ]
+
+
+class _Texts:
+    """Texts by number, each once."""
+
+    def __init__(self) -> None:
+        self._numbers: dict[str, int] = {}
+
+    @property
+    def texts(self) -> list[str]:
+        return list(self._numbers)
+
+    def numbers(self, texts: Sequence[str | None]) -> list[int]:
+        """The number of each text; -1 for none."""
+        of = self._numbers
+        return [-1 if text is None else of.setdefault(text, len(of)) for text in texts]
+
+
+def _millimetres(lengths: Sequence[float | None]) -> list[float | None]:
+    """[mm] to a thousandth, rounded down."""
+    return [
+        None if length is None or not np.isfinite(length) else float(np.floor(length * 1e6) / 1e3)
+        for length in lengths
+    ]
+
+
+def _top(warn: float | None) -> float:
+    """[m] The clearance at the top of a curve."""
+    return TOPS * warn if warn else 0.1
+
+
+def _levels(fails: Sequence[float | None], warns: Sequence[float | None]) -> list[list[float]]:
+    """How high the two limits lie in each curve, from 0 to 1."""
+    return [
+        [round((level or 0.0) / _top(warn), 3) for level in (fail, warn)]
+        for fail, warn in zip(fails, warns, strict=True)
+    ]
+
+
+def _curves(part: pa.Table) -> bytes:
+    """The curves of some rows, `CURVE` bytes each: 1 + the height, 0 where there is none."""
+    column = part["curve"].combine_chunks()
+    n_each = pc.fill_null(pc.list_value_length(column), 0).to_numpy()
+    values = pc.list_flatten(column).to_numpy().astype(np.float64)
+    heights = np.zeros((len(n_each), CURVE), dtype=np.uint8)
+    drawn = n_each > 0
+    begins = (np.cumsum(n_each) - n_each)[drawn, np.newaxis]
+    found = values[begins + np.arange(CURVE) * n_each[drawn, np.newaxis] // CURVE]
+    tops = np.array([*map(_top, part["warn"].to_pylist())])[drawn, np.newaxis]
+    heights[drawn] = 1 + np.clip(found / tops, 0.0, 1.0) * (ABOVE - 1)
+    return heights.tobytes()

@@ -30,6 +30,7 @@ from clearance.gains.obstruction import (
     approach_of,
     blocked_by,
     kept_still,
+    tool_obstruction,
     unproven,
     worst_pair,
 )
@@ -41,7 +42,6 @@ from clearance.gains.search import Change, Search, SearchResult
 from clearance.gains.shift import ANYWHERE, Shift, base_shift, obstacle_shift
 from clearance.gains.shortfalls import State
 from clearance.gains.stretches import kept_of, require_in_path, require_in_run, windows_of
-from clearance.gains.tool_obstruction import tool_obstruction
 from clearance.gains.tool_path import ToolPathKept, tool_path_kept
 from clearance.gains.tool_path_error import ToolPathError, tool_path_error
 from clearance.gains.tool_poses import ToolMove

@@ -18,8 +18,7 @@ from clearance.gains.offsets import columns_of, require_path
 from clearance.gains.programme import Box
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import Rows
-from clearance.gains.tool import Tool, tool_of
-from clearance.gains.tool_joints import REACHED, joints_for, least_squares
+from clearance.gains.tool import Tool, apart, tool_of
 from clearance.gains.tool_limits import limit_rows
 from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
@@ -36,6 +35,15 @@ STILL = 1e-7
 
 UNREACHED = 10.0
 """[m] What counts as missing where a pose cannot be reached: more than any clearance makes good."""
+
+
+MOST_STEPS = 60
+
+REACHED = 1e-9
+"""[m] and [rad]: a pose that is this near is reached."""
+
+DAMPING = 1e-12
+"""[-] Of what is linear, and the least of any step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,3 +243,34 @@ def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept
             valid="a tool path that is moved, or an arm of six joints or more",
         )
     return found
+
+
+def joints_for(tool: Tool, wanted: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, float]:
+    """(n, k) joints that bring the tool to each pose (n, 4, 4), seen from the root, and what is left at worst.
+
+    Args:
+        start: (n, k) [rad or m] where the joints are. Of several solutions the one that steps of least length
+            lead to.
+    """
+    at = start.copy()
+    for _ in range(MOST_STEPS):
+        poses, rates = tool.poses_and_rates(at)
+        off = apart(wanted, poses)
+        left = np.abs(off).max(axis=1)
+        if left.max() <= REACHED:
+            break
+        damping = DAMPING + (off**2).sum(axis=1)
+        at = at + least_squares(rates, off[:, :, None], damping)[:, :, 0]
+    return at, float(left.max())
+
+
+def least_squares(
+    rates: np.ndarray, aims: np.ndarray, damping: np.ndarray | float = DAMPING
+) -> np.ndarray:
+    """(n, k, m) of least length that (n, 6, k) rates make the aims (n, 6, m) of, but for the damping."""
+    turned = np.swapaxes(rates, 1, 2)
+    n_joints = rates.shape[2]
+    level = np.broadcast_to(damping, len(rates))[:, None, None]
+    if n_joints < 6:
+        return np.linalg.solve(turned @ rates + level * np.eye(n_joints), turned @ aims)
+    return np.asarray(turned @ np.linalg.solve(rates @ turned + level * np.eye(6), aims))

@@ -90,7 +90,7 @@ def clearance_case(request: pytest.FixtureRequest) -> Callable[[str | PathLike[s
     """A function from the path of a case file, seen from the test's folder, to its run."""
 
     def checked(path: str | PathLike[str]) -> Run:
-        from clearance.pytest_plugin.checked import check_case
+        from clearance.pytest_plugin.collected import check_case
 
         return check_case(request.path.parent / path, request.config)
 

@@ -6,6 +6,7 @@ Not for: options and fixture (the package itself), nor lists of cases (`case.cas
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,10 +15,14 @@ import pytest
 
 from clearance.case.case_list import CASES, cases_in, mapping_in
 from clearance.errors import ClearanceError, shown
+from clearance.options import options_in
+from clearance.pytest_plugin import PREFIX, USUAL
+from clearance.run.options import CheckOptions
 
 if TYPE_CHECKING:
     from clearance.findings.finding import Finding
     from clearance.run import Run
+
 
 DEFAULT = "default"
 """What the limits by themselves are called (`world.rules`)."""
@@ -77,8 +82,6 @@ class CaseRun:
         Raises:
             ClearanceError: the same again, if the case cannot be checked.
         """
-        from clearance.pytest_plugin.checked import check_case
-
         if self._run is None:
             try:
                 self._run = check_case(self.path, self._config)
@@ -91,8 +94,6 @@ class CaseRun:
     @property
     def page(self) -> str:
         """Where its page is, or how to have one."""
-        from clearance.pytest_plugin.checked import report_folder
-
         folder = report_folder(self.path, self._config)
         return (
             "--clearance-out DIR writes the page" if folder is None else str(folder / "report.html")
@@ -192,3 +193,32 @@ def _one_line(excinfo: pytest.ExceptionInfo[BaseException]) -> str | None:
     """What is to be told of an error of ours; None for others, which keep their traceback."""
     error = excinfo.value
     return str(error) if isinstance(error, NotClear | ClearanceError) else None
+
+
+def check_case(path: Path, config: pytest.Config) -> Run:
+    """The run of a case; its report is written where `--clearance-out` says.
+
+    Raises:
+        BadInput: with the file and the field.
+    """
+    from clearance.run import check
+
+    given = {name: config.getoption(f"{PREFIX}{name}", None) for name in options_in(CheckOptions)}
+    said = {name: one for name, one in given.items() if one is not None}
+    run = check(path, **USUAL | said)
+    folder = report_folder(path, config)
+    if folder is not None:
+        run.save(folder)
+    return run
+
+
+def report_folder(path: Path, config: pytest.Config) -> Path | None:
+    """Where the report of a case goes; None where none is wanted."""
+    out = config.getoption("--clearance-out")
+    if not out:
+        return None
+    path = path.absolute()
+    known = path.relative_to(config.rootpath) if path.is_relative_to(config.rootpath) else path
+    return (
+        config.invocation_params.dir / out / re.sub(r"[^\w.-]+", "-", known.as_posix().strip("/"))
+    )

@@ -16,7 +16,6 @@ from clearance.record.rows.blocks import blocks
 from clearance.record.steps import StepColumns
 from clearance.record.wording import mm
 from clearance.run.answers import MeasurementPlan, measurement_plan, section_answers
-from clearance.run.commanded_case import commanded_case
 from clearance.run.notices import notices_of
 from clearance.run.question import Question
 from clearance.run.session import RunSession
@@ -27,7 +26,7 @@ from clearance.simulate.measure.measure import measure
 from clearance.simulate.measure.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.measure.section_answer import SectionAnswer
 from clearance.simulate.replay.bodies import notes_on_drawing
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.notice import WRAP, Notice
 from clearance.world.plausible_wrap import shortest_reading
 
@@ -246,3 +245,15 @@ def _commanded(question: Question) -> CommandedCourse:
     )
     record = answered(asked, DEFAULT_RESOURCES).record
     return CommandedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
+
+
+def commanded_case(case: Case) -> Case:
+    """The case with what its robots were commanded in place of what was recorded, without tolerances."""
+    return replace(case, robots=tuple(map(_as_commanded, case.robots)), tolerance=None)
+
+
+def _as_commanded(placed: PlacedRobot) -> PlacedRobot:
+    found = placed.recording
+    if found is None:
+        return placed
+    return replace(placed, trajectory=found.commanded, timing=found.timing, recording=None)

@@ -3,7 +3,7 @@
 from pytest import approx
 
 from clearance.batch import engine
-from clearance.batch.page_data import page_data
+from clearance.batch.page import page_data
 from clearance.batch.store import open_store
 from clearance.cli.batch_verdict import print_answer
 from tests.batch.batches import cases, run_here, write_cell

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.gains.moments import with_moments
+from clearance.gains.shortfalls import with_moments
 from clearance.world.timing import Timing
 from tests.gains.gantries import along_x, gantry, standing
 
