@@ -1,5 +1,4 @@
-"""The part of a large solid that another body can reach: the common region is the same with its triangles alone.
-"""
+"""The part of a large solid that another body can reach: its triangles alone give the same common region."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""How the rows of a record stand: each step by itself, and the motion to the next, against the rule that is worst.
-"""
+"""How the rows of a record stand: each step, and the motion to the next, against the rule that is worst."""
 
 from __future__ import annotations
 

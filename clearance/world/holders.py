@@ -1,5 +1,4 @@
-"""What robots have in hand: which link of which robot a carried part, and all that stands on it, is on in the end.
-"""
+"""What robots have in hand: the link and robot that a carried part, and all that stands on it, is on in the end."""
 
 from __future__ import annotations
 

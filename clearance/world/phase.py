@@ -1,5 +1,4 @@
-"""A stretch of a run in which nothing changes hands, comes, goes or jumps: a plain case and how all moves in it.
-"""
+"""A stretch of a run in which nothing changes hands, comes, goes or jumps: a plain case and its motion."""
 
 from __future__ import annotations
 

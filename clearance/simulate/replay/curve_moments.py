@@ -1,5 +1,4 @@
-"""Moments between the steps of a certified run for its replay and chart: dips, and steps between distant samples.
-"""
+"""Moments between the steps of a certified run for replay and chart: dips, and steps between distant samples."""
 
 from __future__ import annotations
 
