@@ -1,4 +1,4 @@
-"""What robots have in hand: the link and robot that a carried part, and all that stands on it, is on in the end."""
+"""What robots have in hand: the link and robot that a carried part, and all that stands on it, is on at last."""
 
 from __future__ import annotations
 
