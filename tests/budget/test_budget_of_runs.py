@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.budget.columns import columns_of
 from clearance.budget.sources import SourceKey, with_sizes
 from clearance.errors import BadInput
+from clearance.record.budget import RuleBudget
 from clearance.world.budget import Budget, ObstacleTolerance, RobotTolerance
 from clearance.world.case import Clock
 from tests.budget.budget_cases import random_case
@@ -177,3 +179,14 @@ def test_one_error_that_alone_would_keep_the_limit_is_told_how_great_it_may_be()
                 case, tolerance=tolerance | {"base": tolerance["base"] | greatest}
             ).record.budget
             assert answer.keeps is keeps
+
+
+def test_a_step_tells_of_the_rule_with_the_least_margin_to_its_own_limit():
+    """0.05 m before a limit of 0, and 0.12 m before one of 0.1: the second."""
+    rules = [
+        RuleBudget(name, cl.Limits(fail, fail), np.array([proven]), np.array([proven + 0.01]), None)
+        for name, fail, proven in (("far", 0.0, 0.05), ("near", 0.1, 0.12))
+    ]
+    for told in (rules, rules[::-1]):
+        proven, expected = columns_of(told)
+        assert (proven[0], expected[0]) == (0.12, pytest.approx(0.13))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -74,3 +75,18 @@ def test_only_what_is_not_known_is_measured_near_a_step(seed):
 def test_nothing_is_near_where_all_is_farther_apart():
     (found,) = near_rows("box_box", "steps", within=1e-6)
     assert len(found.steps) == len(found.pairs) == len(found.clearances) == 0
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs"])
+def test_near_pairs_are_nearer_by_their_padding(need):
+    """The nearest of each step is what the table says of the step, which is less by the padding too."""
+    case = cl.load_case(SCENES / "box_pipe" / "case.yaml")
+    padded = tuple(replace(one, padding=0.004) for one in case.obstacles)
+    run = cl.check(replace(case, obstacles=padded), need=need, certify=False)
+    told = run.steps["clearance"].to_numpy()
+    (rule,) = run.session.rules
+    found = rule.pairs.near(WITHIN)
+    least = np.full(len(told), np.inf)
+    np.minimum.at(least, found.steps, found.clearances)
+    assert least[told < WITHIN] == pytest.approx(told[told < WITHIN], abs=1e-15)
+    assert (told < WITHIN).any() and np.isinf(least[told >= WITHIN]).all()
