@@ -34,19 +34,6 @@ def test_a_list_reads_back_as_it_was_written(tmp_path):
     assert findings_text(read_findings(tmp_path)) == findings_text(found())
 
 
-def test_what_was_measured_is_there():
-    measured = found().measured
-    assert (measured.need, measured.method, measured.basis) == ("steps", "exact", "motion")
-    assert [(rule.name, rule.fail, rule.warn) for rule in measured.rules] == [
-        ("default", 0.04, 0.06)
-    ]
-    finding = found().findings[0]
-    assert measured.has_pair(finding.body_a, finding.body_b)
-    assert measured.has_pair(finding.body_b, finding.body_a)
-    assert not measured.has_pair(finding.body_a, "another")
-    assert not measured.has_pair(finding.body_b, finding.body_b)
-
-
 def changed(**changes: object) -> str:
     return json.dumps(json.loads(findings_text(found())) | changes)
 

@@ -11,14 +11,13 @@ import pytest
 
 import clearance as cl
 from clearance.findings.finding import FindingName
-from clearance.findings.of_record import why_incomplete
 from clearance.simulate.answers import rule_pairs
 from clearance.simulate.measure import refine
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import Rule
 from tests.findings.gates import HALF, load_gates
-from tests.report.made import findings_of, verdict_of
+from tests.report.made import findings_of
 from tests.report.records import record
 
 SCENES = Path(__file__).parents[2] / "scenes"
@@ -35,22 +34,6 @@ def case(name: str) -> Case:
 @functools.cache
 def run(name: str, limits: Limits | None = None, need: str = "steps", certify: bool = True):
     return cl.check(case(name), need=need, limits=limits, certify=certify)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("certify", [True, False])
-def test_findings_are_the_same_whatever_was_asked_for(certify):
-    known = {need: run("iiwa_pipe_rack", RACK, need, certify).findings
-             for need in ("steps", "pairs", "limit")}  # fmt: skip
-    assert sum(finding.broken for finding in known["steps"]) > 3
-    for need in ("pairs", "limit"):
-        for one, other in zip(known["steps"], known[need], strict=True):
-            same = dataclasses.replace(
-                other, clearance=one.clearance, proven=one.proven, joints=one.joints,
-                point_a=one.point_a, point_b=one.point_b,
-            )  # fmt: skip
-            assert same == one
-            assert other.clearance == pytest.approx(one.clearance, abs=1e-12)
 
 
 @pytest.mark.parametrize("need", ["steps", "limit", "minimum"])
@@ -130,18 +113,6 @@ def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
     assert names[0] == names[1]
 
 
-def test_samples_alone_prove_nothing():
-    for finding in run("iiwa_pipe_rack", RACK, "steps", False).findings:
-        assert finding.proven is None and not finding.between
-
-
-def test_a_record_of_nearest_pairs_alone_has_findings_too():
-    one = record()
-    found = findings_of(one)
-    assert found[0].status == verdict_of(one).measured == "contact"
-    assert found[0].occurrence == 0 and found[0].clearance == one.worst.clearance
-
-
 def test_joints_beyond_their_limits_are_a_finding_a_robot():
     notices = tuple(
         Notice(Severity.VIOLATED, "joint limits", f"{name}: elbow by {by} rad", name)
@@ -165,9 +136,3 @@ def test_where_too_many_steps_are_near_the_nearest_pairs_are_told_and_that_is_sa
     assert found[0].id == whole[0].id and found[0].clearance == whole[0].clearance
     assert {f.id for f in found} < {f.id for f in whole}
     assert "only the nearest pair" in one.finding_list.incomplete
-
-
-def test_why_findings_may_be_missing_is_said():
-    assert why_incomplete(run("box_box").session) == ""
-    assert "minimum" in why_incomplete(run("box_box", None, "minimum").session)
-    assert run("box_box").finding_list.incomplete == ""

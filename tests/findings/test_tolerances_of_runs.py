@@ -6,7 +6,6 @@ from datetime import date
 import pytest
 
 import clearance as cl
-from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
@@ -51,11 +50,6 @@ def test_what_is_proven_of_a_waiver_is_that_of_its_pairs(tmp_path):
     assert 'classname="tolerances"' in (tmp_path / "junit.xml").read_text()
 
 
-def test_a_broken_rule_is_told_by_itself(tmp_path):
-    run = asked(tmp_path, 0.0005, waivers=())
-    assert run.status == "violated" and kinds(run) == []
-
-
 def test_kept_with_tolerances(tmp_path):
     run = asked(tmp_path, 0.0005, gates={"right": (0.5, 0.008)}, waivers=())
     assert run.passed and run.verdict.text(str.upper) == "NEAR with tolerances"
@@ -71,17 +65,3 @@ def test_at_the_samples_only_the_headline_says_so(tmp_path):
     assert run.verdict.text(str.upper) == "NEAR with tolerances at the samples only"
     assert "proven for the samples only" in run.verdict.with_tolerances[0]
     assert "proven_between" not in run.steps.column_names
-
-
-def test_a_baseline_tells_the_two_kinds_apart(tmp_path):
-    before, now = (asked(tmp_path, xyz).finding_list for xyz in (0.0035, 0.0035))
-    rows = [row for row in compared(before, now).rows if row.finding.status == NOT_PROVEN]
-    assert [row.change for row in rows] == ["unchanged", "unchanged"]
-
-
-def test_the_report_of_a_run(tmp_path):
-    run = asked(tmp_path, 0.0015)
-    folder = run.save(tmp_path / "out")
-    assert (folder / "budget.csv").read_text().count("\n") > 1
-    told = run.summary["tolerances"]
-    assert told["rules"][0]["worst"][0]["sources"][0]["name"] == "base of gantry_box"

@@ -104,38 +104,12 @@ def test_what_is_waived_keeps_its_name_and_says_what_is_proven(certify, tmp_path
         assert one.waived.proven is None
 
 
-def test_at_the_samples_alone_the_sample_decides(tmp_path):
-    run = checked(tmp_path, NEAR_A, waiver(at_least=0.00299999), certify=False)
-    assert run.passed and "samples only" in run.verdict.text() and run.verdict.n_waivers == 1
-
-
 def test_a_level_that_is_seen_to_be_kept_and_not_proven_to_be_covers_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr(refine, "MOST_QUERIES", -1)
     run = checked(tmp_path, NEAR_A, waiver(at_least=0.00299))
     (finding,) = run.findings
     assert finding.proven < 0.00299 < finding.clearance and finding.waived is None
     assert run.verdict.status == VIOLATED and "that is not proven" in run.verdict.reasons[-1]
-
-
-def test_what_is_near_beside_what_is_waived_is_near(tmp_path):
-    gates = {A: (-0.5, 0.003), B: (0.5, 0.015)}
-    for one in (waiver(), waiver("gate_*")):
-        run = checked(tmp_path, gates, one)
-        assert (run.status, run.verdict.exit_code) == ("near", 0)
-        assert {f.body_b: f.status for f in run.findings} == {A: "violated", B: "near"}
-
-
-def test_the_least_of_all_is_enough_to_judge_waivers(tmp_path):
-    assert checked(tmp_path, NEAR_BOTH, waiver(), waiver(B), need="minimum").passed
-    run = checked(tmp_path, NEAR_BOTH, waiver(), need="minimum")
-    assert not run.passed and "gate_b" in run.verdict.reasons[0]
-
-
-def test_a_run_without_waivers_asks_nothing_again(tmp_path):
-    run = checked(tmp_path, NEAR_A)
-    assert run.record.today is None
-    assert run.judgement is run.judgement
-    assert run.judgement.rest is run.record.rules
 
 
 TEXT = """

@@ -13,7 +13,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.findings.comparison import compared
 from clearance.formats.motion.trajectory_file import line_of_sample
 from clearance.report.annotations import MOST, annotation_lines, command, row_of, sample_at
 from clearance.report.markdown import MOST_ROWS, markdown, plain
@@ -22,7 +21,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.timing import Timing
 from clearance.world.trajectory import Trajectory
 from clearance.world.waiver import Waiver
-from tests.findings.gates import load_gates, write_gates
+from tests.findings.gates import load_gates
 from tests.report.records import arm
 
 BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)}
@@ -53,19 +52,11 @@ def test_a_finding_is_annotated_on_the_row_of_its_moment(run, folder):
     assert float(rows[worst.step + 1].split(",")[0]) == pytest.approx(worst.time, abs=1e-6)
 
 
-def test_a_file_outside_the_repository_is_told_whole(run, tmp_path, folder):
-    assert f"file={folder / 'way.csv'}," in lines_of(run, tmp_path)[0]
-
-
 def test_at_most_ten_and_the_worst_first(tmp_path):
     gates = {f"gate_{i}": (-0.9 + 0.15 * i, 0.001 + 1e-4 * i) for i in range(12)}
     lines = lines_of(cl.check(load_gates(tmp_path, gates)), tmp_path)
     assert len(lines) == MOST
     assert [f"gate_{i} at" in line for i, line in enumerate(lines)] == [True] * MOST
-
-
-def test_a_run_that_is_clear_has_none(tmp_path):
-    assert lines_of(cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)})), tmp_path) == []
 
 
 @pytest.mark.parametrize(
@@ -132,17 +123,6 @@ def test_plain_text_stays_text_in_markdown(text):
     )
 
 
-def test_markdown_of_a_run(run, folder):
-    text = markdown(run.report)
-    assert text.startswith("### gates: VIOLATED\n") and "self-collision not checked" in text
-    rows = [line for line in text.splitlines() if line.startswith("|")]
-    assert len(rows) == 4 and len({row.count("|") for row in rows}) == 1
-    assert "| violated | default limits | box - gate&#95;a | 3.000 | 5 | 2.9" in rows[2]
-    same = compared(run.finding_list, run.finding_list)
-    told = markdown(run.report, same)
-    assert "since the baseline: 2 unchanged" in told and "unchanged, was 3.000 mm" in told
-
-
 def test_names_from_files_do_not_break_out_of_the_table(run):
     finding = dataclasses.replace(
         run.findings[0], body_a="a|b\n| x |", body_b="<script>", rule="`r`"
@@ -153,13 +133,6 @@ def test_names_from_files_do_not_break_out_of_the_table(run):
     rows = [line for line in text.splitlines() if line.startswith("|")]
     assert len(rows) == MOST_ROWS + 2 and len({row.count("|") for row in rows}) == 1
     assert "<script>" not in text and "`r`" not in text and "7 more findings." in text
-
-
-def test_a_clear_run_says_what_is_nearest(tmp_path):
-    one = cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)}))
-    text = markdown(one.report)
-    assert "### gates: CLEAR" in text and "100.0 mm: box - gate" in text
-    assert write_gates(tmp_path, {"gate": (0.0, 0.1)}).is_file()
 
 
 def test_what_limits_a_verdict_that_passes_is_a_warning(tmp_path):

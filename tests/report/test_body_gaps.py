@@ -8,10 +8,10 @@ import pytest
 import clearance as cl
 from clearance.cli import run
 from clearance.record.record import Record
-from clearance.report.topics.body_gaps import WIDTHS, body_gaps_of, gap_lines
+from clearance.report.topics.body_gaps import WIDTHS, body_gaps_of
 from tests.findings.test_verdict import made
 from tests.formats.making import CASE, write_case
-from tests.report.made import page_of, replay_of, run_of, summary_of, verdict_of
+from tests.report.made import run_of
 
 
 @functools.cache
@@ -40,18 +40,6 @@ def test_pairs_that_both_stand_are_left_out(tmp_path):
     nearest = {(one.link, one.obstacle): one.clearance for one in found.pair_minima}
     assert ("base", "post") in nearest and nearest["base", "post"] < 0.5
     assert pairs == {("upper", "post")}
-
-
-def test_it_is_told_with_its_source_and_decides_nothing():
-    assert verdict_of(swing()) == verdict_of(made())
-    assert list(gap_lines(summary_of(swing())["body_gaps"]))[-1].endswith(
-        "widths of ISO 13854 as AUVA (app.auva.at) gives them; no verdict depends on it"
-    )
-    page = page_of(summary_of(swing()), replay_of(swing()))
-    assert (
-        "<h2>Gaps that people may be caught in</h2>" in page and "Information, no verdict" in page
-    )
-    assert "body_gaps" not in summary_of(made())
 
 
 def test_on_the_command_line(tmp_path, capsys):

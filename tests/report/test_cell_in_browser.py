@@ -93,22 +93,6 @@ def test_a_click_on_a_cell_shows_the_pair_with_its_rule(page):
     assert len(curve) == 7
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("width", [420, 800, 1400, 2000])
-def test_nothing_is_clipped(page, width, theme):
-    page.call(
-        "Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}]
-    )
-    page.open(page.report, "window.clearance", width=width, height=900)
-    page.settle()
-    beyond = page.run(
-        "Array.from(document.querySelectorAll('body *'))"
-        ".filter((e) => !e.closest('.scroll, .track, #pane, #curve')"
-        " && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
-    )
-    assert beyond == [] and page.errors == []
-
-
 def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path):
     robots = (
         sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),

@@ -1,4 +1,4 @@
-"""Ten answers as they are told, word for word, of runs that are made by hand and need no engine.
+"""Answers as they are told, word for word, of runs that are made by hand and of a cell of boxes.
 
     python -m tests.report.test_golden
 
@@ -7,6 +7,7 @@ writes them anew, for whoever means a change of words, and reads what changed.
 
 from __future__ import annotations
 
+import functools
 import html
 import io
 import re
@@ -17,6 +18,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
+import clearance as cl
 from clearance.findings.comparison import compared
 from clearance.report.annotations import annotation_lines
 from clearance.report.comparison import comparison_page
@@ -24,9 +26,11 @@ from clearance.report.junit_cases import write_run_junit
 from clearance.report.markdown import markdown
 from clearance.report.summary import json_text
 from clearance.report.terminal import print_answer
+from clearance.run import Run
 from clearance.world.case import Limits
 from tests.findings.test_verdict import CASES, made
 from tests.report.budgets import with_budget
+from tests.report.cells import cell
 from tests.report.made import model_of, page_of, run_of
 from tests.report.records import disagreeing, record, with_contacts
 
@@ -35,6 +39,12 @@ HERE = Path(__file__).parent / "golden"
 SWING = with_contacts(record(cross_check=disagreeing()))
 OPEN = with_budget(made(Limits(warn=0.02)), 0.0025)
 SUSPECT = CASES["suspect and contact"][0]
+
+
+@functools.cache
+def cell_run() -> Run:
+    """Measured, and all that is told of it can be worked out by hand."""
+    return cl.check(cell(), need="pairs")
 
 
 def terminal(one) -> str:
@@ -68,7 +78,10 @@ def compared_page() -> str:
 
 
 def without_versions(text: str) -> str:
-    return re.sub(r"^(clearance .*, python .*|clearance \d.*)$", "versions", text, flags=re.M)
+    """A text without what other libraries and other ways of measuring change."""
+    return re.sub(
+        r"^(clearance .*, python .*|clearance \d.*|Counted: .*)$", "versions", text, flags=re.M
+    )
 
 
 ANSWERS: dict[str, Callable[[], str]] = {
@@ -79,6 +92,8 @@ ANSWERS: dict[str, Callable[[], str]] = {
     "swing.md": lambda: markdown(model_of(SWING)),
     "open.terminal.txt": lambda: terminal(OPEN),
     "open.page.txt": lambda: page(page_of(OPEN)),
+    "cell.terminal.txt": lambda: terminal(cell_run()),
+    "cell.page.txt": lambda: page(page_of(cell_run())),
     "suspect.annotations.txt": lambda: "\n".join(annotation_lines(model_of(SUSPECT), HERE)),
     "two_robots.notebook.txt": lambda: page(run_of(record(n_robots=2))._repr_html_()),
     "comparison.page.txt": compared_page,

@@ -9,7 +9,7 @@ from clearance.record.record import ProfileAnswer
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 from tests.report.made import run_of, write_junit
-from tests.report.records import disagreeing, record
+from tests.report.records import record
 
 
 def suite_of(tmp_path, **changes) -> ElementTree.Element:
@@ -37,21 +37,6 @@ def test_a_violated_pair_fails_and_the_others_pass(tmp_path):
 def test_the_fail_limit_decides(tmp_path):
     wide = suite_of(tmp_path, limits=Limits(fail=0.1, warn=0.2))
     assert failed(wide) == {"verdict", "gripper - post", "fore - post"}
-
-
-def test_contact_fails_without_a_limit(tmp_path):
-    assert failed(suite_of(tmp_path, limits=Limits())) == {"verdict", "gripper - post"}
-
-
-def test_a_near_miss_passes_and_says_so(tmp_path):
-    suite = suite_of(tmp_path, limits=Limits(fail=0.01, warn=0.1))
-    told = {case.get("name"): case.findtext("system-out") for case in suite.findall("testcase")}
-    assert told["fore - post"].startswith("near miss: ")
-    assert not told["upper - table"].startswith("near miss")
-
-
-def test_a_cross_check_that_disagrees_fails(tmp_path):
-    assert "agrees with python-fcl" in failed(suite_of(tmp_path, cross_check=disagreeing()))
 
 
 def test_profiles_and_notices_are_cases_of_their_own(tmp_path):

@@ -7,7 +7,7 @@ import clearance as cl
 from clearance.report import moments_file, moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
-from tests.report.made import model_of, run_of, write
+from tests.report.made import model_of, run_of
 from tests.report.records import record, with_contacts
 
 WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
@@ -68,12 +68,6 @@ def test_a_clear_run_has_its_worst_moment_alone():
     assert told["need"] == "steps"
 
 
-def test_a_run_that_asks_for_less_says_so():
-    case = cell(WIDE, (sliding("arm", LEFT),), (box("wall", (0.1, 1, 1), at(1.6)),), ())
-    told = read(moments_text(cl.check(case, need="minimum")))
-    assert told["need"] == "minimum" and len(told["moments"]) == 1
-
-
 def test_what_is_too_much_is_left_out_and_counted(monkeypatch):
     run = record(limits=LIMITS)
     n = len(read(moments_text(run))["moments"])
@@ -109,9 +103,3 @@ def test_padding_and_depth_are_told_where_there_are_some():
     moment = read(moments_text(cl.check(case)))["moments"][0]
     assert moment["padding"] == 0.01
     assert moment["distance"] == pytest.approx(moment["clearance"] + 0.01, abs=1e-15)
-
-
-def test_the_file_is_in_the_report(tmp_path):
-    run = record()
-    write(run, tmp_path / "out")
-    assert (tmp_path / "out" / "worst_moments.yaml").read_text() == moments_text(run)

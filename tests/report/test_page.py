@@ -124,13 +124,6 @@ def test_author_and_revision_stand_in_the_header_with_fields_to_sign():
         assert role in text
 
 
-def test_pairs_without_a_curve_of_their_own_have_their_line(page):
-    data = data_in(page)
-    assert data["curves"] is None
-    names = [[data["bodies"][i]["name"] for i in pair["bodies"]] for pair in data["pairs"]]
-    assert names == [[one.link, one.obstacle] for one in run_of(record()).pair_minima]
-
-
 def test_curves_are_never_above_the_clearance_and_few_where_there_are_many_pairs(monkeypatch):
     clearance = np.random.default_rng(0).uniform(0.0, 1.0, (240, 9))
     run = record()

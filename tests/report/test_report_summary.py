@@ -16,7 +16,7 @@ from clearance.report.topics.provenance import public_path
 from clearance.world.robot import Joint, JointKind
 from tests.made_cases import with_copies
 from tests.report.made import summary_of, write
-from tests.report.records import disagreeing, record
+from tests.report.records import record
 
 
 def test_the_worst_step_is_the_least_row_of_the_table():
@@ -28,38 +28,6 @@ def test_the_worst_step_is_the_least_row_of_the_table():
     positions = run.motions[0].positions[row["step"]].tolist()
     assert [joint["position"] for joint in worst["joints"]] == positions
     assert [joint["name"] for joint in worst["joints"]] == ["pan", "lift", "slide"]
-
-
-def test_json_reads_back_the_same_and_sorted():
-    summary = summary_of(record(cross_check=disagreeing()))
-    text = json_text(summary)
-    back = json.loads(text)
-    assert back == json.loads(json.dumps(summary))
-    assert text == json_text(back)
-    assert back["worst"]["time"] == summary["worst"]["time"]
-
-
-def test_what_was_loaded_is_told_body_by_body():
-    summary = summary_of(record())
-    gripper = next(b for b in summary["robots"][0]["links"] if b["name"] == "gripper")
-    assert (gripper["triangles"], gripper["polygons"]) == (12, 6)
-    assert (gripper["closed"], gripper["oriented"]) == (True, True)
-    assert gripper["volume"] == pytest.approx(0.12 * 0.06 * 0.06, rel=1e-12)
-    assert gripper["bounding_box"] == [[0, -0.03, -0.03], [0.12, 0.03, 0.03]]
-    assert summary["unmeasured"][0]["reason"] == "excluded: bolted"
-    assert summary["tessellation_bound"] == 1e-4
-    assert {
-        "joint slide: no limit given for velocity",
-        "upper: 2 zero-area triangles left out",
-    } == set(summary["notes"])
-
-
-def test_every_pair_is_in_the_table_of_minima():
-    summary = summary_of(record())
-    assert len(summary["pairs"]) == 9
-    gaps = [pair["clearance"] for pair in summary["pairs"]]
-    assert gaps == sorted(gaps)
-    assert gaps[0] == summary["worst"]["clearance"]
 
 
 def test_joints_without_limits_are_null_and_not_infinity(tmp_path):
@@ -75,14 +43,6 @@ def test_joints_without_limits_are_null_and_not_infinity(tmp_path):
     assert (joint["lower"], joint["upper"]) == (None, None)
     write(run, tmp_path / "out")
     assert "no limits" in (tmp_path / "out" / "report.html").read_text()
-
-
-def test_several_robots_are_told_apart():
-    summary = summary_of(record(n_robots=2))
-    assert len(summary["robots"]) == 2
-    assert {joint["robot"] for joint in summary["worst"]["joints"]} == {"arm_0", "arm_1"}
-    links = {body["name"] for robot in summary["robots"] for body in robot["links"]}
-    assert {pair["link"] for pair in summary["pairs"]} <= links
 
 
 def test_tracking_error_is_told_when_the_motion_is_simulated():

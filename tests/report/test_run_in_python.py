@@ -52,19 +52,6 @@ def test_the_worst_moment_names_its_bodies_in_both_ways_whatever_moves(certify):
     assert apart.worst["clearance"] == pytest.approx(0.11 if certify else np.hypot(0.9, 0.11))
 
 
-def test_a_notebook_shows_verdict_and_closest_pairs(run):
-    html = run._repr_html_()
-    assert run.verdict.text() in html and "self-collision not checked" in html
-    assert html.count("<tr>") == 1 + min(5, len(run.pair_minima))
-
-
-def test_names_are_escaped_in_a_notebook(run):
-    from dataclasses import replace
-
-    case = replace(run.record.case, name="<script>alert(1)</script>")
-    assert "<script>" not in cl.check(case)._repr_html_()
-
-
 def test_summary_and_events_are_those_of_the_report(run, tmp_path):
     folder = run.save(tmp_path / "out")
     assert folder == tmp_path / "out"
@@ -72,11 +59,6 @@ def test_summary_and_events_are_those_of_the_report(run, tmp_path):
     assert json.loads(json.dumps(run.summary)) == written
     assert [event.what for event in run.events] == [event["what"] for event in written["events"]]
     assert run.events
-
-
-def test_the_certificate_is_at_hand(run):
-    assert run.certificate.lower_bound.min() <= run.worst["clearance"]
-    assert cl.check(CASE, certify=False).certificate is None
 
 
 @pytest.mark.parametrize("folder", ["", None, 3])

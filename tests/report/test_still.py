@@ -111,17 +111,6 @@ def test_the_line_is_in_the_picture_in_the_colour_of_its_status(look):
     assert len(np.unique(image.reshape(-1, 3), axis=0)) > 50
 
 
-def test_solid_bodies_hide_and_obstacles_do_not():
-    still = still_of(replay_of(record()))
-    solid = [body for body in still.bodies if body.opacity == 1.0]
-    assert {body.kind for body in solid} == {"link"}
-    assert {body.opacity for body in still.bodies} == {1.0, 0.5}
-    without = replace(still, bodies=tuple(solid), nearest=())
-    seen, alone = (drawn(one, overview(still), 160, 100).astype(int) for one in (still, without))
-    opaque = np.abs(seen - alone).max(axis=2)
-    assert (opaque > 5).any() and (opaque <= 5).any()
-
-
 def test_the_common_region_shines_through():
     run = with_contacts(record())
     replay = replay_of(run)

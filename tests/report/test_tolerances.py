@@ -15,10 +15,9 @@ from clearance.findings.finding import NOT_PROVEN, TOLERANCES
 from clearance.findings.findings_file import findings_text, read_findings
 from clearance.record.budget import ErrorSource
 from clearance.report.annotations import annotation_lines
-from clearance.report.comparison import comparison_page
 from clearance.report.markdown import markdown
 from clearance.report.topics.tolerances import largest_text
-from clearance.world.budget import Budget, ObstacleTolerance
+from clearance.world.budget import ObstacleTolerance
 from clearance.world.case import Limits
 from tests.findings.test_verdict import UNITS, made, printed
 from tests.report.budgets import with_budget
@@ -84,16 +83,6 @@ def test_what_is_left_is_told_in_words_that_can_be_signed():
     assert "contact is not ruled out; proven for the samples only" in line
     for told in (printed(OPEN), markdown(model_of(OPEN)).splitlines()):
         assert any("contact is not ruled out" in row for row in told)
-
-
-def test_the_terminal_says_what_takes_most_and_what_it_may_be():
-    told = "\n".join(printed(KEPT))
-    assert "most is taken by position of joint lift 1.200 mm (0.001 rad), base of arm_0" in told
-    assert (
-        "others as given: position of joint lift 0.0021 rad, base of arm_0 3.5 mm, surface of post 1.23 mm"
-        in told
-    )
-    assert "preset typical: read somewhere" in told
 
 
 def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
@@ -177,22 +166,6 @@ def test_findings_are_kept_and_compared(tmp_path):
     assert rows["clearance"].change == "unchanged"
 
 
-def test_the_comparison_page_shows_it_as_failing():
-    found = compared(finding_list_of(NEAR), finding_list_of(OPEN))
-    page = comparison_page(found, [], ("a", "b"))
-    assert '<span class="tag not proven">not proven</span>' in page and ".tag.not {" in page
-
-
-def test_what_is_expected_is_not_told_below_what_is_proven():
-    wide = with_budget(NEAR, 0.0001, expected=np.full(8, -1.0))
-    assert summary_of(wide)["tolerances"]["rules"][0]["expected"] == wide.budget[0].least
-
-
-def test_it_alarms_where_there_were_no_tolerances_before():
-    found = compared(finding_list_of(NEAR), finding_list_of(OPEN))
-    assert not found.passed and compared(finding_list_of(NEAR), finding_list_of(KEPT)).passed
-
-
 def test_where_numbers_are_from_is_no_part_of_the_comparison():
     named = dataclasses.replace(OPEN.case.tolerance, sources=("elsewhere",), unproven_ok=True)
     other = dataclasses.replace(OPEN, case=dataclasses.replace(OPEN.case, tolerance=named))
@@ -244,13 +217,6 @@ def test_a_report_without_tolerances_has_nothing_of_them(tmp_path):
             assert "tolerances" not in path.read_text(), path.name
 
 
-def test_the_same_bytes_twice(tmp_path):
-    for name in ("a", "b"):
-        write(OPEN, tmp_path / name)
-    for path in (tmp_path / "a").iterdir():
-        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
-
-
 @pytest.mark.parametrize(
     ("given", "largest", "told"),
     [
@@ -263,17 +229,3 @@ def test_the_same_bytes_twice(tmp_path):
 )
 def test_what_it_may_be_is_rounded_down(given, largest, told):
     assert largest_text(ErrorSource("arm", "base", "", (given,), 0.0, 0.0, (largest,))) == told
-
-
-def test_several_rules_are_told_apart():
-    budget = OPEN.budget[0]
-    other = dataclasses.replace(
-        budget, rule="fence", limits=Limits(0.001, 0.001), proven=budget.proven + 0.1
-    )
-    both = dataclasses.replace(OPEN, budget=(budget, other))
-    assert " of rule 'fence'; proven" in verdict_of(both).with_tolerances[1]
-    assert both.steps["proven"].to_pylist() == budget.proven.tolist()
-
-
-def test_a_budget_without_any_error_is_known_as_one():
-    assert Budget() == Budget() and finding_list_of(with_budget(NEAR)).measured.tolerances

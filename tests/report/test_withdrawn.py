@@ -1,7 +1,5 @@
 """An older report is marked while a run into its folder has not come to its end."""
 
-import json
-
 import pytest
 
 from clearance.cli import run
@@ -57,12 +55,6 @@ def test_a_folder_without_a_report_stays_as_it_is(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     withdraw_report(tmp_path)
     assert content(tmp_path) == {"notes.txt": b"mine"}
-
-
-def test_only_the_summary_is_there(tmp_path):
-    (tmp_path / LAST).write_text(json.dumps({"passed": True}))
-    withdraw_report(tmp_path)
-    assert set(content(tmp_path)) == {OLDER_SUMMARY}
 
 
 def test_a_page_is_marked_once_after_the_head():
