@@ -1,4 +1,6 @@
-"""Names that a case takes from robots and scene: a typing error must not be a silent gap."""
+"""Rows of a case file that speak of pairs and parts, to those of the world, and the names that they take from
+robots and scene: a typing error must not be a silent gap.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +8,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
-from clearance.world.case import Case
-from clearance.world.rules import Allowance, matches
+from clearance.formats.schema import case as schema
+from clearance.formats.schema import limits as limits_schema
+from clearance.world.carry import Carry
+from clearance.world.case import Case, Limits
+from clearance.world.rules import Allowance, Rule, matches
 
 _WILDCARDS = frozenset("*?[")
 
@@ -125,3 +130,41 @@ def _refuse_unmatched(
         return
     problem = f"no {what} matches" if _WILDCARDS & set(pattern) else f"unknown {what}"
     raise fault(f"{problem} {pattern!r}", valid=nearest_name(pattern, names))
+
+
+def limits_of(given: limits_schema.Limits) -> Limits:
+    """The limits; a rule that gives no `fail` has that of the limits.
+
+    Raises:
+        BadDimension: a rule whose `warn` is below its `fail`. DuplicateName: two rules of one name.
+    """
+    rules = []
+    for i, row in enumerate(given.rules):
+        with at(f"limits.rules[{i}]"):
+            rules.append(_rule(row))
+    with at("limits"):
+        return Limits(given.fail, given.warn, given.joints, tuple(rules))  # type: ignore[arg-type]
+
+
+def _rule(row: limits_schema.Rule) -> Rule:
+    name = row.name or ""
+    return Rule(row.patterns, row.window, row.while_carried, name, row.fail, row.warn)
+
+
+def allowances_of(given: Sequence[limits_schema.AllowedPair]) -> tuple[Allowance, ...]:
+    """The pairs that are not measured."""
+    return tuple(Allowance(row.patterns, row.window, row.while_carried) for row in given)
+
+
+def carries_of(given: Sequence[schema.Carry]) -> tuple[Carry, ...]:
+    """What is carried.
+
+    Raises:
+        BadInput: a part that carries itself.
+    """
+    carries = []
+    for i, row in enumerate(given):
+        with at(f"carry[{i}]"):
+            is_exact = row.grasp == "exact"
+            carries.append(Carry(row.part, row.by, row.window, tuple(row.touch), is_exact))
+    return tuple(carries)

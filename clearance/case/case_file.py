@@ -12,12 +12,18 @@ from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
-from clearance.case.allow import body_names, checked_allowances, require_patterns
+from clearance.case.allow import (
+    allowances_of,
+    body_names,
+    carries_of,
+    checked_allowances,
+    limits_of,
+    require_patterns,
+)
 from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
-from clearance.case.rows import allowances_of, carries_of, limits_of
 from clearance.case.scene_rows import with_held_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import BadInput, at

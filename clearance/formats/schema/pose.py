@@ -13,8 +13,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from clearance.errors import BadInput
 from clearance.formats.motion.trajectory_file import Choice
-from clearance.formats.schema.shape import Triple
-from clearance.formats.schema.strict_model import Name, StrictModel
+from clearance.formats.schema.strict_model import Name, StrictModel, Triple
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
 from clearance.world.timing import Timing, Window

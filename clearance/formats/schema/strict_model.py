@@ -1,12 +1,21 @@
-"""What all models of a case file's schema are: mappings whose keys are known, numbers that are numbers; and
-what they object to, as one line of ours: given, where, what is valid.
+"""What all models of a case file's schema are: mappings whose keys are known, numbers that are numbers; what they
+object to, as one line of ours: given, where, what is valid; and the table of shapes as models.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    create_model,
+    model_validator,
+)
 
 from clearance.errors import (
     BadDimension,
@@ -18,6 +27,7 @@ from clearance.errors import (
     UnknownKey,
     nearest_name,
 )
+from clearance.geometry.shapes import SHAPES, Measure, Shape
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -128,3 +138,40 @@ def _remedy(detail: ErrorDetails) -> str:
         .replace("a valid", "a")
     )
     return f"{text} is needed"
+
+
+Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
+_Length = Annotated[float, Field(gt=0)]
+
+_TYPES: dict[Measure, Any] = {  # to a type checker, an annotated type is no type
+    Measure.LENGTH: _Length,
+    Measure.LENGTH_OR_ZERO: Annotated[float, Field(ge=0)],
+    Measure.SIZES: Annotated[list[_Length], Field(min_length=3, max_length=3)],
+    Measure.POINTS: Annotated[list[Triple], Field(min_length=2)],
+    Measure.SIDES: Annotated[int, Field(ge=3)],
+}
+
+Fields = dict[str, Any]
+"""Fields of a model by name, as `create_model` takes them: type and default."""
+
+ShapedModel = TypeVar("ShapedModel", bound=BaseModel)
+
+
+def with_shapes(base: type[ShapedModel], strict: type[BaseModel]) -> type[ShapedModel]:
+    """`base` with a key for each shape of the table; none of them must be given.
+
+    Args:
+        strict: what the models of the shapes themselves are made from.
+    """
+    models = {name: _model(name, shape, strict) for name, shape in SHAPES.items()}
+    return create_model(f"{base.__name__}Shape", __base__=base, **_optional(models))
+
+
+def _model(name: str, shape: Shape, strict: type[BaseModel]) -> type[BaseModel]:
+    needed: Fields = {key: (_TYPES[measure], ...) for key, measure in shape.dimensions.items()}
+    may_be = _optional({key: _TYPES[measure] for key, measure in shape.optional.items()})
+    return create_model(name.capitalize(), __base__=strict, __doc__=shape.about, **needed, **may_be)
+
+
+def _optional(types: Mapping[str, Any]) -> Fields:
+    return {key: (given | None, None) for key, given in types.items()}
