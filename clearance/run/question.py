@@ -78,15 +78,12 @@ class Question(QuestionOptions):
     @property
     def of_rows(self) -> tuple[object, ...]:
         """What of it decides the rows that are measured and certified, beside the case."""
-        return (
-            self.need,
-            self.method,
-            self.motion,
-            self.certify,
-            self.certify_gap,
-            self.paper_tolerance,
-        )
+        names = (one.name for one in fields(QuestionOptions) if one.name not in BESIDE_ROWS)
+        return tuple(getattr(self, name) for name in names)
 
+
+BESIDE_ROWS = ("contact", "body_gaps", "cross_check", "today")
+"""Options that no row depends on: what an interrupted run has measured is of use whatever they are."""
 
 NEED_EXTRAS = (("cross_check", True, "crosscheck"), ("motion", "simulated", "simulate"))
 """Options that need optional libraries, with the value that does, and the extra that brings them."""

@@ -161,6 +161,23 @@ def test_tolerances_are_part_of_what_a_row_is_of(manifest, tmp_path):
     assert len(told.measured) == 5 and column(found, "proven") == [None] * 5
 
 
+def test_a_recorded_run_is_part_of_what_a_row_is_of(manifest, tmp_path):
+    """Recorded 10 mm farther than asked, so nearer by as much; the same file again is known."""
+    own = tmp_path / "run.csv"
+    asked = dict(motion="recorded", recorded=own, unproven_ok=True)
+
+    def run_with(farther: float):
+        own.write_text(f"time,rail\n0,0\n1,{0.3 + farther}\n2,0.4\n")
+        return run_here(manifest, tmp_path / "out", changes=asked)
+
+    (manifest.parent / "batch.yaml").write_text("cell: cell.yaml\ntrajectories: t000.csv\n")
+    told, found = run_with(0.13)  # 0.8 - 0.43 m, where 0.4 m was asked for
+    assert told.measured == ["t000"] and column(found, "clearance") == [pytest.approx(0.37)]
+    assert run_with(0.13)[0].measured == []
+    told, found = run_with(0.14)
+    assert told.measured == ["t000"] and column(found, "clearance") == [pytest.approx(0.36)]
+
+
 def test_tolerances_that_change_during_a_batch_are_no_answer(manifest, tmp_path):
     own = tmp_path / "t.yaml"
     own.write_text("obstacles: {wall: {xyz: 0.001}}\n")

@@ -97,6 +97,18 @@ def _texts(folder):
     return pq.read_table(folder / "store" / "cases.parquet")["text"].to_pylist()
 
 
+def test_a_manifest_names_waivers_as_the_command_line_does(folder, capsys):
+    (folder / "waivers.yaml").write_text("[]")
+    (folder / "own").mkdir()
+    (folder / "own" / "soft.yaml").write_text(waiver() + waiver(case="t02"))
+    manifest = (folder / "batch.yaml").read_text()
+    (folder / "batch.yaml").write_text(manifest + "waivers: own/soft.yaml\n")
+    assert batch() == 1
+    told = capsys.readouterr().out
+    assert told.startswith("STALE WAIVER  3 cases: 3 clear")
+    assert "(soft.yaml: waivers[1]) is not needed: no case is called 't02'" in told
+
+
 def test_what_is_waived_stays_in_sight(folder):
     (folder / "waivers.yaml").write_text(waiver())
     assert batch("--quiet") == 0

@@ -208,6 +208,11 @@ def test_a_question_is_made_in_one_hop(case):
     assert not paper.certify and replace(paper, contact="none").method == "paper"
 
 
+@pytest.mark.parametrize("name", ["need", "certify", "certify_gap", "method", "motion"])
+def test_rows_of_another_question_are_not_taken_up(case, name):
+    assert Question(case).of_rows != Question(case, **{name: EVERY[name][0]}).of_rows
+
+
 def test_a_field_is_all_that_a_new_option_takes():
     """What `option` declares is on the command line, is checked, and has its help and its default."""
     from dataclasses import dataclass
