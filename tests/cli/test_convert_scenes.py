@@ -83,9 +83,7 @@ def same_bytes(one, other) -> bool:
     ("name", "text", "said"),
     [
         ("w.sdf", SDF, ""),
-        ("w.world", SDF, ""),
         ("m.xml", MJCF, ""),
-        ("m.mjcf", MJCF, ""),
         ("first.scene", FIRST, ""),
         pytest.param("second.scene", SECOND, "", marks=pytest.mark.slow),
         ("lists.yaml", LISTS.replace("base_link", "base"), ""),

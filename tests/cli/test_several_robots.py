@@ -104,8 +104,15 @@ def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(
     assert {name: told[name] for name in levels} == levels
 
 
-@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
-@pytest.mark.parametrize("options", [(), ("--samples-only",)])
+@pytest.mark.parametrize(
+    ("need", "options"),
+    [
+        ("steps", ()),
+        ("pairs", ("--samples-only",)),
+        ("limit", ()),
+        ("minimum", ("--samples-only",)),
+    ],
+)
 def test_a_cell_of_several_rules_that_is_violated_is_told(tmp_path, capsys, need, options):
     arguments = ["check", str(write_cell(tmp_path)), "--fail-mm", "1800", "--accept", "units"]
     assert run([*arguments, "--need", need, *options]) == 1
