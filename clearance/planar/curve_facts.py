@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.kernels.curve.arc_fit import Leaves, box_tree, fit_leaves
-from clearance.kernels.curve.bezier import Joints, Pieces, control_box, points_on, rough_joints
+from clearance.kernels.curve.bezier import Joints, Pieces, control_box, points_on
 from clearance.kernels.hausdorff.segments import segment_boxes
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import BIARC, CLOSED, LAST_BITS, MEETING, TANGENT, UNIT_ROUNDOFF
@@ -92,11 +92,6 @@ class CurveFacts:
     def segment_boxes(self) -> np.ndarray:
         """The tree of boxes over the segments of a polyline; made once, when first needed."""
         return segment_boxes(self.pieces.control)
-
-    @cached_property
-    def is_end(self) -> np.ndarray:
-        """(n, 2) whether each piece's start and end is an end of a contour or a corner."""
-        return rough_joints(self.pieces, self.joints)
 
     @property
     def joints(self) -> Joints:

@@ -34,19 +34,11 @@ def fingerprint(
     if case.tolerance is not None:
         digest.update(repr(case.tolerance).encode())
     for motion in motions:
-        robot = motion.placed.robot
-        for body in robot.bodies:
-            digest.update(body.name.encode())
-            _add_shape(digest, body.shape)
-        arrays = [
-            motion.placed.world_from_base,
-            *kinematic_tree_arrays(robot),
-            motion.times,
-            motion.positions,
-        ]
-        _add(digest, *arrays, motion.tracking_error)
+        digest.update(robot_digest(motion.placed.robot).encode())
+        arrays = (motion.times, motion.positions, motion.tracking_error)
+        _add(digest, motion.placed.world_from_base, *arrays)
         _add(digest, np.empty(0) if motion.velocities is None else motion.velocities)
-        digest.update(repr((robot.link_names, robot.joints, motion.placed.timing)).encode())
+        digest.update(repr(motion.placed.timing).encode())
         asked = motion.placed.trajectory
         off = 0.0 if asked is None else asked.path_error
         digest.update(repr((sorted(motion.placed.padding.items()), off)).encode())

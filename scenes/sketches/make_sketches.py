@@ -13,9 +13,9 @@ import math
 from pathlib import Path
 
 import numpy as np
+from picture import write_svg
 
 from clearance.sketch import Sketch
-from clearance.sketch.picture import write_svg
 
 HERE = Path(__file__).parent
 BREADTH, DEPTH, BOTTOM, TANK, BILGE, DECK = 16.0, 19.0, 2.0, 2.4, 1.8, 11.0
@@ -28,7 +28,7 @@ def jitter(sketch: Sketch, amount: float, seed: int = 5) -> None:
     for e in sketch.entities.values():
         if e.what == "point" and e.name not in fixed:
             for k in (0, 1):
-                sketch._numbers[e.variable + k] += amount * random.uniform(-1.0, 1.0)
+                sketch._lists.numbers[e.variable + k] += amount * random.uniform(-1.0, 1.0)
 
 
 class Midship:

@@ -184,14 +184,20 @@ def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
-    from clearance.simulate.answers.contact.contacts import find_contacts
+    from clearance.simulate.answers.contact.contacts import (
+        ContactPart,
+        joined_contacts,
+        overlap_finder,
+    )
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))
     links, obstacles = (made.steps[name].to_pylist() for name in ("link", "obstacle"))
     nearest = [named.index(pair) for pair in zip(links, obstacles, strict=True)]
     asked = made.case, made.motions, pairs, made.clearances, np.array(nearest)
-    return dataclasses.replace(made, contacts=find_contacts(*asked, work_out).rows)
+    part = ContactPart.of(overlap_finder(*asked, work_out), 0, np.arange(len(pairs)))
+    contacts = joined_contacts([part], named, made.motions[0].times)
+    return dataclasses.replace(made, contacts=contacts.rows)
 
 
 def measure(motions, case):

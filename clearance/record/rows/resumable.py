@@ -73,34 +73,6 @@ class MeasuredRows:
     def ask(self, fingerprint: str) -> None:
         """Says what decides every row; rows of another fingerprint are thrown away."""
 
-    def named(self, prefix: str) -> MeasuredRows:
-        """The same rows, in which what is asked for by name has a prefix."""
-        return NamedRows(self, prefix)
-
-
-@dataclass(eq=False)
-class NamedRows(MeasuredRows):
-    """Rows of others under names of their own."""
-
-    rows: MeasuredRows
-    prefix: str
-
-    def array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
-        return self.rows.array(self.prefix + name, shape, kind)
-
-    def log(self, name: str, spans: Sequence[slice]) -> PassLog:
-        return self.rows.log(self.prefix + name, spans)
-
-    def let_go(self) -> None:
-        self.rows.let_go()
-
-    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
-        return self.rows.table(self.prefix + name, batches)
-
-    @property
-    def folder(self) -> Path | None:
-        return self.rows.folder
-
 
 IN_MEMORY = MeasuredRows()
 """Rows in memory only."""
@@ -170,16 +142,21 @@ class ResumableRows(MeasuredRows):
     def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
         if self._closed:
             return super().table(name, batches)
-        from clearance.record.rows.table_file import mapped_table
+        import pyarrow as pa
 
-        table, mapped = mapped_table(self._letting_go(batches), self.place / f"{name}.arrow")
+        path = self.place / f"{name}.arrow"
+        with unwritable(path), pa.OSFile(str(path), "wb") as file:
+            writer = None
+            for batch in batches:
+                writer = writer or pa.ipc.new_file(file, batch.schema)
+                writer.write_table(batch)
+                self.let_go()
+            assert writer is not None  # a run has steps
+            writer.close()
+        with path.open("rb") as file:
+            mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         self._tables.append(mapped)
-        return table
-
-    def _letting_go(self, batches: Iterable[pa.Table]) -> Iterator[pa.Table]:
-        for batch in batches:
-            yield batch
-            self.let_go()
+        return pa.ipc.open_file(pa.BufferReader(pa.py_buffer(mapped))).read_all()
 
     def let_go(self) -> None:
         for mapped in (*self._maps.values(), *self._tables):

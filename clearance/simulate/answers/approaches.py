@@ -100,11 +100,6 @@ def approaches(
                 yield from _approach(rule, section, pair, near.steps[rows], bounded=bounded)
 
 
-def approach_at(rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray) -> Approach:
-    """A pair at some steps (k,) of the run, whether it is near or not; of overlaps only those spread evenly."""
-    return next(_approach(rule, section, pair, steps))
-
-
 def _approach(
     rule: MeasuredRule, section: Section, pair: Pair, steps: np.ndarray, *, bounded: bool = True
 ) -> Iterator[Approach]:

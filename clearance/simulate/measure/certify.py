@@ -69,7 +69,7 @@ def certify_motion(
     gap, notices = no_finer_than_rounding(what.case, what.motions, gap)
     work = _Work(what, _Question.of(found, what.limits, need, gap))
     n_steps = what.motions[0].n_steps
-    log = _Log(resources.rows, "certify", n_steps, work.question)
+    log = _Log(resources.rows, f"{resources.prefix}certify", n_steps, work.question)
     results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
     for i_part, (done, counts) in enumerate(results, start=log.done + 1):
         log.note(i_part, counts, last=i_part == len(log.spans))

@@ -80,7 +80,7 @@ class _Sweep:
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
-        every = self.resources.rows.array(f"{name}.every", (len(steps), self.n_pairs))
+        every = self._array(f"{name}.every", (len(steps), self.n_pairs))
         goal = SweepGoal(np.full(self.n_pairs, np.inf), True, False)
         return rows, every, self._run(name, steps, goal, rows=rows, every=every)
 
@@ -89,13 +89,15 @@ class _Sweep:
         return self._run(name, steps, SweepGoal(within, True, True))
 
     def _rows(self, name: str, n_rows: int) -> KeptRows:
-        array = self.resources.rows.array
         return KeptRows(
-            array(f"{name}.clearance", (n_rows,)),
-            array(f"{name}.lower_bound", (n_rows,)),
-            array(f"{name}.pair", (n_rows,), np.int64),
-            array(f"{name}.points", (n_rows, 2, 3)),
+            self._array(f"{name}.clearance", (n_rows,)),
+            self._array(f"{name}.lower_bound", (n_rows,)),
+            self._array(f"{name}.pair", (n_rows,), np.int64),
+            self._array(f"{name}.points", (n_rows, 2, 3)),
         )
+
+    def _array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
+        return self.resources.rows.array(self.resources.prefix + name, shape, kind)
 
     def sweep_steps(
         self,
@@ -143,7 +145,7 @@ class _Sweep:
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
         spans = parts(len(steps), sparse=goal.lasting or bool(goal.within[0] < np.inf))
-        log = self.resources.rows.log(name, spans)
+        log = self.resources.rows.log(self.resources.prefix + name, spans)
         n_minima = self.n_pairs if goal.each else 0
         least, tally = _gathered(log.gathered, n_minima)
 

@@ -19,6 +19,7 @@ class Resources:
         progress: called with steps done and all steps.
         rows: where they are kept; in memory by default. In `open_resumable_rows` memory does not grow with the
             steps, and the same question asked again goes on where an interrupted run was.
+        prefix: of the names of its rows.
 
     Raises:
         BadInput: fewer than one thread.
@@ -27,6 +28,7 @@ class Resources:
     jobs: int | None = None
     progress: Progress | None = None
     rows: MeasuredRows = IN_MEMORY
+    prefix: str = ""
 
     def __post_init__(self) -> None:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
@@ -40,7 +42,7 @@ class Resources:
         """
         tell = self.progress
         shifted = None if tell is None else lambda done, _: tell(before + done, of)
-        return replace(self, progress=shifted, rows=self.rows.named(f"{number}-"))
+        return replace(self, progress=shifted, prefix=f"{self.prefix}{number}-")
 
     @property
     def n_threads(self) -> int:

@@ -86,22 +86,6 @@ def _part_of(answer: SectionAnswer, work_out: str, progress: Progress | None) ->
     return ContactPart.of(finder, section.phase.first, section.places, progress)
 
 
-def find_contacts(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
-    clearance: np.ndarray,
-    nearest: np.ndarray,
-    work_out: str = "events",
-) -> FoundContacts:
-    """The contacts of a run in one part; arguments as in `overlap_finder`."""
-    finder = overlap_finder(case, motions, pairs, clearance, nearest, work_out)
-    part = ContactPart.of(finder, 0, np.arange(len(pairs)))
-    return joined_contacts(
-        [part], list(zip(*pair_names(case, pairs), strict=True)), motions[0].times
-    )
-
-
 def overlap_finder(
     case: Case,
     motions: Sequence[Motion],
