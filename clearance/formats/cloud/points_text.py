@@ -2,141 +2,100 @@
 
 Cells are parted by commas, semicolons (then decimals may have commas) or blanks, as the first row shows. A row
 that is longer or shorter than the first is refused; no count is stated, so that a file cut off between two rows
-cannot be told from a shorter one. Not for: tables over time (`csv_table`).
+cannot be told from a shorter one. Not for: how a table is parsed (`csv_table`).
 """
 
 from __future__ import annotations
 
-import itertools
+import io
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
-import numpy as np
-
-from clearance.errors import BadInput, BadShape, BadSyntax, at
+from clearance.errors import BadInput, BadShape
 from clearance.formats.cloud.points import Points
 from clearance.formats.table.column_units import Column, columns_in, in_own_units, note_on_units
-from clearance.formats.text.numbers import floats
-
-AT_ONCE = 1 << 16
-"""Rows that are taken apart together."""
+from clearance.formats.table.csv_table import (
+    TextTable,
+    blanks_as_tabs,
+    columns_of,
+    first_row,
+    header_of,
+)
 
 _LENGTHS = dict.fromkeys("xyz", False)
 """What has a length, for the units of columns."""
 
 
-class _RowFormat(NamedTuple):
-    """How the rows are written: what parts the cells (None for blanks), and whether decimals have commas."""
-
-    delimiter: bytes | None
-    has_commas: bool
-
-    def cells(self, line: bytes) -> list[bytes]:
-        """Those of a row."""
-        cells = line.split(self.delimiter)
-        if self.delimiter is not None:
-            cells = [cell.strip() for cell in cells]
-        if not self.has_commas:
-            return cells
-        if any(b"." in cell for cell in cells):
-            raise BadSyntax("a point among decimal commas", valid="one of both in a file")
-        return [cell.replace(b",", b".") for cell in cells]
-
-
 def read_points_text(data: bytes) -> Points:
-    """The points in a table.
+    """The points in a table, those that are not finite too.
 
     Raises:
         BadSyntax, BadShape, DuplicateName, BadInput: with the line.
     """
-    lines = _lines(data)
-    first = next(lines, None)
-    if first is None:
+    content = _without_remarks(data)
+    table = _as_written(content)
+    first = first_row(table)
+    if not first:
         raise BadShape("there are no rows", valid="at least one: x, y, z")
-    i_line, line = first
-    written = _written(line, data)
-    header = _header(written, line)
-    columns = _columns(header) if header else [Column(name, name) for name in "xyz"]
-    if header is None:
-        lines = itertools.chain([first], lines)
-    n_cells = len(written.cells(line)) if header is None else len(header)
-    if n_cells < 3:
-        raise BadShape(f"{n_cells} columns", where=f"line {i_line}", valid="three or more: x, y, z")
-    names = [name.header for name in columns]
-    chosen = [names.index(_of(columns, axis).header) for axis in "xyz"]
-    places = np.concatenate([np.empty((0, 3)), *_blocks(lines, written, n_cells, chosen)])
-    if not len(places):
-        raise BadShape("there are no rows below the header", valid="at least one: x, y, z")
-    of_axes = [_of(columns, axis) for axis in "xyz"]
-    in_own_units(places, of_axes)
-    notes = [*_on_more_columns(header, n_cells), *note_on_units(of_axes)]
-    return Points(places, tuple(notes), of_axes[0].unit is not None)
+    has_header = table.float_of(first[0]) is None
+    if not has_header:
+        others = (f"column {i}" for i in range(4, len(first) + 1))
+        table = table._replace(names=(*"xyz"[: len(first)], *others))
+    header = header_of(table, "y, z")
+    if len(header) < 3:
+        raise BadShape(f"{len(header)} columns", valid="three or more: x, y, z")
+    of_axes = _axes(header)
+    chosen = [header[i] for i, _ in of_axes]
+    (places,) = columns_of(table, len(content), header, [chosen], finite=False)
+    columns = [column for _, column in of_axes]
+    in_own_units(places, columns)
+    notes = [*([] if has_header else _on_more_columns(len(header))), *note_on_units(columns)]
+    return Points(places, tuple(notes), columns[0].unit is not None)
 
 
-def _on_more_columns(header: list[str] | None, n_cells: int) -> Iterator[str]:
+def _on_more_columns(n_columns: int) -> Iterator[str]:
     """A note where it is a guess which columns are x, y and z: some tables begin with a number of the point."""
-    if header is None and n_cells > 3:
-        yield f"no header names its {n_cells} columns: the first three are taken for x, y and z"
+    if n_columns > 3:
+        yield f"no header names its {n_columns} columns: the first three are taken for x, y and z"
 
 
-def _lines(data: bytes) -> Iterator[tuple[int, bytes]]:
-    """Number and content of each line that is not blank and no remark."""
-    for i, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
-        stripped = line.strip()
-        if stripped and not stripped.startswith((b"#", b"//")):
-            yield i, stripped
+def _without_remarks(data: bytes) -> bytes:
+    """The content, each line that is a remark empty in its place; labels of any encoding are text."""
+    lines = data.removeprefix(b"\xef\xbb\xbf").splitlines()
+    content = b"\n".join(b"" if line.lstrip().startswith((b"#", b"//")) else line for line in lines)
+    return content.decode("utf-8", errors="replace").encode()
 
 
-def _written(first: bytes, data: bytes) -> _RowFormat:
+def _as_written(content: bytes) -> TextTable:
+    """The table with the separators that its first row shows."""
+    first = content.lstrip().partition(b"\n")[0]
+
+    def opened() -> io.BytesIO:
+        return io.BytesIO(content)
+
     if b";" in first:
-        return _RowFormat(b";", b"," in data)
-    return _RowFormat(b"," if b"," in first else None, False)
-
-
-def _header(written: _RowFormat, line: bytes) -> list[str] | None:
-    """The names in the first row, if it has names."""
-    cells = line.split(written.delimiter)
-    try:
-        floats(written.cells(line)[:1])
-        return None
-    except BadSyntax:
-        return [cell.decode("utf-8", errors="replace").strip().strip('"') for cell in cells]
-
-
-def _columns(header: Sequence[str]) -> list[Column]:
-    columns = columns_in(
-        [name.lower() if name.lower() in _LENGTHS else name for name in header], _LENGTHS, None
+        return TextTable(opened, ";", "," if b"," in content else ".")
+    return (
+        TextTable(opened) if b"," in first or not first else TextTable(blanks_as_tabs(opened), "\t")
     )
-    if len({_of(columns, axis).unit is None for axis in "xyz"}) > 1:
+
+
+def _axes(header: Sequence[str]) -> list[tuple[int, Column]]:
+    """The columns of x, y and z, and where they are.
+
+    Raises:
+        BadShape: one is missing. BadInput: some name a unit, or one that no length has.
+    """
+    names = [name.lower() if name.lower() in _LENGTHS else name for name in header]
+    columns = columns_in(names, _LENGTHS, None)
+    found = [_axis(columns, axis) for axis in "xyz"]
+    if len({column.unit is None for _, column in found}) > 1:
         raise BadInput("some of x, y and z name a unit", valid="units of all three, or of none")
-    return columns
+    return found
 
 
-def _of(columns: Sequence[Column], axis: str) -> Column:
-    for column in columns:
+def _axis(columns: Sequence[Column], axis: str) -> tuple[int, Column]:
+    for i, column in enumerate(columns):
         if column.name.lower() == axis:
-            return column
+            return i, column
     shown = ",".join(column.header for column in columns)
     raise BadShape(f"there is no column {axis!r} in the header {shown!r:.80}", valid="x, y and z")
-
-
-def _blocks(
-    lines: Iterator[tuple[int, bytes]], written: _RowFormat, n_cells: int, chosen: Sequence[int]
-) -> Iterator[np.ndarray]:
-    while block := list(itertools.islice(lines, AT_ONCE)):
-        rows = [_row(line, where, written, n_cells) for where, line in block]
-        try:
-            yield np.stack([floats([row[i] for row in rows]) for i in chosen], axis=1)
-        except BadSyntax:
-            for (where, _), row in zip(block, rows, strict=True):
-                with at(f"line {where}"):
-                    floats([row[i] for i in chosen])
-            raise
-
-
-def _row(line: bytes, where: int, written: _RowFormat, n_cells: int) -> list[bytes]:
-    with at(f"line {where}"):
-        cells = written.cells(line)
-        if len(cells) != n_cells:
-            raise BadShape(f"{len(cells)} columns", valid=f"the first row has {n_cells}")
-        return cells

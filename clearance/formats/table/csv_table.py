@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
@@ -79,7 +80,7 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
     with opened() as file:
         start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
         if _is_of_blanks(start):
-            return as_written(_blanks_as_tabs(opened), names)
+            return as_written(blanks_as_tabs(opened), names)
         others = [mark for mark in _SEPARATORS if mark.encode() in start]
         if not others or (names is None and b"," in start):
             return TextTable(opened, names=names)
@@ -97,14 +98,14 @@ def _is_of_blanks(start: bytes) -> bool:
     )
 
 
-def _blanks_as_tabs(opened: Opener) -> Opener:
+def blanks_as_tabs(opened: Opener) -> Opener:
     """The same file, a tab for each stretch of blanks; the mark of a comment stays out of the first row."""
     with opened() as file:
-        rows = [line.split() for line in file.read().splitlines()]
-    first = next(row for row in rows if row)
-    if first[0] in (b"#", b"%"):
-        del first[0]
-    content = b"\n".join(b"\t".join(row) for row in rows)
+        lines = file.read().replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    content = re.sub(rb"[ \t]+", b"\t", re.sub(rb"(?m)^[ \t]+|[ \t]+$", b"", lines))
+    marked = re.match(rb"(\s*)[#%]\t", content)
+    if marked:
+        content = marked[1] + content[marked.end() :]
     return lambda: io.BytesIO(content)
 
 
@@ -173,12 +174,17 @@ def require_time(names: Sequence[str], others: str) -> None:
 
 
 def columns_of(
-    table: TextTable, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
+    table: TextTable,
+    n_bytes: int,
+    names: list[str],
+    parts: Sequence[Sequence[str]],
+    *,
+    finite: bool = True,
 ) -> list[np.ndarray]:
     """For each of `parts` the (n, len(part)) columns of its names.
 
     Args:
-        n_bytes: length of the file. names: of all its columns.
+        n_bytes: length of the file. names: of all its columns. finite: False to take NaN and infinity too.
 
     Raises:
         BadShape, BadSyntax, NotFinite: with the line in the file.
@@ -200,7 +206,8 @@ def columns_of(
         columns.resize(
             (n_rows, columns.shape[1]), refcheck=False
         )  # gives the rest back, without a copy
-    _refuse_not_finite(found, parts, names, table)
+    if finite:
+        _refuse_not_finite(found, parts, names, table)
     return found
 
 

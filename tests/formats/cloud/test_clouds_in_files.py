@@ -163,10 +163,13 @@ def test_a_pcd_file_that_is_not_as_it_says_is_refused(fault):
     [
         (b"", "there are no rows"),
         (b"x,y,z\n", "no rows below the header"),
-        (b"1,2\n", "line 1: 2 columns"),
-        (b"1 2 3\n4 5\n", "line 2: 2 columns; the first row has 3"),
-        (b"1 2 3\n4 5 a\n", "line 2: 'a' is not a number"),
-        (b"1;2;3,5\n4;5;6.5\n", "line 2: a point among decimal commas"),
+        (b"1,2\n", "2 columns; three or more"),
+        (b"1 2 3\n4 5\n", "line 2: 2 columns; there are 3 names"),
+        (b"1 2 3\n4 5 a\n", "line 2: 'a' in column 'z' is not a number"),
+        (
+            b"1;2;3,5\n4;5;6.5\n",
+            "line 2: '6.5' in column 'z' is not a number; decimals have commas",
+        ),
         (b"x [mm],y,z\n1,2,3\n", "some of x, y and z name a unit"),
         (b"x [deg],y [deg],z [deg]\n1,2,3\n", "is a length, not in deg"),
     ],
