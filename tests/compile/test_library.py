@@ -8,9 +8,7 @@ import platform
 import pytest
 
 from clearance.compile import build, library, manifest
-from clearance.compile.decorators import KERNELS
 from clearance.compile.manifest import Manifest, is_current, read_manifest
-from clearance.errors import BadInput
 
 
 @pytest.fixture
@@ -85,14 +83,6 @@ def test_a_damaged_library_is_refused_in_one_line(folder, monkeypatch, is_linked
     assert ("missing or cut off" in str(refused.value)) == (n_bytes != 3)
 
 
-def test_a_setting_that_does_not_exist_is_refused(monkeypatch):
-    monkeypatch.setattr(library, "KERNELS", "nonsense")
-    with pytest.raises(BadInput) as refused:
-        library._opened.__wrapped__()
-    said = "CLEARANCE_KERNELS is 'nonsense'; built, jit or python is needed"
-    assert str(refused.value) == said
-
-
 def test_without_the_compiler_a_missing_library_is_one_line(folder, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     monkeypatch.setattr(library, "KERNELS", "built")
@@ -120,9 +110,3 @@ def test_a_processor_takes_the_best_that_is_built_for_it(monkeypatch, machine, f
     monkeypatch.setattr(library, "_flags", lambda: set(flags.split()))
     assert library.processor_level() == level
     assert level in build.all_levels()
-
-
-@pytest.mark.skipif(KERNELS != "built", reason="the library is not used")
-def test_a_symbol_that_the_library_has_not_is_none():
-    assert library.built_address("clearance_take")
-    assert library.built_address("clearance_no_such_kernel") is None

@@ -67,14 +67,6 @@ def test_parts_of_an_l_hold_it_and_lie_in_it():
 
 
 @needs(boolean)
-def test_without_coacd_the_hull_stands_for_a_concave_body(monkeypatch):
-    monkeypatch.setattr(decompose, "available", lambda: False)
-    parts = convex_parts(l_prism())
-    assert len(parts.outer) == 1 and parts.inner == () and parts.closed
-    assert "CoACD is not installed (pip install 'clearance[contact]')" in parts.note
-
-
-@needs(boolean)
 @needs(decompose)
 @pytest.mark.cold
 def test_a_decomposition_that_dies_is_reported_and_costs_nothing_else(monkeypatch, tmp_path):

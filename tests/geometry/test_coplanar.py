@@ -109,14 +109,6 @@ def test_a_needle_that_nothing_covers_is_kept():
     assert len(result.face_starts) == 3
 
 
-def test_repeated_corners_are_dropped_where_covered_and_kept_where_not():
-    v = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6]], dtype=float)
-    result = merge_coplanar(v, np.array([[0, 1, 2], [0, 0, 1], [2, 2, 2], [3, 3, 4]]))
-    assert (result.n_dropped, result.n_degenerate) == (2, 1)
-    shape = Polyhedron(result.vertices, np.split(result.face_vertices, result.face_starts[1:-1]))
-    assert {tuple(p) for p in shape.face(1)} == {(5, 5, 5), (6, 6, 6)}
-
-
 def test_equal_vertices_and_signed_zeros_are_one():
     soup = CUBE[CUBE_TRIANGLES].reshape(-1, 3)
     soup[::5] *= np.where(soup[::5] == 0.0, -1.0, 1.0)

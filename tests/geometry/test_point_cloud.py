@@ -6,8 +6,7 @@ import pytest
 from clearance import PointCloud
 from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.point_cloud import components_of
-from clearance.geometry.tree import join, surface_of
-from tests.made_cases import torus
+from clearance.geometry.tree import surface_of
 
 
 def test_points_are_kept_once_and_in_order():
@@ -59,11 +58,6 @@ def test_the_box_of_all_holds_the_balls():
         assert (half >= reach + 0.3).all()
 
 
-def test_joined_bodies_keep_their_radii():
-    joined = join([torus(0.5, 0.1, 8, 6), PointCloud([[0, 0, 0], [1, 1, 1]], 0.2)])
-    assert joined.radii.tolist() == [0.0, 0.2]
-
-
 def test_groups_hang_together_by_their_balls():
     line = np.arange(6)[:, None] * [0.05, 0.0, 0.0]
     apart = np.concatenate([line, line + [0.0, 1.0, 0.0]])
@@ -82,11 +76,3 @@ def test_no_group_holds_points_whose_balls_are_apart():
             touch = touch @ touch
         groups = components_of(points, radius)
         assert touch[groups[:, None] == groups].all()
-
-
-def test_the_box_about_a_cloud_holds_its_balls():
-    points = np.random.default_rng(7).uniform(-1.0, 1.0, (50, 3)) + [1000.0, 0.0, 0.0]
-    cloud = PointCloud(points, 0.1)
-    low, high = cloud.box_about().bounds
-    assert (low <= points.min(axis=0) - 0.1).all() and (high >= points.max(axis=0) + 0.1).all()
-    assert (high - low <= np.ptp(points, axis=0) + 0.2 + 1e-11).all()

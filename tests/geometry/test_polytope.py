@@ -27,12 +27,6 @@ def test_a_cube_has_six_merged_faces():
     assert {tuple(row) for row in cube.half_spaces + 0.0} == {tuple(row) for row in WALLS + 0.0}
 
 
-def test_half_spaces_and_polyhedra_give_the_same_cube():
-    again = Polytope.from_half_spaces(np.vstack([WALLS * 3.0, [[1.0, 1.0, 1.0, -9.0]]]))
-    assert np.abs(again.vertices - Polytope(CUBE).vertices).max() < 1e-14
-    assert Polytope.from_polyhedron(Polytope(CUBE).polyhedron()).volume == 1.0
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("n", [4, 5, 9, 14])
 def test_volume_and_face_count_are_those_of_the_oracle(n):

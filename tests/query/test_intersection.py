@@ -177,13 +177,6 @@ def test_no_plane_is_missed_where_rounding_makes_a_false_top():
     assert (corners @ rows[:, :3].T + rows[:, 3]).max() < 1e-14
 
 
-def test_it_agrees_with_manifold():
-    manifold3d = pytest.importorskip("manifold3d")
-    a, b = cluster(2, 100)
-    solids = [manifold3d.Manifold.hull_points(body.vertices) for body in (a, b)]
-    assert intersect([a, b]).volume == pytest.approx((solids[0] ^ solids[1]).volume(), rel=1e-5)
-
-
 def test_each_face_lies_in_the_plane_it_is_said_to_come_from():
     bodies = cluster(4, 60)
     found = intersect(bodies)

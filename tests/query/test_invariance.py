@@ -99,18 +99,6 @@ def test_moving_away_along_the_witness_direction_adds_what_was_moved(pair, moves
         before = after
 
 
-@given(boxes(), boxes(), poses(), st.tuples(*[st.floats(-0.3, 0.3)] * 3))
-@examples(80)
-def test_between_two_steps_the_distance_changes_by_no_more_than_the_motion(a, b, pose, step):
-    one, other = Polyhedron(*a), Polyhedron(*b)
-    moved = pose.copy()
-    moved[:3, 3] += step
-    way = np.linalg.norm(moved[:3, 3] - pose[:3, 3])
-    first, second = distance(one, other, pose_b=pose), distance(one, other, pose_b=moved)
-    allowed = way * (1 + 1e-15) + first.error_bound + second.error_bound
-    assert abs(first.distance - second.distance) <= allowed
-
-
 def _bytes(near):
     return (
         near.distance.hex(),

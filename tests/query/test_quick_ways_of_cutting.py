@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.body import HEAD, INVERSE_WIDTH, ROW
 from clearance.kernels.polytope.exits import cell_of, is_in_ball
 from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
@@ -45,15 +44,6 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
 
 
 @pytest.mark.slow
-def test_the_ball_touches_the_nearest_plane_of_a_cube():
-    cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
-    packed, numbers = cube.packed, cube.packed.numbers
-    assert is_in_ball(packed, 1.0 - 1e-8, 0, 0) and not is_in_ball(packed, 1.0 - 1e-9, 0, 0)
-    assert not is_in_ball(packed, 0.6, 0.6, 0.6)
-    assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
     rng = np.random.default_rng(seed)
@@ -78,34 +68,6 @@ def test_closing_up_rows_changes_no_bit(sparse, monkeypatch):
     cut = cut_down(task)
     assert cut.moments()[0] == pytest.approx(usual[0], rel=2e-15)
     assert (cut.state[0] > 0) == (sparse == 2.0)
-
-
-@pytest.mark.parametrize(("m", "n", "spread"), [(2, 2000, 0.4), (2, 1500, 0.05), (5, 300, 0.3)])
-def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
-    bodies = cluster(m, n, 3, spread)
-    task = CuttingTask.about(bodies, common_point(bodies).point)
-    cut = cut_down(task)
-    by_faces = cut.moments()
-    by_edges = cutting.by_edges(cut.block, cut.state, cut.table)
-    assert by_faces == pytest.approx(by_edges, rel=1e-14, abs=1e-15)
-
-
-def test_a_body_of_its_own_faces_only_has_its_volume():
-    body = cluster(2, 50, 0)[0]
-    cut = Cutting(CuttingTask.about([body], body.centroid), 0)
-    moments = cut.moments()
-    assert moments[0] == pytest.approx(body.volume, rel=1e-15)
-    assert moments[1:4] / moments[0] == pytest.approx(np.zeros(3), abs=1e-15)
-
-
-def test_bodies_are_taken_by_the_room_they_leave():
-    big = Polytope(np.array(np.meshgrid([-3, 3], [-3, 3], [-3, 3])).reshape(3, 8).T * 1.0)
-    bodies = [big, *cluster(3, 30, 2, 0.3)]
-    task = CuttingTask.about(bodies, common_point(bodies).point)
-    rooms = [body.offsets_about(task.origin).min() for body in bodies]
-    assert task.order[-1] == 0 and sorted(task.order) == [0, 1, 2, 3]
-    assert task.order[0] == min(range(4), key=lambda k: bodies[k].volume)
-    assert rooms[task.order[1]] <= rooms[task.order[2]] <= rooms[task.order[3]]
 
 
 def test_a_moved_body_is_the_hull_of_the_moved_corners():

@@ -8,7 +8,6 @@ import pytest
 import clearance as cl
 from clearance.errors import (
     BadDimension,
-    BadPose,
     BadShape,
     BadTime,
     DuplicateName,
@@ -88,23 +87,6 @@ def test_a_trajectory_is_replaced_in_the_order_of_the_one_before(given):
 def test_what_is_no_trajectory_is_refused(given, times, positions, options, fault):
     with pytest.raises(fault):
         given.with_trajectory(times, positions, **options)
-
-
-def test_places_are_rigid_motions():
-    with pytest.raises(BadPose, match="'post'"):
-        cl.Obstacle(cl.Body("post", cl.box((1, 1, 1))), 2.0 * np.eye(4))
-    with pytest.raises(BadPose, match="world_from_base"):
-        cl.PlacedRobot(kuka(), world_from_base=2.0 * np.eye(4))
-
-
-def test_limits_are_in_order():
-    assert cl.Limits(fail=0.01) == cl.Limits(0.01, 0.01)
-    assert cl.Limits() == cl.Limits(0.0, 0.0)
-    with pytest.raises(BadDimension, match="is below the fail limit"):
-        cl.Limits(fail=0.02, warn=0.01)
-    for bad in (-0.001, float("nan"), float("inf")):
-        with pytest.raises(BadDimension):
-            cl.Limits(fail=bad, warn=1.0)
 
 
 def posts(*names):

@@ -57,13 +57,3 @@ def test_one_answer_a_cell_and_question(case):
     assert asked == [(case.name, 0), (case.name, 1)]
     answer(replace(case, limits=Limits(0.1)))  # the third: the first is let go
     assert answer(case, 1) is answer(moved(case), 1) and answer(case) is not first
-
-
-def test_an_error_is_no_answer(case):
-    @once_a_cell(2)
-    def answer(case):
-        raise ValueError
-
-    for _ in range(2):
-        with pytest.raises(ValueError):
-            answer(case)

@@ -23,11 +23,6 @@ def test_a_table_goes_straight_between_its_samples_and_stays_before_and_after():
     assert not len(knots.jumps)
 
 
-def test_own_samples_are_the_tables_own_numbers():
-    knots = knots_of(TIMES, VALUES)
-    assert knots.values_at(TIMES) is VALUES
-
-
 @given(st.integers(0, 2**32 - 1))
 def test_a_part_of_a_cubic_is_the_same_cubic(seed):
     rng = np.random.default_rng(seed)

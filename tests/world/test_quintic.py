@@ -48,7 +48,7 @@ def asked(seed, n_steps=4):
     return Trajectory(times, ("j",), positions, velocities), accelerations
 
 
-@examples(20)
+@examples(12)
 @given(st.integers(0, 2**32 - 1))
 def test_the_cubics_are_as_near_to_the_quintics_as_they_say(seed):
     given_path, accelerations = asked(seed)
@@ -68,15 +68,6 @@ def test_the_cubics_are_as_near_to_the_quintics_as_they_say(seed):
             share = Fraction(tenth, 10)
             right = exact_quintic(ends, (at[i] + share * part - start[k]) / length)
             assert abs(exact_cubic(q0, v0, q1, v1, share) - right) <= error
-
-
-def test_the_samples_of_the_table_stay():
-    given_path, accelerations = asked(5)
-    found = with_accelerations(given_path, accelerations)
-    places = np.searchsorted(found.times, given_path.times)
-    assert (found.times[places] == given_path.times).all()
-    assert np.abs(found.positions[places] - given_path.positions).max() == 0.0
-    assert np.abs(found.velocities[places] - given_path.velocities).max() <= 1e-15
 
 
 def test_accelerations_at_rest_bend_a_path_that_its_points_do_not_show():

@@ -97,11 +97,6 @@ def test_a_hidden_pair_that_comes_much_nearer_than_at_its_samples_is_told_to_a_h
     assert 0.0038 < other.proven <= other.clearance < other.proven + 2e-4
 
 
-def test_without_a_proof_they_are_of_the_samples():
-    run = cl.check(two_posts(), certify=False)
-    assert run.session.motion_minima() == run.pair_minima
-
-
 def test_a_pair_alone_has_the_certificate_of_the_rule_where_it_is_the_nearest():
     rule = cl.check(sweeping(TWICE, PAST)).session.rules[0]
     for pair, answer in near_alone(rule, 0.02).items():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.errors import BadDimension, BadInput, Unavailable
+from clearance.errors import BadDimension, BadInput
 from clearance.geometry import boolean
 from clearance.simulate.answers.workspace.swept_pieces import swept_pieces
 from clearance.simulate.answers.workspace.workspace import shared_workspace
@@ -187,10 +187,3 @@ def test_refusals():
         shared_workspace([here, there])
     with pytest.raises(BadDimension, match="within is nan m"):
         shared_workspace([one, there], within=float("nan"))
-
-
-def test_without_manifold_it_says_how_to_get_it(monkeypatch):
-    monkeypatch.setattr(boolean, "available", lambda: False)
-    two = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.0))
-    with pytest.raises(Unavailable, match=r"pip install 'clearance\[contact\]'"):
-        shared_workspace([slider("one", (1, 0, 0), -1.0, 1.0), two])

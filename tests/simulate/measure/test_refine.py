@@ -72,12 +72,6 @@ def test_a_limit_that_takes_more_than_its_share_of_work_stays_undecided(monkeypa
     assert run.certificate.tally["queries"] < 10_000
 
 
-def test_what_nothing_hangs_on_is_not_proven_again(monkeypatch):
-    clear = cl.check(passing(0.03))
-    monkeypatch.setattr(refine, "MOST_QUERIES", -1)
-    assert cl.check(passing(0.03)).certificate.tally == clear.certificate.tally
-
-
 def turning(off: float, limits: cl.Limits) -> Case:
     """A plate turns a corner past a wall twice, `off` [m] beyond the fail limit both times."""
     spin = Joint(

@@ -74,17 +74,6 @@ def test_a_point_deep_in_a_link_is_a_contact_at_every_need():
         assert (run.worst["clearance"], run.status) == (0.0, "contact")
 
 
-def test_radius_is_what_a_clearance_is_less_by():
-    """Padding of the radius on a cloud of next to no radius gives the same, but for what is contact."""
-    points, positions = scan(), way(21)
-    balls = cl.check(case_of(points, positions)).record.steps["clearance"].to_numpy()
-    case = case_of(points, positions)
-    thin = cl.Obstacle(cl.Body("scan", cl.PointCloud(points, 1e-12)), padding=RADIUS - 1e-12)
-    padded = cl.check(replace(case, obstacles=(thin,))).record.steps["clearance"].to_numpy()
-    assert np.abs(balls - np.maximum(padded, 0.0)).max() <= 1e-15
-    assert padded.min() < 0.0
-
-
 def test_a_cloud_that_moves_by_a_clock_of_its_own():
     """Every step of one clock against every step of the other, by arithmetic."""
     points, positions = scan(300), way(15)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.replay.bodies import FramePlace, bodies_of, placed_bodies
 from clearance.simulate.replay.replay import replay_of
 from clearance.world.carry import Carry
-from clearance.world.case import Clock
 from clearance.world.mount import Mount
 from clearance.world.timing import Timing, Window
 from tests.made_cases import at
@@ -130,18 +126,6 @@ def test_moments_between_steps_are_drawn_where_things_are_then():
     share = record.worst.time
     (part,) = [k for k, body in enumerate(replay.bodies) if body.name == "part"]
     assert replay.poses[part][i, :3] == pytest.approx([-1 + 2.5 * share, 0, 0.38], abs=1e-6)
-
-
-def test_where_clocks_are_not_tied_the_second_body_is_drawn_at_its_own_time(record):
-    bodies = bodies_of(record.case)
-    names = [body.name_in(record.case) for body in bodies]
-    loose = replace(record, case=replace(record.case, clock=Clock(np.inf)))
-    frame = FramePlace(0, 0.0, None, ("left/tool", "door"), 2.0)
-    drawn = placed_bodies(loose, bodies, [frame])
-    where = {name: pose[0, :3, 3].tolist() for name, pose in zip(names, drawn.poses, strict=True)}
-    assert where["door"] == pytest.approx([1.4, 0.5, 0.6])
-    assert where["left/tool"] == pytest.approx([0, 0, 0.5])
-    assert where["right/tool"] == pytest.approx([3, 0, 0.5])
 
 
 def test_a_robot_that_comes_and_goes_is_hidden_before_and_after():
