@@ -16,8 +16,8 @@ from clearance.findings.doubts import doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.findings_file import conditions_text
 from clearance.findings.measurement_conditions import conditions_of
+from clearance.findings.of_budget import least_expected
 from clearance.findings.of_record import why_incomplete
-from clearance.findings.tolerance_lines import least_expected
 from clearance.record.record import Record
 from clearance.run import Run
 from clearance.world.case import Source

@@ -13,7 +13,7 @@ from datetime import date
 from clearance.batch.item import Item
 from clearance.case.case_file import load_cell, waivers_of_cell
 from clearance.errors import ClearanceError, nearest_name
-from clearance.findings.waiver_names import unknown_among
+from clearance.findings.judgement import unknown_among
 from clearance.world.rules import matches
 from clearance.world.waiver import Waiver
 

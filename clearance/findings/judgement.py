@@ -6,19 +6,21 @@ Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`verdi
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+from clearance.errors import nearest_name
 from clearance.findings.finding import UNPROVEN, AppliedWaiver, Finding, FindingName
-from clearance.findings.of_rule import RuleFindings
-from clearance.findings.standing import code_of, why_undecided
+from clearance.findings.of_rule import RuleFindings, code_of, why_undecided
 from clearance.record.moment import Moment
+from clearance.record.record import Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest, Session
 from clearance.record.status import STATUSES, Status
-from clearance.world.case import Limits
+from clearance.world.case import Case, Limits
+from clearance.world.rules import matches
 from clearance.world.waiver import Waiver
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
@@ -194,7 +196,6 @@ class _WaivedRun:
 
     def _why_not_needed(self, i: int) -> str:
         """Why nothing needs a waiver: what it names is not there, or keeps its rule."""
-        from clearance.findings.waiver_names import unknown_name
 
         told = unknown_name(self.session.record, self.waivers[i])
         return told or "what it is of keeps to its rule, or a later waiver is of it"
@@ -228,3 +229,32 @@ def _fault(waiver: Waiver, failing: Finding, undecided: str) -> str:
     if failing.clearance is not None and failing.clearance < waiver.at_least:
         return f"{waiver} is of at least {level}, and less occurs"
     return f"{waiver} is of at least {level}, and that is not proven; {undecided}"
+
+
+def unknown_name(record: Record, waiver: Waiver) -> str:
+    """What a waiver names that is not there, with the nearest name; empty where all is."""
+    return unknown_among([record.case], [rule.name for rule in record.rules], waiver)
+
+
+def unknown_among(cases: Iterable[Case], rules: Sequence[str], waiver: Waiver) -> str:
+    """What a waiver names that none of some cases has, with the nearest name; empty where all is.
+
+    Args:
+        rules: the names of those of all cases.
+    """
+    if not any(matches(name, waiver.rule) for name in rules):
+        return f"no rule is called {waiver.rule!r}; {nearest_name(waiver.rule, rules)}"
+    bodies = list(dict.fromkeys(name for case in cases for name in _bodies(case)))
+    for pattern in waiver.between:
+        if not any(matches(name, pattern) for name in bodies):
+            return f"no body is called {pattern!r}; {nearest_name(pattern, bodies)}"
+    return ""
+
+
+def _bodies(case: Case) -> list[str]:
+    """All names that bodies go by: of a link also the one without its robot's."""
+    links = [link for placed in case.robots for link in placed.robot.link_names]
+    full = [
+        case.prefix_of(placed) + link for placed in case.robots for link in placed.robot.link_names
+    ]
+    return [*full, *links, *(obstacle.name for obstacle in case.obstacles)]

@@ -1,14 +1,16 @@
 """What tolerances make of rules that are kept as measured: a limit that is not proven with all errors.
 
 A rule that is broken as measured has findings of its own, and none of these. Pairs that are waived are held
-against their waiver's level, all others against their rule's. Not for: working out what tolerances leave
-(`clearance.budget`).
+against their waiver's level, all others against their rule's. What is left is a
+sentence a rule. Not for: working out what tolerances leave (`clearance.budget`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+
+import numpy as np
 
 from clearance.findings.finding import (
     NOT_PROVEN,
@@ -18,12 +20,13 @@ from clearance.findings.finding import (
     FindingName,
 )
 from clearance.findings.judgement import Judgement, WaiverUse
-from clearance.findings.of_rule import joints_of
-from clearance.findings.standing import code_of
+from clearance.findings.of_rule import code_of, joints_of
 from clearance.record.budget import RuleBudget
 from clearance.record.record import Record
 from clearance.record.session import Session
 from clearance.record.status import STATUSES, Status
+from clearance.record.wording import mm, of_rule
+from clearance.world.budget import Budget
 from clearance.world.case import Limits
 
 NOT_WORKED_OUT = "what the tolerances leave was not worked out"
@@ -124,3 +127,42 @@ def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:
 def _point(point: tuple[float, float, float]) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in point)
     return x, y, z
+
+
+def budget_lines(record: Record) -> tuple[str, ...]:
+    """A sentence for each rule on what is proven and what is expected; none without tolerances."""
+    budget = record.case.tolerance
+    if budget is None or record.budget is None:
+        return ()
+    return tuple(_line(record, budget, one) for one in record.budget)
+
+
+def tolerance_lines(record: Record) -> tuple[str, ...]:
+    """These, and which grasps are taken as exact."""
+    exact = [f"{one.part} by {one.by}" for one in record.case.carries if one.exact_grasp]
+    told = budget_lines(record)
+    return (*told, f"Grasps taken as exact: {', '.join(exact)}.") if told and exact else told
+
+
+def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
+    proven, expected = one.least, least_expected(one)
+    basis = "the samples only" if one.between is None else "the motion"
+    waived = " (waived pairs among them)" if record.case.waivers else ""
+    left = f"at least {mm(proven)} mm are left{waived}"
+    if proven <= 0.0:
+        left = "contact is not ruled out"  # a number below 0 says no depth
+    told = f"With every error at its worst at once {left}{of_rule(one.rule)}; proven for {basis}."
+    if expected is not None:
+        spread = f"{budget.coverage:g} sigma, estimate{'' if one.between is not None else ' at the samples'}"
+        told += f" Expected ({spread}): {mm(expected)} mm."
+    return told
+
+
+def least_expected(one: RuleBudget) -> float | None:
+    """[m] The least expected clearance, of the motion where that is certified. None where it is not worked out.
+
+    Never told below what is proven: three deviations of a single uniform error are more than its worst.
+    """
+    found = np.append(one.expected, [] if one.expected_between is None else one.expected_between)
+    known = found[np.isfinite(found)]
+    return max(float(known.min()), one.least) if len(known) else None

@@ -15,14 +15,13 @@ import numpy as np
 
 from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
 from clearance.findings.occurrences import NearCourse, release_level
-from clearance.findings.standing import why_undecided
-from clearance.record.certificate import Certificate, contact_is_open
+from clearance.record.certificate import Certificate, contact_is_open, motion_codes
 from clearance.record.moment import Moment
 from clearance.record.record import Record
 from clearance.record.rule_answer import NearRows, RuleAnswer
 from clearance.record.session import Session
-from clearance.record.status import Status, status_of
-from clearance.world.case import Limits
+from clearance.record.status import STATUSES, Status, status_of
+from clearance.world.case import Case, Limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,3 +265,18 @@ def _least(bounds: np.ndarray) -> float | None:
 
 def _finite(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
+
+
+def code_of(answer: RuleAnswer) -> int:
+    """The index into `STATUSES` of the worst of a rule, at a step or, as far as proven, between two."""
+    codes = [STATUSES.index(Status(answer.status))]
+    if answer.certificate is not None:
+        codes.append(int(motion_codes(answer.certificate, answer.limits, slice(None)).max()))
+    return max(codes)
+
+
+def why_undecided(case: Case) -> str:
+    """Why a level is neither proven nor seen to be passed, and what helps."""
+    if case.clock.slack > 0.0:
+        return "a finer proof takes a smaller --certify-mm"
+    return "undecided: the motion stays too close to the limit for the searches allowed"

@@ -15,9 +15,9 @@ from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
 from clearance.findings.finding_text import finding_line, waived_lines
 from clearance.findings.judgement import Judgement
+from clearance.findings.of_budget import tolerance_lines
+from clearance.findings.of_rule import code_of, why_undecided
 from clearance.findings.self_clearance import self_clearance_lines
-from clearance.findings.standing import code_of, why_undecided
-from clearance.findings.tolerance_lines import tolerance_lines
 from clearance.record.certificate import contact_is_open
 from clearance.record.moment import Moment
 from clearance.record.record import ProfileAnswer, Record

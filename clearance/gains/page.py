@@ -23,6 +23,7 @@ from clearance.record.wording import limit_mm, mm, moment_text, seconds
 from clearance.report.blocks import (
     Bullets,
     Cell,
+    Chart,
     Content,
     Header,
     Inline,
@@ -35,7 +36,7 @@ from clearance.report.blocks import (
     number,
 )
 from clearance.report.curves import ClearanceCurve, chart_of, curve_of
-from clearance.report.plain_page import Chart, plain_page
+from clearance.report.rendering import plain_page
 from clearance.run import Run
 
 NAMES = ("before", "after")

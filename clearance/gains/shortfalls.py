@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.findings.standing import code_of
+from clearance.findings.of_rule import code_of
 from clearance.gains.between_samples import rates_between, values_between
 from clearance.record.certificate import motion_codes
 from clearance.record.record import Record

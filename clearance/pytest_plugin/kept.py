@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from clearance.errors import BadInput, UnknownLink, nearest_name
-from clearance.findings.standing import why_undecided
+from clearance.findings.of_rule import why_undecided
 from clearance.record.budget import RuleBudget
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest

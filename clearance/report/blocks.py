@@ -96,7 +96,15 @@ class Picture:
     alt: str
 
 
-Block = Table | Paragraph | Bullets | Picture
+@dataclass(frozen=True)
+class Chart:
+    """Where the curves of a page are drawn, with a key: `a` or `b`, and the name, of each."""
+
+    template: ClassVar[str] = "chart"
+    names: Sequence[tuple[str, str]]
+
+
+Block = Table | Paragraph | Bullets | Picture | Chart
 """What most sections are made of; a topic may have blocks of its own, with a template."""
 
 

@@ -24,6 +24,7 @@ from clearance.record.wording import count
 from clearance.report.blocks import (
     Bullets,
     Cell,
+    Chart,
     Content,
     Header,
     Inline,
@@ -41,7 +42,7 @@ from clearance.report.comparison_text import (
     doubt_lines,
 )
 from clearance.report.curves import ClearanceCurve, chart_of, curve_in
-from clearance.report.plain_page import Chart, plain_page
+from clearance.report.rendering import plain_page
 from clearance.report.terminal import terminal, terminal_table
 from clearance.report.topic import TerminalTable
 

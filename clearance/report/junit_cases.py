@@ -17,8 +17,8 @@ from clearance.findings.finding import (
 )
 from clearance.findings.finding_text import bodies_text, finding_line, waived_text
 from clearance.findings.judgement import Judgement
-from clearance.findings.standing import code_of
-from clearance.findings.tolerance_lines import budget_lines
+from clearance.findings.of_budget import budget_lines
+from clearance.findings.of_rule import code_of
 from clearance.findings.verdict import Verdict, moment_line, profile_text
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rule_answer import RuleAnswer

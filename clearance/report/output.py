@@ -11,15 +11,15 @@ from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
 from clearance.record.replay import FILE_NAME, EarlierBody, Replay
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
-from clearance.report.budget_table import FILE_NAME as BUDGET
-from clearance.report.budget_table import budget_table
 from clearance.report.curves import more_curves, pair_curves
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moments_file import FILE_NAME as MOMENTS
-from clearance.report.moments_file import moments_text
+from clearance.report.moveit_moments import FILE_NAME as MOMENTS
+from clearance.report.moveit_moments import moments_text
 from clearance.report.page import PageCurves, page_of
 from clearance.report.summary import json_text, summary_of
 from clearance.report.tables import (
+    BUDGET,
+    budget_table,
     contact_batches,
     pair_batches,
     step_batches,

@@ -1,10 +1,14 @@
-"""Pages from templates: all that comes from data is escaped, our own scripts and styles are not."""
+"""Pages from templates: all that comes from data is escaped, our own scripts and styles are not.
+
+Not for: the page of a report, which moves a replay (`page`).
+"""
 
 from __future__ import annotations
 
 import functools
 import json
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +16,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from clearance import __version__
+from clearance.report.blocks import Header, Section
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -54,3 +59,14 @@ def inside_script(text: str) -> Markup:
 def json_inside_script(value: Any) -> Markup:
     """JSON that holds no `<`, so that nothing in it can be taken for markup."""
     return Markup(json.dumps(value, sort_keys=True, allow_nan=False).replace("<", "\\u003c"))
+
+
+def plain_page(
+    title: str, header: Header, sections: Sequence[Section], chart: Mapping[str, Any] | None = None
+) -> str:
+    """A page of curves and tables, which moves no replay.
+
+    Args:
+        chart: what is drawn where a section has a `Chart`, as `curves.chart_of` gives it.
+    """
+    return render("curves.html", title=title, header=header, sections=sections, chart=chart)

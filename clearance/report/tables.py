@@ -1,15 +1,20 @@
-"""The steps as files: one row a step, every float written so that reading it gives the same float
-again."""
+"""The tables of a report as files, every float written so that reading it gives the same float again.
+
+There is a row a step, a pair in contact at a step, and an error of a moment at which the tolerances leave least.
+Moments of a rule stand together, what takes most first. Lengths in metres.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
 from clearance.budget.columns import with_proven_between
+from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget
 from clearance.record.contact import StepContact
 from clearance.record.contact_columns import with_contact_columns
 from clearance.record.names import LINK_AND_OBSTACLE, SIDES
@@ -95,3 +100,78 @@ def pair_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.
     for batch in record.every_pair.batches():
         yield batch
         kept.let_go()
+
+
+BUDGET = "budget.csv"
+
+BUDGET_SCHEMA = pa.schema(
+    [
+        ("rule", pa.string()),
+        ("step", pa.int64()),
+        ("time", pa.float64()),
+        ("between", pa.bool_()),
+        ("body_a", pa.string()),
+        ("body_b", pa.string()),
+        ("clearance", pa.float64()),
+        ("proven", pa.float64()),
+        ("expected", pa.float64()),
+        ("owner", pa.string()),
+        ("kind", pa.string()),
+        ("part", pa.string()),
+        ("moment", pa.string()),
+        ("tolerance", pa.float64()),
+        ("unit", pa.string()),
+        ("second_tolerance", pa.float64()),
+        ("second_unit", pa.string()),
+        ("takes", pa.float64()),
+        ("deviation", pa.float64()),
+        ("at_most", pa.float64()),
+        ("second_at_most", pa.float64()),
+    ]
+)
+"""A frame has two tolerances, an offset [m] and an angle [rad]; everything else has one."""
+
+
+def budget_table(record: Record, left: Mapping[str, Sequence[BudgetMoment]]) -> pa.Table:
+    """The table of a record with tolerances; `left` as in `RunDetails`."""
+    rows = [
+        row for one in record.budget or () for worst in left[one.rule] for row in _rows(one, worst)
+    ]
+    return pa.Table.from_pylist(rows, schema=BUDGET_SCHEMA)
+
+
+def _rows(one: RuleBudget, worst: BudgetMoment) -> Iterator[dict[str, Any]]:
+    moment = worst.moment
+    head = {
+        "rule": one.rule,
+        "step": moment.step,
+        "time": moment.time,
+        "between": moment.between,
+        "body_a": moment.link,
+        "body_b": moment.obstacle,
+        "clearance": moment.clearance,
+        "proven": worst.proven,
+        "expected": worst.expected,
+    }
+    for source in worst.sources:
+        yield head | _of_source(source)
+
+
+def _of_source(source: ErrorSource) -> dict[str, Any]:
+    (first, unit), *others = source.tolerances
+    second, second_unit = others[0] if others else (None, None)
+    largest = (*source.largest, None, None)
+    return {
+        "owner": source.owner,
+        "kind": source.kind,
+        "part": source.part,
+        "moment": source.moment,
+        "tolerance": first,
+        "unit": unit,
+        "second_tolerance": second,
+        "second_unit": second_unit,
+        "takes": source.proven,
+        "deviation": source.expected,
+        "at_most": largest[0],
+        "second_at_most": largest[1],
+    }

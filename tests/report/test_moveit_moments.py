@@ -4,7 +4,7 @@ import pytest
 from ruamel.yaml import YAML
 
 import clearance as cl
-from clearance.report import moments_file, moveit_moments
+from clearance.report import moveit_moments
 from tests.made_cases import at
 from tests.report.cells import LEFT, box, cell, sliding
 from tests.report.made import model_of, run_of
@@ -15,7 +15,7 @@ LIMITS = cl.Limits(fail=0.01, warn=0.3)
 
 
 def moments_text(made) -> str:
-    return moments_file.moments_text(model_of(made))
+    return moveit_moments.moments_text(model_of(made))
 
 
 def read(text: str):

@@ -11,8 +11,7 @@ from dataclasses import asdict, dataclass
 from decimal import ROUND_FLOOR, Decimal
 from typing import Any, ClassVar, NamedTuple
 
-from clearance.findings.of_budget import NOT_WORKED_OUT
-from clearance.findings.tolerance_lines import least_expected, tolerance_lines
+from clearance.findings.of_budget import NOT_WORKED_OUT, least_expected, tolerance_lines
 from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
 from clearance.record.record import Record
 from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule, seconds
