@@ -56,17 +56,10 @@ def test_a_case_that_takes_its_workers_with_it_is_at_fault_and_costs_no_other(it
     (fault,) = (one for done in found for one in done.faults)
     assert (fault.number, fault.text[:24]) == (7, "the worker processes tha")
     assert len(started) == 2 + 1 + DEATHS  # of its first task, then of it alone
+    assert not any(one.process.is_alive() for one in started)
 
 
 def test_workers_that_die_as_they_start_are_told_in_one_line(items, monkeypatch):
     monkeypatch.setattr(workers, "_work", die)
     with local_workers(2) as engine, pytest.raises(Incomplete, match="--jobs 1 needs none"):
         list(engine.results(Queue(items, "batch")))
-
-
-def test_no_process_is_left(items):
-    with local_workers(2) as engine:
-        list(engine.results(Queue(items[:3], "batch")))
-        processes = [one.process for one in engine._workers]
-        assert all(process.is_alive() for process in processes)
-    assert not any(process.is_alive() for process in processes)

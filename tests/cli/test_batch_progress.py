@@ -34,10 +34,9 @@ def test_on_a_pipe_lines_come_until_it_is_done(monkeypatch):
     monkeypatch.setattr(batch_run, "EVERY", 0.001)
     with shown_progress(False, NAMES.__getitem__) as watch:
         watch.begin(NAMES, 0)
-        while told.getvalue().count("\n") < 2:
+        while told.getvalue().count("0 of 4 cases measured\n") < 2:
             pass
-    lines = told.getvalue().splitlines()
-    assert set(lines[1:]) == {"0 of 4 cases measured"}
+    assert set(told.getvalue().splitlines()) <= {"0 of 0 cases measured", "0 of 4 cases measured"}
 
 
 @pytest.mark.parametrize("every", [0.001, 10.0])
