@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import clearance as cl
@@ -35,3 +37,11 @@ def test_the_dxf_says_metres(drawn):
     _, folder = drawn
     words = (folder / "p.dxf").read_text().split()
     assert words[words.index("$INSUNITS") + 2] == "6"
+
+
+def test_its_size_is_in_millimetres(drawn):
+    profile, folder = drawn
+    text = (folder / "p.svg").read_text()
+    width = float(re.search(r'width="([\d.]+)mm"', text)[1])
+    extent = float((profile.curve.box[1] - profile.curve.box[0])[0]) * 1000.0
+    assert extent < width < 1.2 * extent
