@@ -5,7 +5,7 @@ Not for: the options (`options`), and answering (`answers`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -38,7 +38,7 @@ class Question(QuestionOptions):
     """
 
     case: Case
-    inside: bool = True
+    inside: bool = field(default=True, kw_only=True)
 
     def __post_init__(self) -> None:
         super().__post_init__()
