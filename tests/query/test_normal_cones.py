@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.compile.declared import Flags2, Floats2
@@ -19,9 +18,7 @@ from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.joint_motion_bound import AT_REST
-from clearance.kernels.motion.twist import Twist
-from clearance.kernels.search.displacement import Still, Turn
+from clearance.kernels.search.displacement import Still
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
     bounds_of_group,
@@ -193,60 +190,6 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
     one, two = surface_of(a), surface_of(b)
     of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
     all_turned_away(one, two, pose_a, pose_b, of_a, of_b)
-    holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
-    assert not of_a[holds].any()
-    assert not of_b[holds].any()
-
-
-@kernel
-def all_turned_away_while(
-    a: Surface, b: Surface, pose_a: Floats2, pose_b: Floats2, turn: float, way: float, of_a: Flags2, of_b: Flags2
-) -> None:  # fmt: skip
-    """As `all_turned_away`, in all of a motion about these poses, also where nodes are not apart."""
-    frames = frames_of(rigid(pose_a), rigid(pose_b))
-    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    views = views_along(
-        direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
-    )
-    twist = Twist(slack, AT_REST, AT_REST, True, Turn(turn, np.cos(turn), np.sin(turn), way))
-    for i in range(len(a.children)):
-        for j in range(len(b.children)):
-            group_a, group_b = NodeGroup(False, i // WIDTH, j), NodeGroup(True, j // WIDTH, i)
-            bounds = bounds_of_group(a, b, views, group_a, ALL, twist, np.inf)
-            away = turned_away(a, b, views, group_a, ALL, bounds, twist)
-            of_a[i, j] = away >> i % WIDTH & 1
-            bounds = bounds_of_group(a, b, views, group_b, ALL, twist, np.inf)
-            away = turned_away(a, b, views, group_b, ALL, bounds, twist)
-            of_b[i, j] = away >> j % WIDTH & 1
-
-
-@pytest.mark.slow
-@examples(10)
-@given(
-    st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
-    st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.floats(0.0, 0.25), st.floats(0.0, 0.3),
-)  # fmt: skip
-def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(
-    seed, kind_a, kind_b, reach, turn, way
-):
-    """Seen from the middle of a motion, at an instant at which the first body is turned and shifted."""
-    random = np.random.default_rng(seed)
-    a, b = KINDS[kind_a](random), KINDS[kind_b](random)
-    middle, pose_b = anywhere(random, 0.0), anywhere(random, reach)
-    one, two = surface_of(a), surface_of(b)
-    axis = random.normal(size=3)
-    leant = Rotation.from_rotvec(turn * axis / np.linalg.norm(axis)).as_matrix()
-    push = random.normal(size=3)
-    shift = way * push / np.linalg.norm(push)
-    pose_a = at(*(leant @ middle[:3, 3] + shift), leant @ middle[:3, :3])
-    farthest = np.linalg.norm(
-        (a.vertices @ (pose_a - middle)[:3, :3].T) + (pose_a - middle)[:3, 3], axis=1
-    ).max()
-    owners = owners_of_the_nearest(a, b, pose_a, pose_b)
-    if owners is None:
-        return
-    of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
-    all_turned_away_while(one, two, middle, pose_b, turn, farthest, of_a, of_b)
     holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
     assert not of_a[holds].any()
     assert not of_b[holds].any()

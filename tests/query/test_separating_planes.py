@@ -7,7 +7,7 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes import box, cylinder, pipe
+from clearance.geometry.shapes import cylinder, pipe
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
@@ -18,7 +18,7 @@ from clearance.kernels.search.scratch import new_scratch
 from clearance.kernels.search.separating_planes import separate
 from clearance.kernels.search.support import high_corner, top_of
 from tests import oracle
-from tests.made_cases import SOLIDS, at, ball, faces_of, torus
+from tests.made_cases import SOLIDS, at, ball, faces_of
 from tests.strategies import rotations
 
 
@@ -135,31 +135,3 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
         assert floor > limits[i] or waiting[i, 0, 0] >= 0 or floor == -math.inf
         if waiting[i, 0, 0] >= 0 and beyond > near.distance + margin:
             assert [near.face_a, near.face_b] in waiting[i].tolist()
-
-
-@pytest.mark.parametrize(
-    ("a", "b", "pose", "are_separated"),
-    [
-        (ball(1.0, 2), ball(1.0, 2), at(2.5, 0.3, 0.1), True),
-        (box((1.0, 1.0, 1.0)), cylinder(0.5, 2.0), at(1.0, 0.9, 1.6), True),
-        (torus(0.8, 0.1, 24, 8), ball(0.2, 1), at(0.1), False),  # in the ring's hole
-    ],
-)
-def test_hulls_as_far_apart_as_their_bodies_are_separated(
-    a: Polyhedron, b: Polyhedron, pose: np.ndarray, are_separated: bool
-) -> None:
-    points = np.array([[[0.1, 0.0, 0.0], pose[:3, 3]]])
-    out, waiting = np.empty((1, 3)), np.full((1, 144, 2), -1)
-    separate_all(
-        surface_of(a),
-        surface_of(b),
-        pose[None],
-        points,
-        np.array([math.inf]),
-        out,
-        waiting,
-    )
-    assert (waiting[0, 0, 0] >= 0) == are_separated
-    assert (
-        out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)
-    ) == are_separated
