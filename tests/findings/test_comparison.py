@@ -80,11 +80,6 @@ def test_what_lost_its_waiver_is_worse_however_near_it_is(least, before, tmp_pat
     assert compared(before, waived).passed
 
 
-def test_what_was_asked_for_of_each_step_does_not_matter(before, tmp_path):
-    for need in ("limit", "pairs"):
-        assert changes(before, found(tmp_path / need, BEFORE, need=need)) == [("unchanged", A)]
-
-
 @pytest.mark.parametrize(
     ("changed", "why"),
     [

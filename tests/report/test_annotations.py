@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.formats.motion.trajectory_file import line_of_sample
-from clearance.report.annotations import MOST, annotation_lines, command, row_of, sample_at
+from clearance.report.annotations import MOST, annotation_lines, command, sample_at
 from clearance.report.markdown import MOST_ROWS, markdown, plain
 from clearance.run import Run
 from clearance.world.case import PlacedRobot
@@ -84,16 +84,6 @@ def test_a_sample_is_that_at_or_before_a_time_of_the_run():
     assert [sample_at(placed, t) for t in (-1.0, 0.0, 0.9, 1.0, 1.5, 9.0)] == [0, 0, 0, 1, 1, 2]
     late = dataclasses.replace(placed, timing=Timing(start=5.0, rate=2.0, after="loop"))
     assert [sample_at(late, t) for t in (5.0, 5.5, 6.25, 6.5)] == [0, 1, 0, 1]
-
-
-def test_a_trajectory_of_no_file_has_no_row(run):
-    given = run.record.case.robots[0].given_trajectory
-    case = run.record.case.with_trajectory(
-        given.times, given.positions, joint_names=given.joint_names
-    )
-    other = cl.check(case)
-    assert row_of(other.record, other.findings[0]) is None
-    assert lines_of(other, Path.cwd())[0].startswith("::error title=clearance%3A gates::")
 
 
 ANY_TEXT = st.text(max_size=60) | st.sampled_from(

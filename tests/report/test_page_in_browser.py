@@ -72,23 +72,18 @@ def test_the_replay_is_drawn_and_changes_with_the_step(page):
     assert (np.abs(first - later).max(axis=2) > 30).sum() > 500
 
 
-@pytest.mark.parametrize("step", [0, 1, 44, 130, 239])
-def test_the_line_is_where_the_table_says(page, step):
+@pytest.mark.parametrize("step", [0, 44, 239])
+def test_line_and_links_are_where_table_and_kinematics_say(page, step):
     state, expected = show(page, step), row(step)
     ends = np.array(
         [[expected[f"{body}_{axis}"] for axis in "xyz"] for body in ("link", "obstacle")]
     )
     assert state["step"] == step
-    assert np.abs(np.array(state["dots"]) - ends).max() < 1e-9
-    assert np.abs(np.array(state["line"]) - ends).max() < 1e-9
+    assert np.abs(np.array([state["dots"], state["line"]]) - ends).max() < 1e-9
     length = np.linalg.norm(np.subtract(*state["line"]))
     assert length == pytest.approx(expected["clearance"], abs=1e-9)
-
-
-@pytest.mark.parametrize("step", [0, 100, 239])
-def test_the_links_are_where_kinematics_puts_them(page, step):
-    expected = RUN.motions[0].poses(step, step + 1)[0, :, :3, 3]
-    assert np.abs(links_drawn(show(page, step)) - expected).max() < 1e-6
+    poses = RUN.motions[0].poses(step, step + 1)[0, :, :3, 3]
+    assert np.abs(links_drawn(state) - poses).max() < 1e-6
 
 
 def test_the_line_has_the_colour_of_its_status_and_none_is_drawn_in_contact(page):
@@ -109,15 +104,11 @@ def curve_point(page: Page, step: int) -> tuple[float, float]:
     return box["x"] + axis["x"], box["y"] + axis["y"]
 
 
-@pytest.mark.parametrize("step", [60, 180])
-def test_a_click_on_the_curve_moves_the_robot_to_that_step(page, step):
+def test_a_click_on_the_curve_moves_the_robot_to_that_step(page):
     before = links_drawn(show(page, 5))
-    page.click(*curve_point(page, step))
-    page.wait(f"window.clearance.state().step === {step}")
-    after = links_drawn(page.run("window.clearance.state()"))
-    assert np.abs(after - before).max() > 0.05
-    expected = RUN.motions[0].poses(step, step + 1)[0, :, :3, 3]
-    assert np.abs(after - expected).max() < 1e-6
+    page.click(*curve_point(page, 180))
+    page.wait("window.clearance.state().step === 180")
+    assert np.abs(links_drawn(page.run("window.clearance.state()")) - before).max() > 0.05
 
 
 def test_hovering_over_the_curve_names_step_clearance_link_and_obstacle(page):
@@ -182,7 +173,7 @@ def test_it_prints_with_a_still_of_the_worst_moment(page):
     try:
         assert page.run("getComputedStyle(document.getElementById('transport')).display") == "none"
         assert page.box("#replay-still")["height"] > 150
-        assert page.box("#curve svg")["height"] > 150
+        assert 150 < page.box("#curve svg")["height"] < 400
     finally:
         page.call("Emulation.setEmulatedMedia", media="")
 
@@ -279,18 +270,6 @@ def test_the_replay_opens_at_the_moment_between_two_steps_with_its_bodies_marked
     page.run("window.clearance.showFrame(0)")
     page.run("Array.from(document.querySelectorAll('tr[data-time]')).at(-1).click()")
     assert page.run("window.clearance.state().nearest") == [worst["link"], worst["obstacle"]]
-
-
-def test_a_clicked_pair_shows_its_own_curve_where_every_pair_was_measured(crowded):
-    page, record = crowded, crowded.run_of.record
-    page.open(page.report, "window.clearance", width=1400, height=900)
-    place = 1000
-    click_pair(page, place)
-    drawn = np.array(page.run("window.clearance.chart.told.curves.at(-1).y")) / 1000.0
-    pair = crowded.run_of.session.motion_minima()[place]
-    named = list(zip(record.every_pair.links, record.every_pair.obstacles, strict=True))
-    truth = record.every_pair.clearance[:, named.index((pair.link, pair.obstacle))]
-    assert (drawn <= truth).all() and np.abs(drawn - truth).max() < 1e-6
 
 
 def hand_among_boxes() -> Case:

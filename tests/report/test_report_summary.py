@@ -9,9 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.report.model import PageContent
 from clearance.report.summary import json_text
-from clearance.report.topics.loaded import sections
 from clearance.report.topics.provenance import public_path
 from clearance.world.robot import Joint, JointKind
 from tests.made_cases import with_copies
@@ -74,23 +72,6 @@ def test_no_file_of_a_report_names_the_folder_it_was_made_in(tmp_path):
     for path in (tmp_path / "out").iterdir():
         assert b"/home/someone" not in path.read_bytes()
         assert str(tmp_path).encode() not in path.read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("closed", "oriented", "two_sided", "told"),
-    [
-        (True, True, False, "closed"),
-        (True, True, True, "two-sided"),  # closed edge by edge, but nothing is inside
-        (True, False, False, "closed, not oriented"),
-        (False, False, True, "open"),
-    ],
-)
-def test_the_page_tells_what_kind_of_surface_was_loaded(closed, oriented, two_sided, told):
-    summary = summary_of(record())
-    kind = {"closed": closed, "oriented": oriented, "two_sided": two_sided}
-    bodies = [{**body, **kind} for body in summary["obstacles"]]
-    (section,) = sections(PageContent({**summary, "robots": [], "obstacles": bodies}))
-    assert [row.cells[-2] for row in section.blocks[0].rows] == [told] * len(bodies)
 
 
 def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():

@@ -59,9 +59,3 @@ def test_summary_and_events_are_those_of_the_report(run, tmp_path):
     assert json.loads(json.dumps(run.summary)) == written
     assert [event.what for event in run.events] == [event["what"] for event in written["events"]]
     assert run.events
-
-
-@pytest.mark.parametrize("folder", ["", None, 3])
-def test_what_is_no_folder_is_refused(run, folder):
-    with pytest.raises(BadInput, match="a path of a folder is needed"):
-        run.save(folder)

@@ -12,7 +12,7 @@ from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of, seen_edges
 from clearance.report.raster import Screen, drawn_segments, surface
 from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
 from tests.report.made import replay_of, run_of
-from tests.report.records import record, with_contacts
+from tests.report.records import record
 
 pytest.importorskip("matplotlib", reason="sets the words")
 
@@ -109,18 +109,6 @@ def test_the_line_is_in_the_picture_in_the_colour_of_its_status(look):
         expected = np.round(rgb(COLOURS[run.status_of(run.worst)]) * 255)
         assert np.abs(image[int(y), int(x)] - expected).max() <= 1
     assert len(np.unique(image.reshape(-1, 3), axis=0)) > 50
-
-
-def test_the_common_region_shines_through():
-    run = with_contacts(record())
-    replay = replay_of(run)
-    assert replay.contacts
-    still = still_of(replace(replay, i_worst=replay.contacts[0].frame))
-    assert still.region is not None
-    shown = drawn(still, at_gap(still), 200, 120).astype(int)
-    hidden = drawn(replace(still, region=None), at_gap(still), 200, 120).astype(int)
-    red = shown - hidden
-    assert ((red[..., 0] >= 0) & (red[..., 2] < -3)).any()
 
 
 @pytest.mark.slow

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import pyarrow.csv
 import pytest
@@ -50,14 +49,3 @@ def test_an_exact_grasp_is_said(run, tmp_path):
     assert summary["carries"][0]["grasp"] == "exact"
     assert said in summary["tolerances"]["lines"]
     assert said in (tmp_path / "report.html").read_text(encoding="utf-8")
-
-
-def test_without_tolerances_nothing_is_said_of_grasps():
-    plain = replace(passing(0.2, exact_grasp=True), tolerance=None)
-    assert not cl.check(plain, certify=False).verdict.with_tolerances
-
-
-def test_the_json_of_a_case_file_knows_the_grasp():
-    from clearance.formats.schema.json_schema import case_schema
-
-    assert "exact" in json.dumps(case_schema()["$defs"]["Carry"]["properties"]["grasp"])
