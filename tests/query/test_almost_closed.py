@@ -64,7 +64,7 @@ def test_the_answers_are_those_of_the_whole_solid_by_the_oracle(fault: str) -> N
     random = np.random.default_rng(FAULTS.index(fault))
     tiny = box((2.0**-12,) * 3)
     n_inside = n_open = 0
-    for turn in rotations(random, 60):
+    for turn in rotations(random, 30):
         whole = dented(random, 2, 0.3)
         outer = faulty(whole, fault, int(random.integers(whole.n_faces)))
         pose_a = at(*random.normal(size=3), turned=turn)
@@ -76,7 +76,7 @@ def test_the_answers_are_those_of_the_whole_solid_by_the_oracle(fault: str) -> N
         n_open += near.inside == "undecided"
         if near.inside != "undecided":
             assert near.contact == truth
-    assert 15 < n_inside < 55 and n_open <= 3
+    assert 7 < n_inside < 28 and n_open <= 3
 
 
 def test_what_is_in_the_hole_is_undecided_by_name() -> None:

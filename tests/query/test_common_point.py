@@ -76,12 +76,12 @@ def turned(angle: float, shift) -> np.ndarray:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("m", [2, 3, 5])
+@pytest.mark.parametrize("m", [2, 5])
 def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m):
     bodies = [ball(50, i) for i in range(m)]
     warm, work, seen = (), [0, 0], set()
-    for step in range(120):
-        poses = [turned(0.01 * i * step, [0.02 * step * (i == 1), 0.1 * i, 0.0]) for i in range(m)]
+    for step in range(60):
+        poses = [turned(0.02 * i * step, [0.04 * step * (i == 1), 0.1 * i, 0.0]) for i in range(m)]
         cold = common_point(bodies, poses)
         met = common_point(bodies, poses, warm)
         moved = [

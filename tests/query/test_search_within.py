@@ -59,7 +59,7 @@ def wandering(random: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarr
     return np.array(poses), np.array(moved)
 
 
-@pytest.mark.parametrize("kind_b", first_fast(SHAPES, 1))
+@pytest.mark.parametrize("kind_b", first_fast(["dented", "box"], 1))
 @pytest.mark.parametrize("kind_a", SHAPES)
 def test_what_a_search_within_a_limit_says_is_true(kind_a, kind_b):
     random = np.random.default_rng([len(kind_a), len(kind_b), ord(kind_a[0]), ord(kind_b[0])])

@@ -168,6 +168,7 @@ def test_the_deepest_of_many_is_found_among_few(top):
     assert len(looked) <= 2 * contact_events.MOST_RATED + 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [-0.13])
 def test_the_deepest_step_of_a_bar_that_passes_a_ball_is_the_deepest_of_all(first):
     """A few directions rate hulls, none of them the way out of a ball: the best rated step is not the deepest."""
