@@ -125,42 +125,27 @@ class Verdict:
 
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
-        told = self.status, self.measured, self.basis, self.disputed_by, self.clocks
-        return verdict_text(*told, self.n_waivers, shown, self.tolerances)
+        text = shown(self.measured)
+        if self.n_waivers:
+            text += f" with {count(self.n_waivers, 'waiver')}"
+        passing = self.measured in _PASSING
+        if passing and self.tolerances:
+            text = _with_tolerances(text, self.tolerances, shown(NOT_PROVEN))
+            passing = self.tolerances == KEPT
+        if self.basis == SAMPLES:
+            text += " at the samples only" if passing else ", looked at the samples only"
+        elif self.basis == POSE:
+            text += " at a single pose"
+        if self.clocks:
+            text += f", {self.clocks}"
+        if self.status in (SUSPECT, STALE):
+            text = f"{shown(self.status)} (would be {text})"
+        return text if self.disputed_by is None else f"{text}, but {self.disputed_by} disagrees"
 
 
 def _when(case: Case) -> str:
     told = (clock_text(case.clock.slack), not_measured_text(not_measured(case)))
     return ", ".join(filter(None, told))
-
-
-def verdict_text(
-    status: str,
-    measured: str,
-    basis: str,
-    disputed_by: str | None,
-    clocks: str = "",
-    n_waivers: int = 0,
-    shown: Callable[[str], str] = str,
-    tolerances: str = "",
-) -> str:
-    """A verdict in a few words; the arguments are as in `Verdict`."""
-    text = shown(measured)
-    if n_waivers:
-        text += f" with {count(n_waivers, 'waiver')}"
-    passing = measured in _PASSING
-    if passing and tolerances:
-        text = _with_tolerances(text, tolerances, shown(NOT_PROVEN))
-        passing = tolerances == KEPT
-    if basis == SAMPLES:
-        text += " at the samples only" if passing else ", looked at the samples only"
-    elif basis == POSE:
-        text += " at a single pose"
-    if clocks:
-        text += f", {clocks}"
-    if status in (SUSPECT, STALE):
-        text = f"{shown(status)} (would be {text})"
-    return text if disputed_by is None else f"{text}, but {disputed_by} disagrees"
 
 
 def _with_tolerances(text: str, tolerances: str, not_proven: str) -> str:

@@ -111,10 +111,12 @@ class PageContent:
 
     Attributes:
         summary: as `summary.json` has it. pictures: of each profile as SVG, by its name.
-        findings, comparison: those of the run, and what became of them since a baseline, if there is one.
+        verdict, findings, comparison: those of the run, and what became of findings since a baseline, if there is
+            one.
     """
 
     summary: dict[str, Any]
+    verdict: Verdict
     pictures: Mapping[str, str] = field(default_factory=dict)
     findings: Sequence[Finding] = ()
     comparison: Comparison | None = None

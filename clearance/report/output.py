@@ -81,7 +81,8 @@ def write(
         Unwritable: `folder` cannot be written.
     """
     record, summary = model.record, summary_of(model)
-    content = PageContent(summary, drawn.pictures, model.finding_list.findings, comparison)
+    findings = model.finding_list.findings
+    content = PageContent(summary, model.verdict, drawn.pictures, findings, comparison)
     curves = PageCurves(pair_curves(record, model.details.minima, kept), [*more_curves(record)])
     texts = {
         MOMENTS: moments_text(model),

@@ -70,8 +70,8 @@ def page_of(
     data["intervals"] = {level: _bands(found[level], least) for level in LEVELS}
     return render(
         "report.html",
-        title=f"{summary['name']}: {badge_text(summary)}",
-        header=header(summary),
+        title=f"{summary['name']}: {badge_text(content.verdict)}",
+        header=header(content),
         thinned=_thinned(replay),
         columns=[_sections(column, content) for column in FIRST],
         sections=_sections(BELOW, content),

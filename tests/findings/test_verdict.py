@@ -17,7 +17,7 @@ from clearance.report.topics.verdict import header
 from clearance.simulate.measure import refine
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
-from tests.report.made import run_of, summary_of, verdict_of, write_junit
+from tests.report.made import content_of, run_of, summary_of, verdict_of, write_junit
 from tests.report.records import disagreeing, record, with_steps
 
 NO_LIMITS = Limits()
@@ -95,7 +95,7 @@ def test_every_answer_says_the_same(name, tmp_path):
         headline.startswith(verdict.text(str.upper))
         and second.strip() == "self-collision not checked"
     )
-    badge = header(summary)
+    badge = header(content_of(one))
     assert "at the samples only" in badge.badge and "Self-collision not checked" in repr(badge)
     for reason in verdict.reasons:
         assert reason in summary["reasons"] and reason in told
@@ -116,7 +116,7 @@ def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name, monkey
     assert limit <= run.worst["clearance"] and "not proven" in run.verdict.unproven
     lines = printed(run)
     assert lines[2].startswith("  unproven ") and f"the {name} limit" in lines[2]
-    assert "Not proven" in repr(header(run.summary))
+    assert "Not proven" in repr(header(content_of(run)))
 
 
 def test_the_certified_minimum_has_a_row_of_its_own():
@@ -127,7 +127,7 @@ def test_the_certified_minimum_has_a_row_of_its_own():
     summary = run.summary
     worst, sample = summary["worst"]["clearance"], summary["worst_sample"]["clearance"]
     assert summary["certified"]["lower_bound"] < worst < sample
-    head = repr(header(summary))
+    head = repr(header(content_of(run)))
     assert "at least 34.8" in head and "34.98" in head
 
 

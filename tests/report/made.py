@@ -107,10 +107,15 @@ def model_of(made: Record | Run) -> ReportModel:
     return run_of(made).report
 
 
-def page_of(made: Record | Run | dict[str, Any], replay: Any = None, **content: Any) -> str:
-    """Its page; of a summary, with the replay of another."""
-    summary = made if isinstance(made, dict) else summary_of(made)
-    return page.page_of(PageContent(summary, **content), replay or replay_of(made))
+def content_of(made: Record | Run, **changes: Any) -> PageContent:
+    """What its page is made from; `changes` replace keys of its summary."""
+    run = run_of(made)
+    return PageContent(run.summary | changes, run.verdict)
+
+
+def page_of(made: Record | Run, replay: Any = None) -> str:
+    """Its page."""
+    return page.page_of(content_of(made), replay or replay_of(made))
 
 
 def replay_of(made: Record | Run | MeasuringSession, *args: Any, **options: Any):

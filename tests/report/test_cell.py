@@ -23,7 +23,7 @@ from clearance.world.rules import Allowance
 from clearance.world.timing import Window
 from tests.made_cases import at
 from tests.report.cells import box, cell, sliding
-from tests.report.made import page_of, replay_of, write_junit
+from tests.report.made import content_of, page_of, replay_of, write_junit
 
 FENCE = (
     "1.999 mm, below the fail limit of 5 mm of rule 'fence': left/tool - fence at 0.000 s, step 0"
@@ -51,7 +51,7 @@ def test_the_headline_says_which_rule_is_broken_by_what_and_what_is_nearest(run)
     assert (verdict.status, verdict.reasons[0]) == ("violated", FENCE)
     first, _, third, *_ = printed(run).splitlines()
     assert first.startswith(f"VIOLATED: {FENCE}")
-    head = str(header(run.summary))
+    head = str(header(content_of(run)))
     assert FENCE in head and "Worst against its rule" in head
     for told in (verdict.nearest, third, head):
         assert "judged by rule 'handover': right/tool - part at 2.000 s" in told
@@ -169,7 +169,7 @@ def test_padding_alone_is_no_contact_anywhere(tmp_path):
     assert run.summary["status_counts"]["contact"] == 0
     replay = replay_of(run.session)
     assert set(replay.status.tolist()) == {2}
-    text = re.sub(r"<script.*?</script>", "", page_of(run.summary, replay), flags=re.DOTALL)
+    text = re.sub(r"<script.*?</script>", "", page_of(run, replay), flags=re.DOTALL)
     assert 'class="cell violated"' in text and 'class="cell contact"' not in text
     assert (
         "below the fail limit" not in run.verdict.reasons[0]
@@ -209,7 +209,7 @@ def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told
     assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
     text = printed(run)
     assert f"with {worst.obstacle} at 2.500 s" in text and told.upper() not in text
-    html = page_of(summary, replay_of(run))
+    html = page_of(run)
     assert f"with {worst.obstacle} at 2.500 s" in html and told in html
 
 
@@ -231,8 +231,7 @@ def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_pa
     assert replay.steps[replay.known == 0].tolist() == [2]
     assert replay.nearest[replay.known == 0].tolist() == [[-1, -1]]
     assert (
-        "Infinity"
-        not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]
+        "Infinity" not in page_of(run, replay).split('<script id="data"')[1].split("</script>")[0]
     )
     write_junit(run, tmp_path / "junit.xml")
     assert printed(run)

@@ -16,12 +16,11 @@ from clearance.record.every_pair import EveryPair
 from clearance.report import curves
 from clearance.report.blocks import At, Cell, Inline, Row, Section, Table
 from clearance.report.curves import pair_curves
-from clearance.report.model import PageContent
 from clearance.report.page import _bands
 from clearance.report.rendering import render
 from clearance.report.topics.events import MOST_ROWS, sections
 from clearance.world.case import SignOff
-from tests.report.made import page_of, replay_of, run_of, summary_of
+from tests.report.made import content_of, page_of, replay_of, run_of, summary_of
 from tests.report.records import disagreeing, record
 
 # what XML cannot hold at all, and the line ends that its readers turn into others
@@ -88,10 +87,9 @@ def test_the_matrix_leads_to_the_step_of_each_pair(page):
 
 
 def test_a_long_list_of_events_is_cut_and_says_so():
-    summary = summary_of(record())
-    summary["events"] = summary["events"][:1] * (MOST_ROWS + 7)
-    summary["not_listed"]["events"] = 3
-    (section,) = sections(PageContent(summary))
+    events = summary_of(record())["events"][:1] * (MOST_ROWS + 7)
+    content = content_of(record(), events=events, not_listed={"events": 3})
+    (section,) = sections(content)
     table, *notes = section.blocks
     assert len(table.rows) == MOST_ROWS
     assert [note.content for note in notes] == [

@@ -12,11 +12,10 @@ import pytest
 from clearance.record.record import Record
 from clearance.record.replay import load_replay
 from clearance.record.wording import contact_text, least_cm3, volume_cm3
-from clearance.report.model import PageContent
 from clearance.report.topics.contact import sections
 from clearance.simulate.replay import replay as replay_contact
 from tests.report.browser import chromium, executable
-from tests.report.made import replay_of, summary_of, write
+from tests.report.made import content_of, replay_of, summary_of, write
 from tests.report.records import record, with_contacts
 
 
@@ -40,7 +39,7 @@ def test_the_summary_tells_the_deepest_contact_and_each_pair():
 def test_contact_that_was_not_worked_out_is_said():
     summary = summary_of(record())
     assert summary["contact"] is None and summary["status_counts"]["contact"]
-    (section,) = sections(PageContent(summary))
+    (section,) = sections(content_of(record()))
     assert "were not worked out" in section.blocks[0].content
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
-from clearance.findings.verdict import ACCEPTED, STALE, verdict_text
+from clearance.findings.verdict import ACCEPTED, STALE, Verdict
 from clearance.record.wording import count, least_proven, limits_text, mm
 from clearance.report.blocks import Bullets, Cell, Content, Header, Inline, capital
-from clearance.report.model import ReportModel
+from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import depth_of, name_shown, when_of
 from clearance.report.topic import Line, Topic
 from clearance.world.notice import KINDS, Notice
@@ -80,8 +80,9 @@ def _suspect(notice: Notice) -> str:
     return f"{notice.text} (--accept {notice.kind})" if notice.kind in KINDS else notice.text
 
 
-def header(summary: dict[str, Any]) -> Header:
+def header(content: PageContent) -> Header:
     """Name, verdict, what puts it in doubt, the moment that stands worst, limits."""
+    summary, verdict = content.summary, content.verdict
     signed = summary["sign_off"] or {}
     facts = [
         *_worst_facts(summary),
@@ -91,28 +92,17 @@ def header(summary: dict[str, Any]) -> Header:
         ("Cross-check", _cross_check_word(summary["cross_check"])),
         *((name.capitalize(), value) for name, value in signed.items() if value),
     ]
-    failing = summary["disputed_by"] or summary["verdict"] in (STALE, NOT_PROVEN)
-    kind = "violated" if failing else summary["verdict"]
-    told = [Bullets(_headline(summary), "beside headline"), Bullets(_beside(summary), "beside")]
-    return Header(
-        "Clearance report",
-        summary["name"],
-        badge_text(summary),
-        kind,
-        [block for block in told if block.lines],
-        facts,
-    )
+    failing = verdict.disputed_by or verdict.status in (STALE, NOT_PROVEN)
+    kind = "violated" if failing else verdict.status
+    beside = Bullets(_beside(verdict, summary.get("tolerances")), "beside")
+    told = [Bullets(_headline(summary, verdict), "beside headline"), beside]
+    shown = [block for block in told if block.lines]
+    return Header("Clearance report", summary["name"], badge_text(verdict), kind, shown, facts)
 
 
-def badge_text(summary: dict[str, Any]) -> str:
+def badge_text(verdict: Verdict) -> str:
     """The verdict in a few words."""
-    status, measured, basis, disputed_by, clocks, n_waivers = (
-        summary[name]
-        for name in ("verdict", "measured", "basis", "disputed_by", "clocks", "n_waivers")
-    )
-    title, given = _TITLES.__getitem__, summary.get("tolerances", {}).get("verdict", "")
-    told = verdict_text(status, measured, basis, disputed_by, clocks, n_waivers, title, given)
-    return capital(told)
+    return capital(verdict.text(_TITLES.__getitem__))
 
 
 def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
@@ -137,39 +127,35 @@ def _limit_facts(summary: dict[str, Any]) -> list[tuple[str, Content]]:
     return [("Judged by", name_shown(rule["name"])), ("Its limits", limits)]
 
 
-def _headline(summary: dict[str, Any]) -> list[Content | Cell]:
+def _headline(summary: dict[str, Any], verdict: Verdict) -> list[Content | Cell]:
     """What stands worst against which rule, and what is nearest if that is something else; where there are
     rules."""
     if len(summary["rules"]) == 1:
         return []
-    worst = summary["worst"]
-    told = next(iter(summary["reasons"]), None) if worst["status"] != "clear" else None
-    found: list[Content | Cell] = [Cell(told, f"text-{worst['status']}")] if told else []
-    return found + ([f"Nearest of all: {summary['nearer']}"] if summary["nearer"] else [])
+    status = summary["worst"]["status"]
+    told = next(iter(verdict.reasons), None) if status != "clear" else None
+    found: list[Content | Cell] = [Cell(told, f"text-{status}")] if told else []
+    return found + ([f"Nearest of all: {verdict.nearest}"] if verdict.nearest else [])
 
 
-def _beside(summary: dict[str, Any]) -> list[Content | Cell]:
+def _beside(verdict: Verdict, tolerances: dict[str, Any] | None) -> list[Content | Cell]:
     """What a reader must know beside the clearance, right below the verdict."""
-    suspects = [f"Suspect {one['kind']}: {one['text']}" for one in summary["suspects"]]
-    failing = [f"Violated: {text}" for text in summary["broken"]] + [
-        *map(capital, summary["stale"])
-    ]
-    doubts = [text for text in (summary["at_level"], summary["unproven"]) if text]
-    doubts += [f"Warning: {text}" for text in summary["warnings"]]
+    failing = [*(f"Violated: {text}" for text in verdict.broken), *map(capital, verdict.stale)]
+    doubts = [text for text in (verdict.at_level, verdict.unproven) if text]
+    doubts += [f"Warning: {text}" for text in verdict.warnings]
     return [
-        *(Cell(text, "text-suspect") for text in suspects),
+        *(Cell(f"Suspect {one.kind}: {one.text}", "text-suspect") for one in verdict.suspects),
         *(Cell(text, "text-violated") for text in failing),
-        *(Cell(f"Waived: {text}", "text-near") for text in summary["waived"]),
-        *_with_tolerances(summary),
+        *(Cell(f"Waived: {text}", "text-near") for text in verdict.waived),
+        *_with_tolerances(tolerances),
         *(Cell(capital(text), "text-near") for text in doubts),
-        *(capital(one["text"]) for one in summary["self_clearance"]),
-        *(f"{name.capitalize()} not checked" for name in summary["not_checked"]),
+        *map(capital, verdict.self_clearance),
+        *(f"{name.capitalize()} not checked" for name in verdict.not_checked),
     ]
 
 
-def _with_tolerances(summary: dict[str, Any]) -> list[Cell]:
+def _with_tolerances(told: dict[str, Any] | None) -> list[Cell]:
     """What the tolerances leave, a line a rule; marked where a limit is not proven with them."""
-    told = summary.get("tolerances")
     if told is None:
         return []
     marked = told["verdict"] in (NOT_PROVEN, ACCEPTED)
