@@ -13,8 +13,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from clearance.errors import BadInput, MissingKey, at
 from clearance.formats.files.input_files import read_bytes
-from clearance.formats.schema.pose import TrajectoryFile
 from clearance.formats.schema.strict_model import Name, StrictModel, validated
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.options import FILE, SWITCH, made, options_in
 from clearance.plain_yaml import parse_yaml
 from clearance.run.options import CheckOptions

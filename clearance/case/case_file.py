@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
+import numpy as np
+
 from clearance.case.allow import (
     allowances_of,
     body_names,
@@ -39,6 +41,7 @@ from clearance.formats.robot.compound_joints import require_placed
 from clearance.formats.scene.obstacles import make_obstacles
 from clearance.formats.scene.request import SceneContent
 from clearance.formats.schema import case as schema
+from clearance.world.body import Obstacle
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -121,7 +124,10 @@ def with_trajectory_file(
                 valid="no trajectory there, or another robot",
             )
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
-        placed, notes = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files)
+        standing = {one.name: one.world_from_body for one in cell.case.obstacles if not _rides(one)}
+        placed, notes = in_motion(
+            entry, cell.case.robots[i_robot], cell.path.parent, files, standing
+        )
     robots = tuple(placed if i == i_robot else one for i, one in enumerate(cell.case.robots))
     sources = sorted((*cell.files.sources, *files.sources), key=lambda source: source.path)
     case = replace(cell.case, robots=robots, name=checked_name(name))
@@ -155,7 +161,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
     with at(path.name):
-        moving = [reader.moving(entry) for entry in entries]
+        moving = [reader.moving(entry, _standing(given)) for entry in entries]
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
@@ -249,6 +255,16 @@ def _notices(given: schema.Case) -> list[Notice]:
         )
     ]
     return [*angle_notices(bases), *obstacle_notices(obstacles), *scale_notices(scales)]
+
+
+def _standing(given: schema.Case) -> dict[str, np.ndarray]:
+    """(4, 4) `world_from_obstacle` [m] of the obstacles that stand in the world, by name."""
+    found = (one for one in given.scene.obstacles if one.on is None and one.moves is None)
+    return {one.name: one.pose.matrix() for one in found}
+
+
+def _rides(obstacle: Obstacle) -> bool:
+    return obstacle.mount is not None or obstacle.moves is not None
 
 
 def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:

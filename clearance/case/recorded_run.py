@@ -14,8 +14,8 @@ import numpy as np
 
 from clearance.errors import BadInput, BadTime, UnknownRobot, at
 from clearance.formats.files.input_files import InputFiles
-from clearance.formats.schema.pose import TrajectoryFile
 from clearance.formats.schema.strict_model import validated
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.schema.tolerance import MOST_ANGLE, MOST_OFFSET
 from clearance.formats.timed_files import trajectory_of
 from clearance.world.budget import Budget, JointTolerance, RobotTolerance

@@ -128,5 +128,7 @@ def _texts(node: Node, *keys: str) -> Iterator[tuple[Any, Any]]:
         value = node.get(key)
         if isinstance(value, str):
             yield node, key
-        elif isinstance(value, dict) and isinstance(value.get("file"), str):
-            yield value, "file"
+        elif isinstance(value, dict):
+            yield from (
+                (value, name) for name in ("file", "program") if isinstance(value.get(name), str)
+            )

@@ -9,11 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from clearance.case.allow import checked_links
-from clearance.case.resting import resting_positions, with_start
+from clearance.case.resting import positions_asked, resting_positions, with_start
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
+from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.formats.robot.formats import read_robot
 from clearance.formats.robot.limit_files import limited, note_on_accelerations
 from clearance.formats.robot.request import RobotRequest, checked_args
@@ -44,13 +47,15 @@ class RobotReader:
         self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
-    def moving(self, entry: schema.RobotEntry) -> tuple[PlacedRobot, tuple[str, ...]]:
+    def moving(
+        self, entry: schema.RobotEntry, standing: Mapping[str, np.ndarray]
+    ) -> tuple[PlacedRobot, tuple[str, ...]]:
         """The robot of an entry as `in_motion` gives it.
 
         Raises:
             BadInput: with the field and the file.
         """
-        return in_motion(entry, self._standing(entry), self._folder, self._files)
+        return in_motion(entry, self._standing(entry), self._folder, self._files, standing)
 
     def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
         """The robot of an entry, without what it does.
@@ -137,12 +142,17 @@ class RobotReader:
 
 
 def in_motion(
-    entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
+    entry: schema.RobotEntry,
+    placed: PlacedRobot,
+    folder: Path,
+    files: InputFiles,
+    standing: Mapping[str, np.ndarray],
 ) -> tuple[PlacedRobot, tuple[str, ...]]:
     """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
 
     Args:
         placed: as it stands. folder: against which paths are looked up.
+        standing: (4, 4) `world_from_obstacle` [m] of the obstacles that stand, for the frames of a program.
 
     Raises:
         BadInput: with the field and the file.
@@ -152,16 +162,43 @@ def in_motion(
     moves: dict[str, Any] = {}
     if asked is not None:
         field = entry.trajectory_field
-        trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
-        trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)
-        notes = (*notes, *on_start)
-        path = str(resolved(asked.file, folder))
+        if asked.program is not None:
+            trajectory, notes = _programmed(entry, placed, folder, files, standing)
+            path = (
+                "" if not isinstance(asked.program, str) else str(resolved(asked.program, folder))
+            )
+        else:
+            trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+            trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)
+            notes = (*notes, *on_start)
+            path = str(resolved(asked.file, folder))
         moves = {"trajectory": trajectory, "timing": asked.timing, "trajectory_path": path}
     moved = trajectory.joint_names if trajectory else ()
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)
     moves["fixed_positions"] = resting.positions
     return replace(placed, **moves), (*notes, *resting.notes, *on_limits)
+
+
+def _programmed(
+    entry: schema.RobotEntry,
+    placed: PlacedRobot,
+    folder: Path,
+    files: InputFiles,
+    standing: Mapping[str, np.ndarray],
+) -> ReadTrajectory:
+    """The motion of the entry's program, from the start that the entry gives."""
+    from clearance.case.program import program_motion
+
+    asked, field = entry.trajectory, entry.trajectory_field
+    assert asked is not None
+    start = asked.start_state or {}
+    if not isinstance(start, Mapping):
+        names = [start] if isinstance(start, str) else start
+        with at(f"{field}.start_state"):
+            start = positions_asked(entry, names, placed.robot, folder, files)[1].positions
+    with at(f"{field}.program"):
+        return program_motion(asked, start, placed, folder, files, standing)
 
 
 def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:

@@ -38,6 +38,7 @@ class Kind(StrEnum):
     SCENE = "scene"
     POSES = "poses"
     TRAJECTORY = "trajectory"
+    PROGRAM = "program"
     SRDF = "SRDF"
     CASE = "case"
 
@@ -47,6 +48,7 @@ WANTED = {
     Kind.SCENE: "a scene",
     Kind.POSES: "a table of poses",
     Kind.TRAJECTORY: "a trajectory",
+    Kind.PROGRAM: "a robot program",
     Kind.CASE: "a case file",
 }
 """What is missed where a file is something else."""
@@ -200,6 +202,9 @@ FORMATS = (
            hint="name it in a case file: scene: {name}, beside robot and trajectory"),
     Format("YAML", Kind.SCENE, (".yaml", ".yml", ANY), "scene.scene_yaml:read_scene_yaml",
            "conversion.scene:converted_scene", _unseen, ("obstacles",)),
+    Format("robot program", Kind.PROGRAM, (".yaml", ".yml"), "program.program_yaml:read_yaml_program",
+           sniff=sniff.is_program, what="a robot program",
+           hint="name it in a case file: trajectory: {{program: {name}}}, beside robot and scene"),
     Format("case file", Kind.CASE, (".yaml", ANY), sniff=sniff.is_case, what="a case file",
            hint="`clearance check {name}` checks it; what is asked for is one of the files that it names"),
 )  # fmt: skip

@@ -29,7 +29,7 @@ from clearance.formats.motion.trajectory_file import (
     is_bag,
     read_trajectory,
 )
-from clearance.formats.schema.pose import PoseFile, TrajectoryFile
+from clearance.formats.schema.timed import PoseFile, TrajectoryFile
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import counted
 from clearance.world.joint_positions import turns

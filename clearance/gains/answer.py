@@ -139,8 +139,26 @@ def gained(case: Case, request: Request) -> Gain:
     """
     if case.clock.slack:
         raise BadInput("the clocks of the case are not tied", valid="clock: common")
+    _refuse_programs(case, request)
     ways = {"timing": _by_delay, "waypoints": _by_path, "obstacle": _by_shift, "base": _by_shift}
     return ways[request.kind](case, request)
+
+
+def _refuse_programs(case: Case, request: Request) -> None:
+    """Nothing, if what is changed leaves the joints of robots with a program as they are.
+
+    Raises:
+        BadInput: it does not: the program would have to be followed anew.
+    """
+    for placed in case.robots:
+        asked = placed.trajectory
+        if asked is None or not asked.moves or request.kind == "timing":
+            continue
+        if request.kind != "obstacle" or asked.frames:
+            raise BadInput(
+                f"robot {placed.robot.name!r} follows a program, and kind {request.kind} changes its joints",
+                valid="kind timing, or obstacle where no frame of the program is on one",
+            )
 
 
 def _by_shift(case: Case, request: Request) -> Gain:

@@ -15,6 +15,7 @@ import numpy as np
 from clearance.errors import BadInput, BadTime, UnknownObstacle, at, nearest_name
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
+from clearance.world.corner_paddings import corner_windows, with_corner_paddings
 from clearance.world.forest import (
     owner_of,
     require_known,
@@ -105,7 +106,8 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
     robots = [_laid_out(table, end) for table in robots]
     obstacles = {i: _laid_out(table, end) for i, table in obstacles.items()}
     tables = [*robots, *obstacles.values()]
-    cuts = _cuts(case, tables, start, end)
+    corners = corner_windows(case)
+    cuts = _cuts(case, tables, [window for _, _, window in corners], start, end)
     times = _steps([table.knots for table in tables if table.moves], cuts, start, end)
     edges = [0, *np.searchsorted(times, cuts).tolist(), len(times) - 1]
     phases: list[Phase] = []
@@ -124,6 +126,7 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
         _require_carried_present(plain)
         phases.append(_with_absent(with_parts(plain, phases)))
         _require_carriers_present(phases[-1], end)
+    phases = with_corner_paddings(phases, corners)
     return Timeline(_joined(own, phases), tuple(phases))
 
 
@@ -237,11 +240,14 @@ def _laid_out(table: _Table, end: float) -> _Table:
     return replace(table, knots=looped(table.knots, end))
 
 
-def _cuts(case: Case, tables: Sequence[_Table], start: float, end: float) -> np.ndarray:
+def _cuts(
+    case: Case, tables: Sequence[_Table], corners: Sequence[Window], start: float, end: float
+) -> np.ndarray:
     """The times [s] inside the run at which a phase ends and the next begins."""
     found = [jumps for table in tables if len(jumps := table.knots.jumps)]
     found += [np.array(table.once) for table in tables if table.timing.after == "absent"]
     found += [np.array(window.ends) for table in tables for window in table.not_measured]
+    found += [np.array(window.ends) for window in corners]
     for where, window in _windows(case):
         with at(where):
             _require_within(window, start, end)

@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadInput, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
+from clearance.world.corner_zone import CornerZone
 from clearance.world.notice import NOT_MEASURED, listed
 from clearance.world.timing import Timing, Window, require_increasing
 
@@ -42,6 +43,19 @@ WRAPS = (SHORTEST, AS_WRITTEN)
 """How to read a step of more than half a turn of a continuous joint."""
 
 
+@dataclass(frozen=True)
+class MoveSpan:
+    """When a move of a program is made.
+
+    Attributes:
+        name: of the move. start, end: [s] of the trajectory's own time.
+    """
+
+    name: str
+    start: float
+    end: float
+
+
 @dataclass(frozen=True, eq=False)
 class Points:
     """The samples of a file with accelerations, where a trajectory has more between them.
@@ -73,6 +87,8 @@ class Trajectory:
         holes: stretches of a recording in which it was not known where joints were.
         given_extents: (2, k) the least and greatest position before whole turns were subtracted, if any were.
         has_way_in: True if a message moves joints to the first of several samples from where nobody says.
+        moves: of a program, when each is made. frames: the obstacles that its work frames are on.
+        corners: stretches on which a controller may leave the path, and how far links may then be off.
         wrap: one of `WRAPS`, or None if unknown; a case with such a step is then suspect.
             With the shortest way, a `PlacedRobot` subtracts whole turns.
 
@@ -93,6 +109,9 @@ class Trajectory:
     began: float | None = None
     given_extents: np.ndarray | None = None
     has_way_in: bool = False
+    corners: tuple[CornerZone, ...] = ()
+    moves: tuple[MoveSpan, ...] = ()
+    frames: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("times", "positions", "velocities"):
@@ -151,7 +170,21 @@ class Trajectory:
             replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.holes
         )
         began = None if self.began is None else self.began - seconds
-        return replace(self, times=times, holes=tuple(holes), points=own, began=began)
+        corners = tuple(
+            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.corners
+        )
+        moves = tuple(
+            replace(one, start=one.start + seconds, end=one.end + seconds) for one in self.moves
+        )
+        return replace(
+            self,
+            times=times,
+            holes=tuple(holes),
+            points=own,
+            began=began,
+            corners=corners,
+            moves=moves,
+        )
 
     def _refuse_bad_samples(self) -> None:
         wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))

@@ -14,7 +14,7 @@ from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import items_of
 from clearance.batch.measuring import Task, measure
 from clearance.case.case_file import load_cell, with_trajectory_file
-from clearance.formats.schema.pose import TrajectoryFile
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.run import Question, answer
 from tests.batch.batches import (
     CELL,

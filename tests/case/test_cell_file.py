@@ -4,7 +4,7 @@ import pytest
 
 from clearance.case.case_file import load_case, load_cell, with_trajectory_file
 from clearance.errors import BadInput, DuplicateName, MissingFile, UnknownRobot
-from clearance.formats.schema.pose import TrajectoryFile
+from clearance.formats.schema.timed import TrajectoryFile
 from tests.formats.making import CASE, write_case
 
 CELL = CASE.replace("trajectory: {file: path.csv}\n", "")

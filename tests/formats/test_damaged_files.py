@@ -41,7 +41,7 @@ N_FILES = max(9, share_of(36))
 OPEN_ENDED = {
     "OBJ", "points CSV", "points XYZ", "curves", "profile", "outline", "sketch", "joint limits", "controllers",
     "scene", "PlanningScene", "octomap message", "trajectory", "trajectory semicolons", "JointTrajectory",
-    "pose table", "poses stamped", "case", "manifest", "batch", "waivers",
+    "pose table", "poses stamped", "case", "manifest", "batch", "waivers", "program",
 }  # fmt: skip
 """Kinds of files of which a beginning can be a file of its own: rows and lines, of which no count is stated."""
 

@@ -15,8 +15,8 @@ from clearance.errors import NothingToMeasure
 from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.schema import case as schema
-from clearance.formats.schema.pose import TrajectoryFile
 from clearance.formats.schema.strict_model import validated
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.text.notes import counted
 from clearance.world.case import PlacedRobot
 from clearance.world.notice import listed
@@ -206,7 +206,7 @@ def _placed(
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
     reader = RobotReader(Path(), meshes)
-    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"))
+    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"), {})
     matrix = placed.self_clearance and placed.self_clearance.matrix
     told = (*placed.robot.notes, *reader.notes, *on_motion)
     return placed, [*told, *(matrix.notes if matrix else ())]

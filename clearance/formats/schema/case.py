@@ -17,8 +17,9 @@ from clearance.errors import BadInput, MissingKey, nearest_name
 from clearance.formats.schema.joints import Joints
 from clearance.formats.schema.limits import AllowedPair, Limits
 from clearance.formats.schema.obstacle import Scene
-from clearance.formats.schema.pose import Base, TrajectoryFile, WindowedEntry
+from clearance.formats.schema.pose import Base, WindowedEntry
 from clearance.formats.schema.strict_model import Level, Name, StrictModel
+from clearance.formats.schema.timed import TrajectoryFile
 from clearance.formats.schema.tolerance import Tolerance
 from clearance.world.notice import KINDS
 

@@ -12,8 +12,9 @@ from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.formats.known_formats import CAD
-from clearance.formats.schema.pose import Pose, PoseFile
+from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, Triple, with_shapes
+from clearance.formats.schema.timed import PoseFile
 from clearance.geometry import shapes
 from clearance.tolerance import COARSEST_TESSELLATION, FINEST_TESSELLATION, TESSELLATION
 

@@ -103,6 +103,11 @@ def is_planning_scene(start: FileStart) -> bool:
     return b"collision_objects" in start.keys
 
 
+def is_program(start: FileStart) -> bool:
+    """True for a robot program in YAML."""
+    return {b"tool", b"moves"} <= start.keys
+
+
 def is_table(start: FileStart) -> bool:
     """True for a file that is called a table."""
     return start.suffix == ".csv" and not start.is_xml

@@ -74,6 +74,8 @@ def _robot(placed: PlacedRobot) -> dict[str, Any]:
 
 
 def _law(trajectory: Trajectory) -> str:
+    if trajectory.moves:
+        return "program"
     if trajectory.path_error:
         return "quintic"
     return "linear" if trajectory.velocities is None else "cubic"

@@ -55,8 +55,16 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     step = certificate.worst_interval
     times = record.steps["time"].to_numpy()
     cubic = any(motion.velocities is not None for motion in record.motions)
+    asked = [placed.trajectory for placed in record.case.robots]
+    is_program = any(one is not None and one.moves for one in asked)
     return {
-        "joints": "quintic" if record.timeline.path_error else "cubic" if cubic else "linear",
+        "joints": "program"
+        if is_program
+        else "quintic"
+        if record.timeline.path_error
+        else "cubic"
+        if cubic
+        else "linear",
         "lower_bound": float(certificate.lower_bound[step]),
         "upper_bound": record.steps["upper_bound"][step].as_py(),
         "step": step,

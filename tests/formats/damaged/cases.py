@@ -89,3 +89,16 @@ def findings() -> bytes:
         2.0, 3.0, 129, 135, (0.1, 0.2, 0.3), (0.1, 0.2, 0.4), {"shoulder": 0.5}, "", waived,
     )  # fmt: skip
     return findings_text(FindingList("small", "", 0, measured, (doubt,), (found,))).encode()
+
+
+PROGRAM = b"""tool: {link: tool_tip, xyz: [0.0, 0.0, 0.05]}
+frames: {table: {on: base, xyz: [0.5, -0.2, 0.4]}}
+start: {joint_1: -0.5, joint_2: 0.1, joint_3: 0.4, joint_4: 0.1, joint_5: 1.1, joint_6: 0.2}
+step: 0.01
+moves:
+  - lin: {to: {frame: table, xyz: [0.03, 0.0, 0.0]}, zone: 0.003}
+  - lin: {to: {frame: table, xyz: [0.03, 0.03, 0.0], name: P1}, speed: 0.1}
+  - circ: {via: {frame: table, xyz: [0.04, 0.04, 0.0]}, to: {frame: table, xyz: [0.03, 0.05, 0.0]}}
+  - wait: 0.5
+  - ptp: {joints: {joint_1: -0.5, joint_2: 0.1, joint_3: 0.4, joint_4: 0.1, joint_5: 1.1, joint_6: 0.2}}
+"""

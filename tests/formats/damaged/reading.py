@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 
 from tests.formats.damaged.meshes import binary_stl
@@ -63,7 +64,7 @@ def robot_beside(data: bytes, folder: Path, name: str) -> object:
         (folder / other).write_bytes(content)
     robot = schema.Robot.model_validate(ROBOT)
     entry = schema.RobotEntry("robot", robot, None, "trajectory")
-    return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry)
+    return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry, {})
 
 
 def robot(data: bytes, folder: Path, name: str) -> object:
@@ -96,6 +97,27 @@ def trajectory(data: bytes, folder: Path, name: str) -> object:
     from clearance.formats.motion.trajectory_file import parse_trajectory
 
     return parse_trajectory(data, name)
+
+
+def program(data: bytes, folder: Path, name: str) -> object:
+    """A program as a case would have it: its moves, then the joints that follow."""
+    from clearance.case.program import program_motion
+    from clearance.formats.files.input_files import InputFiles
+    from clearance.formats.schema.timed import TrajectoryFile
+
+    (folder / name).write_bytes(data)
+    asked = TrajectoryFile.model_validate({"program": name})
+    return program_motion(asked, {}, programmed(), folder, InputFiles(folder), {})
+
+
+@lru_cache
+def programmed():
+    """The arm that programs move."""
+    from clearance.formats.robot.urdf.robot import load_urdf
+    from clearance.world.case import PlacedRobot
+
+    root = Path(__file__).parents[3]
+    return PlacedRobot(load_urdf(root / "robots" / "heron6" / "heron6.urdf"))
 
 
 def bag(path: Path) -> object:

@@ -146,6 +146,9 @@ def _motions() -> dict[str, Reader]:
         "trajectory semicolons": Reader("path.csv", texts.COMMAS, read, table_damaged, where),
         "JointTrajectory": Reader("path.yaml", texts.MESSAGE, read, yaml_damaged, where, yml),
         "JointTrajectory JSON": Reader("path.json", texts.MESSAGE_JSON, read, json_damaged, where),
+        "program": Reader(
+            "weld.yaml", cases.PROGRAM, reading.program, yaml_damaged, Kind.PROGRAM, yml
+        ),
         "pose table": Reader("door.csv", texts.POSES, poses, table_damaged, tables),
         "poses stamped": Reader("door.yaml", texts.STAMPED, poses, yaml_damaged, tables, yml),
         "poses JSON": Reader("door.json", cases.POSES_JSON, poses, json_damaged, tables),

@@ -1,0 +1,156 @@
+"""A robot program in a case: its frames are found in the cell, and its moves become a trajectory.
+
+Not for: how joints follow (room `programs`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadInput, at, nearest_name
+from clearance.formats.files.input_files import InputFiles, resolved
+from clearance.formats.known_formats import Kind, format_of, function_at
+from clearance.formats.motion.trajectory_file import ReadTrajectory
+from clearance.formats.schema import program as schema
+from clearance.formats.schema.timed import TrajectoryFile
+from clearance.geometry.pose import inverse
+from clearance.programs.motion import motion_of
+from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
+from clearance.world.case import PlacedRobot
+
+
+def program_motion(
+    asked: TrajectoryFile,
+    start: Mapping[str, float],
+    placed: PlacedRobot,
+    folder: Path,
+    files: InputFiles,
+    standing: Mapping[str, np.ndarray],
+) -> ReadTrajectory:
+    """The motion of a program that a case names or holds, and a line each on what was assumed.
+
+    Args:
+        start: joints at its beginning that the case gives [rad or m]. folder: against which paths are looked up.
+        standing: (4, 4) `world_from_obstacle` [m] of the obstacles that stand, by name.
+
+    Raises:
+        BadInput: with the place in the file.
+    """
+    assert asked.program is not None
+    if isinstance(asked.program, schema.Program):
+        given, shown = asked.program, "program"
+    else:
+        path = resolved(asked.program, folder)
+        shown = files.shown(path)
+        data = files.read(path)
+        row = format_of(Kind.PROGRAM, shown, data)
+        assert row is not None
+        given = function_at(row.read)(data, shown)
+    with at(shown):
+        frames = _Frames(given, placed, standing)
+        own = {**given.start, **start}
+        program = Program(
+            given.tool.link,
+            given.tool.matrix(),
+            tuple(_moves(given, frames, shown)),
+            own,
+            given.step,
+        )
+        found = motion_of(placed.robot, program)
+    trajectory = replace(found.trajectory, frames=tuple(sorted(frames.used)))
+    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in found.notes))
+
+
+class _Frames:
+    """The frames of a program, seen from the robot's root."""
+
+    def __init__(
+        self, given: schema.Program, placed: PlacedRobot, standing: Mapping[str, np.ndarray]
+    ) -> None:
+        self._given, self._placed, self._standing = given, placed, standing
+        self.used = set[str]()
+
+    def root_from(self, name: str, within: tuple[str, ...] = ()) -> np.ndarray:
+        """(4, 4) `root_from_frame` [m].
+
+        Raises:
+            BadInput: a frame on what is not there, moves, or is on itself.
+        """
+        if name == schema.BASE:
+            return np.eye(4)
+        if name in self._given.frames:
+            if name in within:
+                raise BadInput(
+                    f"{' on '.join((*within, name))}: a ring",
+                    where="frames",
+                    valid="a frame on the world",
+                )
+            frame = self._given.frames[name]
+            with at(f"frames.{name}"):
+                return np.asarray(self.root_from(frame.on, (*within, name)) @ frame.matrix())
+        if self._placed.mount is not None:
+            raise BadInput(
+                f"the robot stands on {self._placed.mount.on!r}, so that where {name!r} is for it may change",
+                valid="frames on base",
+            )
+        if name == schema.WORLD:
+            return inverse(self._placed.world_from_base)
+        if name in self._standing:
+            self.used.add(name)
+            return inverse(self._placed.world_from_base) @ self._standing[name]
+        known = (*self._given.frames, schema.WORLD, schema.BASE, *self._standing)
+        raise BadInput(f"{name!r} is not there, or moves", valid=nearest_name(name, known))
+
+    def pose(self, target: schema.Target) -> np.ndarray:
+        """(4, 4) `root_from_tool` [m]."""
+        return np.asarray(self.root_from(target.frame) @ target.matrix())
+
+    def point(self, place: schema.Point | schema.Target) -> np.ndarray:
+        """(3,) [m]."""
+        return np.asarray(self.root_from(place.frame) @ np.array([*place.xyz, 1.0]))[:3]
+
+
+def _moves(given: schema.Program, frames: _Frames, shown: str) -> Sequence[Move]:
+    """The moves of a program, each under a name: "LIN 14 → P23"."""
+    found: list[Move] = []
+    for i, move in enumerate(given.moves):
+        where = f"moves[{i}]"
+        with at(where):
+            found.append(_move(move, frames, i + 1, where))
+    return found
+
+
+def _move(move: schema.Move, frames: _Frames, number: int, where: str) -> Move:
+    if move.wait is not None:
+        return Wait(f"WAIT {number}", where, move.wait)
+    if move.ptp is not None:
+        to = move.ptp.to
+        pose = None if to is None else frames.pose(to)
+        name = _name("PTP", number, to)
+        return JointMove(name, f"{where}.ptp", move.ptp.joints, pose, move.ptp.speed)
+    key = "lin" if move.circ is None else "circ"
+    path = move.circ or move.lin
+    assert path is not None
+    turns = path.to.turns and not (move.circ is not None and move.circ.orientation == "constant")
+    pose = frames.pose(path.to)
+    return PathMove(
+        name=_name(key.upper(), number, path.to),
+        where=f"{where}.{key}",
+        pose=pose,
+        keeps_orientation=not turns,
+        via=None if move.circ is None else frames.point(move.circ.via),
+        along=move.circ is not None and move.circ.orientation == "tangent",
+        speed=path.speed,
+        acceleration=path.acceleration,
+        turn_speed=path.turn_speed,
+        zone=move.lin.zone if move.lin is not None else 0.0,
+        hold=dict(path.hold),
+    )
+
+
+def _name(kind: str, number: int, to: schema.Target | None) -> str:
+    return f"{kind} {number} → {to.name}" if to is not None and to.name else f"{kind} {number}"

@@ -1,0 +1,119 @@
+"""The schema of files that say where something goes over time, and when they are followed.
+
+Not for: reading those files (`timed_files`).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from clearance.errors import BadInput
+from clearance.formats.motion.trajectory_file import Choice
+from clearance.formats.schema.program import Program
+from clearance.formats.schema.strict_model import Name, StrictModel
+from clearance.world.timing import Timing
+
+
+class TimedFile(StrictModel):
+    """A table of samples and when it is followed: `{file: t.csv, start: 1.0}`, or the path alone. It begins at
+    `start` [s], `rate` times as fast as written; after its last sample it holds, loops, or is absent.
+    """
+
+    file: Name
+    start: float = 0.0
+    rate: Annotated[float, Field(gt=0)] = 1.0
+    after: Literal["hold", "loop", "absent"] = "hold"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _path_alone(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
+
+    @property
+    def timing(self) -> Timing:
+        """When the table is followed."""
+        said = self.model_fields_set & {"start", "after"}
+        return Timing(self.start, self.rate, self.after, frozenset(said))
+
+
+class Units(StrictModel):
+    """What the angles and lengths of a table are written in; velocities are in it a second."""
+
+    angle: Literal["rad", "deg"] = "rad"
+    length: Literal["m", "mm"] = "m"
+
+
+class LengthUnit(StrictModel):
+    """What the lengths of a table are written in."""
+
+    length: Literal["m", "mm"]
+
+
+class PoseFile(TimedFile):
+    """Poses over time and when they are followed; lengths of a table may be in other `units`."""
+
+    FILLED = frozenset({"units"})
+
+    units: LengthUnit | None = None
+
+    @property
+    def length(self) -> str | None:
+        """The unit of lengths, if it is said."""
+        return None if self.units is None else self.units.length
+
+
+def _by_itself(given: Any) -> Any:
+    """Columns by name; those of a list are called so themselves."""
+    if not isinstance(given, list) or not all(isinstance(name, str) for name in given):
+        return given
+    return {name: name for name in given}
+
+
+class TrajectoryFile(TimedFile):
+    """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
+    `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
+    `columns` names the columns of a table to read, and no others; `{joint: column}` if names differ. `topic` is
+    a topic of a bag. `gaps` says how joints move in holes of a recording: they hold, go straight (linear), or are
+    not measured. `wrap` says which way a continuous joint goes in a step of more than half a turn. `start_state`
+    is the start at 0 s if the first sample is later: positions, or names of states. `program` names, or holds, a
+    robot program instead of a file; it starts in `start_state`.
+    """
+
+    FILLED = frozenset(
+        (
+            *("which", "units", "joints", "period", "columns", "topic"),
+            *("gaps", "wrap", "start_state", "program"),
+        )
+    )
+
+    which: Annotated[int | None, Field(ge=1)] = None
+    units: Units | None = None
+    joints: Annotated[list[Name], Field(min_length=1)] | None = None
+    period: Annotated[float | None, Field(gt=0)] = None
+    topic: Name | None = None
+    gaps: Literal["hold", "linear", "not_measured"] | None = None
+    wrap: Literal["shortest", "as_written"] | None = None
+    columns: (
+        Annotated[dict[Name, Name], BeforeValidator(_by_itself), Field(min_length=1)] | None
+    ) = None
+    start_state: dict[Name, float] | Name | list[Name] | None = None
+    program: Name | Program | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _file_or_program(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or "program" not in data:
+            return data
+        if "file" in data:
+            raise BadInput("both file and program are given", valid="one of them")
+        return {"file": "-", **data}
+
+    @property
+    def choice(self) -> Choice:
+        """What is said beside path and times."""
+        units = None if self.units is None else (self.units.angle, self.units.length)
+        joints = None if self.joints is None else tuple(self.joints)
+        columns = None if self.columns is None else tuple(self.columns.items())
+        return Choice(self.which, units, joints, self.period, self.topic, self.gaps, columns)

@@ -1,0 +1,153 @@
+"""The arm of a program: how the pose of a tool follows from joints, as numbers and as power series.
+
+Poses are seen from the robot's root. Not for: which poses a program asks for (`tool_path`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.programs.series import ORDER, matrix_product, product, sine_and_cosine
+from clearance.world.kinematic_chain import ChainJoint, KinematicChain, chain_between
+from clearance.world.robot import Joint, JointKind, Robot
+
+
+@dataclass(frozen=True, eq=False)
+class Arm:
+    """The joints from a robot's root to its tool.
+
+    Attributes:
+        link: the tool is fixed to. link_from_tool: (4, 4) [m].
+    """
+
+    robot: Robot
+    link: str
+    link_from_tool: np.ndarray
+
+    @cached_property
+    def chain(self) -> KinematicChain:
+        """From the root to the tool's link."""
+        return chain_between(self.robot, self.robot.link_names[0], self.link)
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The k joints that are free to move, in the order of the columns of positions."""
+        return self.chain.masters
+
+    @cached_property
+    def end(self) -> np.ndarray:
+        """(4, 4) the tool in the frame of the last joint [m]."""
+        return np.asarray(self.chain.end @ self.link_from_tool)
+
+    @cached_property
+    def slides(self) -> np.ndarray:
+        """(k,) which joints slide."""
+        return np.array([joint.kind is JointKind.PRISMATIC for joint in self.joints], dtype=bool)
+
+    def longest(self, positions: np.ndarray) -> float:
+        """[m] no point of the chain is farther from a joint's axis, with slides as far out as in positions (n,
+        k)."""
+        fixed = sum(float(np.linalg.norm(one.before[:3, 3])) for one in self.chain.joints)
+        slid = sum(
+            float(np.abs(one.factor * positions[:, one.column] + one.offset).max(initial=0.0))
+            for one in self.chain.joints
+            if not one.turns
+        )
+        return fixed + float(np.linalg.norm(self.end[:3, 3])) + slid
+
+    def poses(self, positions: np.ndarray) -> np.ndarray:
+        """(n, 4, 4) `root_from_tool` [m] at positions (n, k) [rad or m]."""
+        return np.asarray(self.chain.frames(positions)[:, -1] @ self.link_from_tool)
+
+    def poses_and_rates(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n, 4, 4) `root_from_tool` [m], and (n, 6, k) how its origin moves and how it turns by each joint."""
+        frames = self.chain.frames(positions)
+        tool = frames[:, -1] @ self.link_from_tool
+        rates = np.zeros((len(positions), 6, len(self.joints)))
+        for i, joint in enumerate(self.chain.joints):
+            axes = joint.factor * (frames[:, i, :3, :3] @ joint.axis)
+            if not joint.turns:
+                rates[:, :3, joint.column] += axes
+                continue
+            rates[:, :3, joint.column] += np.cross(axes, tool[:, :3, 3] - frames[:, i, :3, 3])
+            rates[:, 3:, joint.column] += axes
+        return tool, rates
+
+    def second_rates(self, positions: np.ndarray, seen_from: np.ndarray) -> np.ndarray:
+        """(n, 6, k, k) how each column of the Jacobian changes by each joint: turns seen from the tool.
+
+        Args:
+            seen_from: (n, 3, 3) axes of the tool's path, which are all but the tool's.
+
+        Of joints i and j of the chain, with i before j: d(z_j x (p - o_j)) / dq_i = z_i x (z_j x (p - o_j)), and
+            the same
+        with i and j exchanged; seen from the tool z_i changes by q_j as z_i x z_j, and z_j by q_i not at all.
+        """
+        frames = self.chain.frames(positions)
+        at = (frames[:, -1] @ self.link_from_tool)[:, :3, 3]
+        n, k = len(positions), len(self.joints)
+        found = np.zeros((n, 6, k, k))
+        axes = [
+            one.factor * (frames[:, i, :3, :3] @ one.axis)
+            for i, one in enumerate(self.chain.joints)
+        ]
+        for j, later in enumerate(self.chain.joints):
+            way = np.cross(axes[j], at - frames[:, j, :3, 3]) if later.turns else axes[j]
+            for i, earlier in enumerate(self.chain.joints[: j + 1]):
+                if not earlier.turns:
+                    continue
+                moved = np.cross(axes[i], way)
+                found[:, :3, later.column, earlier.column] += moved
+                if i == j:
+                    continue
+                found[:, :3, earlier.column, later.column] += moved
+                if later.turns:
+                    turned = np.cross(axes[i], axes[j])
+                    found[:, 3:, earlier.column, later.column] += (turned[:, None] @ seen_from)[
+                        :, 0
+                    ]
+        return found
+
+    def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) [rad] what all joints that turn, and (n,) [m] what all that slide, move by together, with ways (n,
+        k)."""
+        turned, slid = np.zeros(len(ways)), np.zeros(len(ways))
+        for one in self.chain.joints:
+            (turned if one.turns else slid)[:] += abs(one.factor) * ways[:, one.column]
+        return turned, slid
+
+    def series(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The series of the tool's rotation (ORDER + 1, n, 3, 3) and origin (ORDER + 1, n, 3) [m].
+
+        Args:
+            positions: (ORDER + 1, n, k) series of the joints.
+        """
+        n = positions.shape[1]
+        turn, origin = np.zeros((ORDER + 1, n, 3, 3)), np.zeros((ORDER + 1, n, 3))
+        turn[0] = np.eye(3)
+        for joint in self.chain.joints:
+            origin += turn @ joint.before[:3, 3]
+            turn = turn @ joint.before[:3, :3]
+            at = joint.factor * positions[:, :, joint.column]
+            at[0] += joint.offset
+            if joint.turns:
+                turn = _turned(turn, joint, at)
+            else:
+                origin += product(turn @ joint.axis, at[:, :, None])
+        origin += turn @ self.end[:3, 3]
+        return turn @ self.end[:3, :3], origin
+
+
+def _turned(turn: np.ndarray, joint: ChainJoint, angle: np.ndarray) -> np.ndarray:
+    """A series of rotations after a joint that turns by a series of angles (Rodrigues)."""
+    x, y, z = joint.axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, cosine = sine_and_cosine(angle)
+    versine = -cosine
+    versine[0] += 1.0
+    rodrigues = sine[:, :, None, None] * cross + versine[:, :, None, None] * (cross @ cross)
+    rodrigues[0] += np.eye(3)
+    return matrix_product(turn, rodrigues)

@@ -1,0 +1,229 @@
+"""How far admissible paths through a corner zone take the links of a robot from its nominal motion, proven.
+
+Admissible is every path of the tool's point in the triangle entry, corner, exit, with any rotation between:
+
+    p = E + a d1 + b d2,   0 <= b <= a <= 1,   R = exp(b' w2) exp(a' w1) R_E,   0 <= a', b' <= 1.
+
+The nominal motion has a = 2u - u^2 and b = u^2. A path's point with a + b = 2u is held against the nominal one at
+u, from which it is off by s (d1 - d2), -(u - u^2) <= s <= min(u, 1 - u) - (u - u^2). The ranges of s, a' and b'
+are cut into cells until `enclosure` proves a box of joints for the poses of each cell about the nominal cubic,
+shifted for it. Where no two joints in the hull of a cell's and its neighbours' boxes hold the same pose, a path
+that goes on without a jump is in these boxes everywhere. Not for: what that takes of a clearance
+(`world.corner_paddings`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, Links
+from clearance.programs.arm import Arm
+from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
+from clearance.programs.following import Follower
+from clearance.programs.inverse import joints_at
+from clearance.programs.path_samples import PathSamples
+from clearance.world.corner_zone import CornerZone, Deviation
+from clearance.world.kinematics import links_of_robot, poses_by_link
+from clearance.world.robot import JointKind, Robot
+
+CELLS = (4, 6, 8, 12)
+"""Into how many parts each range is cut, one after another, until boxes are proven."""
+
+
+def corner_of(
+    follower: Follower, samples: PathSamples, start: float, radius: float, name: str
+) -> CornerZone:
+    """What a corner zone admits, proven.
+
+    Args:
+        samples: of the nominal motion through it. start: [s] when it begins. radius: [m]. name: of its move.
+
+    Raises:
+        BadInput: nothing is proven: the zone is too wide for the arm so near a singularity.
+    """
+    for n_cells in CELLS:
+        found = _cells(follower, samples, n_cells)
+        if found is not None:
+            ends = start + samples.times[[0, -1]]
+            links = _links(follower.arm, *found)
+            return CornerZone(name, float(ends[0]), float(ends[1]), radius, links)
+    raise BadInput(
+        f"a corner zone of {radius * 1e3:g} mm is too wide to be proven where the arm is",
+        where="zone",
+        valid="a smaller zone, or another configuration",
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """The cells of all intervals.
+
+    Attributes:
+        shape: (intervals, cells of s, of a', of b'). spread: of each cell, in that order.
+    """
+
+    shape: tuple[int, ...]
+    spread: Spread
+
+
+def _cells(
+    follower: Follower, samples: PathSamples, n_cells: int
+) -> tuple[Enclosed, Spread] | None:
+    """The boxes of all cells, if they are proven and joined."""
+    arm, stretch = follower.arm, follower.stretch
+    grid = _grid(follower, samples, n_cells)
+    n_each = int(np.prod(grid.shape[1:]))
+    given = Intervals(
+        *(np.repeat(part, n_each, axis=0) for part in samples.intervals[:3]),
+        *(np.repeat(part, n_each, axis=1) for part in samples.intervals[3:]),
+    )
+    found = enclosed(arm, stretch, given, follower.free, grid.spread)
+    if not np.isfinite(found.box).all():
+        return None
+    reach = _to_neighbours(grid, found.box)
+    return (found, grid.spread) if found.is_unique(arm, reach).all() else None
+
+
+def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
+    """The cells, and the cubics shifted to the joints that hold the pose in the middle of each."""
+    stretch, shares = follower.stretch, samples.shares
+    n = len(shares) - 1
+    sizes = (0.25, *np.linalg.norm(stretch.turns, axis=1))
+    counts = [n_cells if size else 1 for size in sizes]
+    shape = (n, *counts)
+    i, *cell = (axis.ravel() for axis in np.indices(shape))
+    given = samples.intervals
+    half = 0.5 * given.lengths[:, None]
+    middle = given.strokes[0] + half * (given.strokes[1] + 0.5 * given.strokes[2] * half)
+    moved = (
+        np.abs(given.strokes[1] + given.strokes[2] * half) * half
+        + np.abs(given.strokes[2]) * half**2
+    )
+    at = np.stack([(own + 0.5) / count for own, count in zip(cell, counts, strict=True)], axis=1)
+    shifts = np.stack(
+        [0.5 * (at[:, 0] - 0.5), at[:, 1] - middle[i, 0], at[:, 2] - middle[i, 1]], axis=1
+    )
+    halves = np.stack(
+        [np.full(len(i), 0.25 / counts[0]), *(0.5 / counts[1 + k] + moved[i, k] for k in range(2))],
+        axis=1,
+    )
+    shifts[:, 1:][:, np.array(sizes[1:]) == 0.0] = 0.0
+    halves[:, 1:][:, np.array(sizes[1:]) == 0.0] = 0.0
+    near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
+    poses = stretch.poses(
+        middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
+    )
+    solved = joints_at(follower.arm, poses, near[i], follower.free)
+    return _Grid(shape, Spread(solved.positions - near[i], shifts, halves))
+
+
+def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
+    """(n, k) how far the boxes of a cell's neighbours, and its own, reach from its cubic."""
+    shape = (*grid.shape, box.shape[1])
+    joints, own = grid.spread.joints.reshape(shape), box.reshape(shape)
+    reach = own.copy()
+    for axis in range(4):
+        first, second = (
+            tuple(slice(*ends) if k == axis else slice(None) for k in range(4))
+            for ends in ((None, -1), (1, None))
+        )
+        between = np.abs(joints[first] - joints[second])
+        reach[first] = np.maximum(reach[first], between + own[second])
+        reach[second] = np.maximum(reach[second], between + own[first])
+    return reach.reshape(box.shape)
+
+
+def _links(arm: Arm, found: Enclosed, spread: Spread) -> dict[str, Deviation]:
+    """How far each link that the arm moves may be off the nominal motion, in any cell.
+
+    At the middle of an interval the shift of a cell moves a link by what both poses differ by; within it by more
+    by the change of the Jacobian with the shift, times how far the cubics go; and the box by the Jacobian there.
+    """
+    robot, box, within = arm.robot, found.box, found.variation.within
+    moving = [joint.name for joint in robot.moving_joints]
+    columns = [moving.index(joint.name) for joint in arm.joints]
+    links = links_of_robot(robot)
+    at, off = np.zeros((2, len(box), len(moving)))
+    at[:, columns], off[:, columns] = found.middle - spread.joints, found.middle
+    nominal, shifted = poses_by_link(links, at), poses_by_link(links, off)
+    lengths = _path_lengths(robot)
+    told = {}
+    for i, name in enumerate(robot.link_names):
+        rates = _rates(links, shifted, i, columns)
+        above = np.asarray(rates.any(axis=(0, 1)))
+        if not above.any():
+            continue
+        by_shift = _change(arm, lengths[name], above, np.abs(spread.joints), within)
+        by_box = _change(arm, lengths[name], above, within + box, box)
+        rest = (np.abs(rates) @ box[..., None])[..., 0]
+        ways = np.linalg.norm(shifted[:, i, :3, 3] - nominal[:, i, :3, 3], axis=1)
+        ways += np.linalg.norm(rest[:, :3], axis=1) + by_shift[0] + by_box[0]
+        turns = _angles(nominal[:, i, :3, :3], shifted[:, i, :3, :3])
+        turns += np.linalg.norm(rest[:, 3:], axis=1) + by_shift[1] + by_box[1]
+        told[name] = Deviation(float(ways.max()) * MORE, float(turns.max()) * MORE)
+    return told
+
+
+def _change(
+    arm: Arm, length: float, above: np.ndarray, moved: np.ndarray, ways: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) [m] and [rad] by how much more joints that go by `ways` move a link once joints are `moved` (n, k).
+
+    The column of a joint that turns has a way of at most `length` for the link's origin; a turn by a turns it by
+    a at most, a slide by d moves it by d. That of a joint that slides has length 1 and turns likewise.
+
+    Args:
+        length: [m] of the path from the root to the link. above: (k,) the joints that move it.
+    """
+    turned, slid = arm.sums(moved * above)
+    turns, slides = arm.sums(ways * above)
+    return turns * (length * turned + slid) + slides * turned, turns * turned
+
+
+def _path_lengths(robot: Robot) -> dict[str, float]:
+    """[m] No link's frame is farther from a joint above it than this, by link; slides reach to their limits."""
+    path = {robot.link_names[0]: 0.0}
+    for joint in robot.joints:
+        own = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
+        if joint.kind is JointKind.PRISMATIC:
+            own += max(abs(joint.lower), abs(joint.upper))
+        path[joint.child] = path[joint.parent] + own
+    return path
+
+
+MORE = 1.0 + 1e-6
+"""What covers rounding."""
+
+
+def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(n,) [rad] between rotations (n, 3, 3)."""
+    between = np.swapaxes(a, 1, 2) @ b
+    twice = np.stack(
+        [
+            between[:, (k + 2) % 3, (k + 1) % 3] - between[:, (k + 1) % 3, (k + 2) % 3]
+            for k in range(3)
+        ]
+    )
+    cosines = np.trace(between, axis1=1, axis2=2) - 1.0
+    return np.arctan2(np.linalg.norm(twice, axis=0), cosines)
+
+
+def _rates(links: Links, poses: np.ndarray, link: int, columns: list[int]) -> np.ndarray:
+    """(n, 6, k) how the origin of a link's frame moves and how it turns by each of some columns."""
+    found = np.zeros((len(poses), 6, len(columns)))
+    at, above = poses[:, link, :3, 3], link
+    while above != NO_PARENT:
+        column = int(links.columns[above])
+        if column != NO_COLUMN and column in columns:
+            i = columns.index(column)
+            axes = links.factors[above] * (poses[:, above, :3, :3] @ links.axes[above])
+            if links.kinds[above] == SLIDING:
+                found[:, :3, i] += axes
+            else:
+                found[:, :3, i] += np.cross(axes, at - poses[:, above, :3, 3])
+                found[:, 3:, i] += axes
+        above = int(links.parents[above])
+    return found

@@ -1,0 +1,110 @@
+"""The joints along a stretch of a tool's path, from where they are at its beginning: found step by step, and
+refused where they cannot follow. Not for: what lies between samples (`enclosure`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.programs.arm import Arm
+from clearance.programs.inverse import joints_at, least_motion
+from clearance.programs.tool_path import Stretch
+from clearance.world.cubic import cubics_of, position_on
+
+SHORTEST = 2.0**-14
+"""The least part of a stretch that a step may be: less is a singularity, or the end of what can be reached."""
+
+LONGEST = 0.25
+"""[rad] or [m]: the most that a joint may go in one step."""
+
+FORESEEN = 0.05
+"""[rad] or [m]: how far joints may be from where their rates say that they go."""
+
+REACHED = 1e-9
+"""[m] and [rad]: a pose that is missed by more is not reached."""
+
+
+@dataclass(frozen=True, eq=False)
+class Follower:
+    """An arm whose tool follows a stretch.
+
+    Attributes:
+        free: (k,) which joints follow the path. held: (k,) how far the others go with the stretch, in proportion.
+    """
+
+    arm: Arm
+    stretch: Stretch
+    free: np.ndarray
+    held: np.ndarray
+
+    def rates(
+        self, positions: np.ndarray, strokes: np.ndarray, share_rates: np.ndarray
+    ) -> np.ndarray:
+        """(n, k) [1/s] how fast the joints go at positions (n, k), in the least motion.
+
+        Args:
+            strokes: (3, n, 2) of the stretch. share_rates: (n,) [1/s] of the way through it.
+        """
+        _, rates = self.arm.poses_and_rates(positions)
+        found = share_rates[:, None] * np.where(self.free, 0.0, self.held)
+        wanted = self.stretch.rates(strokes[0], strokes[1]) - (rates @ found[..., None])[..., 0]
+        found[:, self.free] = least_motion(rates[:, :, self.free], wanted[:, :, None])[:, :, 0]
+        return found
+
+    def positions(self, start: np.ndarray, shares: np.ndarray) -> np.ndarray:
+        """(n, k) the joints at shares (n,), which increase from 0 to 1, of the stretch that begins at `start`.
+
+        Raises:
+            BadInput: the tool cannot go on; where it is, and the joints.
+        """
+        at, found, rates = self._coarse(start)
+        i = np.clip(np.searchsorted(at, shares, side="right") - 1, 0, len(at) - 2)
+        cubics = cubics_of(at, found, rates)
+        near = position_on(
+            type(cubics)(*(part[i] for part in cubics)),
+            ((shares - at[i]) / np.diff(at)[i])[:, None],
+        )
+        poses = self.stretch.poses(self._strokes(shares)[0])
+        solved = joints_at(self.arm, poses, near, self.free)
+        bad = int(np.argmax(solved.left))
+        if solved.left[bad] > REACHED:
+            raise _stuck(poses[bad], near[bad])
+        return solved.positions
+
+    def _strokes(self, shares: np.ndarray) -> np.ndarray:
+        return self.stretch.strokes(shares, np.ones_like(shares), np.zeros_like(shares))
+
+    def _rates_at(self, position: np.ndarray, share: float) -> np.ndarray:
+        """(k,) how the joints go with the share."""
+        return self.rates(position[None], self._strokes(np.array([share])), np.ones(1))[0]
+
+    def _coarse(self, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Shares (m,), joints and their derivatives by the share (m, k), near enough for cubics between them."""
+        shares, found, rates = [0.0], [start], [self._rates_at(start, 0.0)]
+        step = 1.0
+        while shares[-1] < 1.0:
+            step = min(step, 1.0 - shares[-1], LONGEST / max(float(np.abs(rates[-1]).max()), 1e-9))
+            near = found[-1] + step * rates[-1]
+            share = 1.0 if shares[-1] + step > 1.0 - 1e-12 else shares[-1] + step
+            pose = self.stretch.poses(self._strokes(np.array([share]))[0])
+            solved = joints_at(self.arm, pose, near[None], self.free)
+            if solved.left[0] <= REACHED and np.abs(solved.positions[0] - near).max() <= FORESEEN:
+                shares.append(share)
+                found.append(solved.positions[0])
+                rates.append(self._rates_at(found[-1], share))
+                step *= 2.0
+            elif (step := 0.5 * step) < SHORTEST:
+                raise _stuck(pose[0], found[-1])
+        return np.array(shares), np.array(found), np.array(rates)
+
+
+def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadInput:
+    x, y, z = pose[:3, 3]
+    shown = ", ".join(f"{value:.4g}" for value in joints)
+    return BadInput(
+        f"the tool cannot go on at ({x:.4g}, {y:.4g}, {z:.4g}) m, with joints at {shown}",
+        valid="a target within reach, and no singularity on the way",
+    )

@@ -1,0 +1,115 @@
+"""The joints that bring a tool to poses near ones whose joints are known: Newton's method, of least joint motion.
+
+Not for: poses far away (`following`), and what is proven of the answer (`enclosure`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.programs.arm import Arm
+
+REACHED = 1e-12
+"""[m] and [rad]: a pose that is this near is reached, where rounding allows."""
+
+MOST_STEPS = 12
+
+
+class Solved(NamedTuple):
+    """What Newton's method came to.
+
+    Attributes:
+        positions: (n, k) [rad or m]. left: (n,) [m or rad] what is left of each pose.
+    """
+
+    positions: np.ndarray
+    left: np.ndarray
+
+
+def joints_at(arm: Arm, wanted: np.ndarray, start: np.ndarray, free: np.ndarray) -> Solved:
+    """The joints for poses (n, 4, 4) seen from the root, from joints (n, k) near them.
+
+    Args:
+        free: (k,) the joints that may move; the others stay as in `start`.
+    """
+    at, least = start.copy(), np.full(len(start), np.inf)
+    for _ in range(MOST_STEPS):
+        poses, rates = arm.poses_and_rates(at)
+        off = off_pose(wanted, poses)
+        left = np.abs(off).max(axis=1)
+        if (left <= REACHED).all() or ((left >= least).all() and (left <= 1e-9).all()):
+            break
+        least = np.minimum(least, left)
+        at[:, free] += least_motion(rates[:, :, free], off[:, :, None])[:, :, 0]
+    return Solved(at, left)
+
+
+def off_pose(wanted: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """(n, 6) what brings poses (n, 4, 4) to those that are wanted: a way [m] and a turn, sine times axis."""
+    turned = wanted[:, :3, :3] @ np.swapaxes(poses[:, :3, :3], 1, 2)
+    sines = [
+        turned[:, (k + 2) % 3, (k + 1) % 3] - turned[:, (k + 1) % 3, (k + 2) % 3] for k in range(3)
+    ]
+    return np.hstack([wanted[:, :3, 3] - poses[:, :3, 3], 0.5 * np.stack(sines, axis=1)])
+
+
+def least_motion(rates: np.ndarray, aims: np.ndarray) -> np.ndarray:
+    """(n, k, m) the joints' motion of least length whose rates (n, 6, k) make the aims (n, 6, m).
+
+    The damping, `DAMPING` of the greatest rate squared, leaves the answer to rounding but where the arm is
+    singular.
+    """
+    turned = np.swapaxes(rates, 1, 2)
+    square = rates @ turned
+    damping = DAMPING * np.trace(square, axis1=1, axis2=2)[:, None, None] + 1e-300
+    return np.asarray(turned @ np.linalg.solve(square + damping * np.eye(6), aims))
+
+
+DAMPING = 1e-14
+
+SEEDS = 64
+"""Starts from which joints for a pose far away are searched."""
+
+
+def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray) -> np.ndarray:
+    """(k,) the joints for a pose (4, 4) that are nearest to where they are now, by the joint that goes farthest.
+
+    Of those that damped least squares find from `SEEDS` starts within the limits: none nearer is excluded.
+
+    Raises:
+        BadInput: none is found within the limits.
+    """
+    low, high = arm.chain.ranges.T
+    low, high = np.maximum(low, now - np.pi), np.minimum(high, now + np.pi)
+    drawn = np.random.default_rng(0).random((SEEDS, len(now)))
+    spread = np.linspace(0.0, 1.0, SEEDS)[:, None] ** 2
+    starts = np.clip(now + spread * (low + drawn * (high - low) - now), low, high)
+    all_wanted = np.tile(wanted, (SEEDS, 1, 1))
+    near = _damped(arm, all_wanted, starts)
+    found = joints_at(arm, all_wanted, near, np.ones(len(now), dtype=bool))
+    low, high = arm.chain.ranges.T
+    within = (found.positions >= low) & (found.positions <= high)
+    fits = (found.left <= 1e-9) & within.all(axis=1)
+    if not fits.any():
+        x, y, z = wanted[:3, 3]
+        raise BadInput(
+            f"no joints within their limits bring the tool to ({x:.4g}, {y:.4g}, {z:.4g}) m",
+            valid="a pose within reach",
+        )
+    ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)
+    return np.asarray(found.positions[int(np.argmin(ways))])
+
+
+def _damped(arm: Arm, wanted: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """(n, k) joints nearer to poses, by damped least squares (Sugihara 2011)."""
+    at = start.copy()
+    for _ in range(40):
+        poses, rates = arm.poses_and_rates(at)
+        off = off_pose(wanted, poses)
+        damping = 1e-12 + (off**2).sum(axis=1)
+        square = rates @ np.swapaxes(rates, 1, 2) + damping[:, None, None] * np.eye(6)
+        at += (np.swapaxes(rates, 1, 2) @ np.linalg.solve(square, off[..., None]))[..., 0]
+    return at

@@ -1,0 +1,88 @@
+"""What a program asks of a tool: moves one after another, their targets seen from the robot's root.
+
+Not for: files (`formats`), how joints follow (`motion`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class JointMove:
+    """All joints go straight to their targets, begin together and end together (PTP, movej, MoveJ).
+
+    Attributes:
+        name: what the report calls it. where: in which file and field.
+        joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
+        speed: share of the joints' greatest speeds. acceleration: [1/s^2] of the share of the way; None for the
+            default.
+    """
+
+    name: str
+    where: str
+    joints: dict[str, float] | None = None
+    pose: np.ndarray | None = None
+    speed: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PathMove:
+    """The tool's point goes along a straight line, or an arc, to a pose.
+
+    Attributes:
+        name: what the report calls it. where: in which file and field. pose: (4, 4) [m].
+        via: (3,) a point of the arc [m]; None for a line. along: on an arc, the orientation stays the same to the
+            path.
+        keeps_orientation: the tool is not turned, whatever the pose says.
+        speed: [m/s]. acceleration: [m/s^2]. turn_speed: [rad/s]. zone: [m] radius of the corner zone at its end.
+        hold: joints that go straight to these values meanwhile [rad or m], by name.
+    """
+
+    name: str
+    where: str
+    pose: np.ndarray
+    via: np.ndarray | None = None
+    keeps_orientation: bool = False
+    along: bool = False
+    speed: float = 0.25
+    acceleration: float = 1.0
+    turn_speed: float = 1.0
+    zone: float = 0.0
+    hold: dict[str, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Wait:
+    """Nothing moves for some time [s]."""
+
+    name: str
+    where: str
+    seconds: float
+
+
+Move = JointMove | PathMove | Wait
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """Moves of one tool.
+
+    Attributes:
+        link: the tool is fixed to. link_from_tool: (4, 4) [m]. moves: in order.
+        start: the joints at its beginning by name [rad or m]; joints that are not named stay where the case has
+            them.
+        step: [m] the most that the tool moves from sample to sample; it turns by at most `STEP_TURN`.
+    """
+
+    link: str
+    link_from_tool: np.ndarray
+    moves: tuple[Move, ...]
+    start: dict[str, float]
+    step: float = 0.002
+
+
+STEP_TURN = np.radians(1.0)
+"""[rad] The most that a tool turns from sample to sample."""

@@ -1,0 +1,79 @@
+"""Samples of the joints along one stretch of a tool's path, and how far joints are off the cubics between them,
+proven."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.programs.enclosure import Intervals, deviations
+from clearance.programs.following import Follower
+from clearance.programs.moves import STEP_TURN
+from clearance.programs.time_law import Piece
+
+
+@dataclass(frozen=True, eq=False)
+class PathSamples:
+    """Samples on one stretch.
+
+    Attributes:
+        times: (n,) [s] from its beginning. shares: (n,) of the way through it.
+        positions, velocities: (n, k) of the arm's joints.
+        intervals: between them. deviations: (n - 1, k) [rad or m]; infinite where nothing is proven.
+    """
+
+    times: np.ndarray
+    shares: np.ndarray
+    positions: np.ndarray
+    velocities: np.ndarray
+    intervals: Intervals
+    deviations: np.ndarray
+
+    @classmethod
+    def of(
+        cls, follower: Follower, start: np.ndarray, pieces: Sequence[Piece], step: float
+    ) -> PathSamples:
+        """The samples from joints (k,), so many that the tool moves and turns by no more than a step between them.
+
+        Raises:
+            BadInput: the tool cannot go on.
+        """
+        counts = [_n_intervals(follower, piece, step) for piece in pieces]
+        parts = [
+            (piece, np.linspace(0.0, piece.duration, n + 1))
+            for piece, n in zip(pieces, counts, strict=True)
+        ]
+        begun = np.cumsum([0.0, *(piece.duration for piece in pieces)])
+        times = [began + own[:-1] for (_, own), began in zip(parts, begun, strict=False)]
+        shares = [piece.at(own[:-1]) for piece, own in parts]
+        rates = [piece.rates_at(own[:-1]) for piece, own in parts]
+        changes = [np.full(n, piece.change) for piece, n in zip(pieces, counts, strict=True)]
+        last_piece, last_times = parts[-1]
+        times_all = np.append(np.concatenate(times), begun[-1])
+        shares_all = np.append(np.concatenate(shares), 1.0)
+        rates_all = np.append(np.concatenate(rates), last_piece.rates_at(last_times[-1:]))
+        changes_all = np.append(np.concatenate(changes), last_piece.change)
+        rates_all[np.abs(rates_all) < 1e-9 * np.abs(rates_all).max(initial=0.0)] = 0.0
+        strokes = follower.stretch.strokes(shares_all, rates_all, changes_all)
+        positions = follower.positions(start, shares_all)
+        velocities = follower.rates(positions, strokes, rates_all)
+        given = Intervals(
+            np.diff(times_all),
+            positions[:-1],
+            positions[1:],
+            np.stack([velocities[:-1], velocities[1:]]),
+            strokes[:, :-1],
+        )
+        off = deviations(follower.arm, follower.stretch, given, follower.free)
+        return cls(times_all, shares_all, positions, velocities, given, off)
+
+
+def _n_intervals(follower: Follower, piece: Piece, step: float) -> int:
+    """How many intervals a piece needs."""
+    stretch = follower.stretch
+    share = abs(piece.at(np.array([piece.duration]))[0] - piece.share)
+    sizes = np.linalg.norm(stretch.turns, axis=1).sum(), np.linalg.norm(stretch.ways, axis=1).sum()
+    length = stretch.length if stretch.arc is not None else sizes[1]
+    return max(1, int(np.ceil(share * length / step)), int(np.ceil(share * sizes[0] / STEP_TURN)))

@@ -1,0 +1,58 @@
+"""How far along its path a tool is over time: pieces of constant acceleration (trapezoids of speed)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Piece(NamedTuple):
+    """A stretch of time in which a share of a path has a constant second derivative.
+
+    Attributes:
+        duration: [s]. share, rate, change: of the path at its beginning: the share [-], the first [1/s] and the
+            second derivative [1/s^2].
+    """
+
+    duration: float
+    share: float
+    rate: float
+    change: float
+
+    def at(self, times: np.ndarray) -> np.ndarray:
+        """(n,) the share at times (n,) [s] after its beginning."""
+        return self.share + times * (self.rate + 0.5 * self.change * times)
+
+    def rates_at(self, times: np.ndarray) -> np.ndarray:
+        """(n,) [1/s] its rate there."""
+        return self.rate + self.change * times
+
+
+SHORTEST = 1e-9
+"""[s] A piece that is shorter is none."""
+
+
+def trapezoid(rate: float, change: float, first: float = 0.0, last: float = 0.0) -> list[Piece]:
+    """The quickest pieces from share 0 to 1 with a greatest rate [1/s] and a greatest change of rate [1/s^2].
+
+    Where the path is too short for it, the rates `first` and `last` at its ends [1/s] are not more than can be
+    reached
+    or stopped from: the caller sees to that (`reachable`).
+    """
+    peak = min(rate, np.sqrt(change + 0.5 * (first**2 + last**2)))
+    speeding, slowing = max(peak - first, 0.0) / change, max(peak - last, 0.0) / change
+    covered = 0.5 * (first + peak) * speeding + 0.5 * (peak + last) * slowing
+    cruising = max(1.0 - covered, 0.0) / peak
+    pieces: list[Piece] = []
+    share, now = 0.0, first
+    for duration, by in ((speeding, change), (cruising, 0.0), (slowing, -change)):
+        if duration > SHORTEST:
+            pieces.append(Piece(duration, share, now, by))
+            share, now = share + duration * (now + 0.5 * by * duration), now + by * duration
+    return pieces
+
+
+def reachable(rate: float, change: float, other: float) -> float:
+    """[1/s] The greatest rate at one end of a path, up to `rate`, that changes to `other` within it."""
+    return float(min(rate, np.sqrt(other**2 + 2.0 * change)))

@@ -1,0 +1,88 @@
+"""Arms and moves for tests of programs: six and seven axes, one on a rail."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+import pybullet_data
+
+import clearance as cl
+from clearance.programs.arm import Arm
+from clearance.programs.following import Follower
+from clearance.programs.path_samples import PathSamples
+from clearance.programs.time_law import trapezoid
+from clearance.programs.tool_path import Stretch, arc, line
+
+ROBOTS = Path(__file__).parents[2] / "robots"
+FILES = {
+    "heron6": ROBOTS / "heron6" / "heron6.urdf",
+    "panda": Path(pybullet_data.getDataPath()) / "franka_panda" / "panda.urdf",
+    "iiwa": Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model.urdf",
+}
+TOOLS = {"iiwa": "lbr_iiwa_link_7", "heron6": "tool_tip", "panda": "panda_hand"}
+
+
+@lru_cache
+def arm(name: str) -> Arm:
+    """An arm with a tool that is off its flange."""
+    robot = cl.load_urdf(FILES[name])
+    tool = np.eye(4)
+    tool[:3, 3] = 0.02, -0.01, 0.1
+    return Arm(robot, TOOLS[name], tool)
+
+
+def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
+    """(k,) joints within the middle of their ranges, far from singularities."""
+    low, high = np.clip(one.chain.ranges, -2.0, 2.0).T
+    while True:
+        found = low + (high - low) * draw.uniform(0.25, 0.75, len(low))
+        _, rates = one.poses_and_rates(found[None])
+        if np.linalg.svd(rates[0], compute_uv=False)[-1] > 0.12:
+            return np.asarray(found)
+
+
+def stretch(one: Arm, start: np.ndarray, draw: np.random.Generator) -> Stretch:
+    """A random line or arc from where the joints have the tool."""
+    pose = one.poses(start[None])[0]
+    end = pose.copy()
+    end[:3, 3] += draw.uniform(-0.15, 0.15, 3)
+    end[:3, :3] = turned(draw.uniform(-0.3, 0.3, 3)) @ pose[:3, :3]
+    if draw.random() < 0.5:
+        return line(pose, end)
+    via = 0.5 * (pose + end)[:3, 3] + draw.uniform(-0.05, 0.05, 3)
+    return arc(pose, via, end, bool(draw.random() < 0.5))
+
+
+def turned(vector: np.ndarray) -> np.ndarray:
+    """(3, 3) the rotation by a vector [rad], by the series of its exponential."""
+    x, y, z = vector
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    found, term = np.eye(3), np.eye(3)
+    for i in range(1, 20):
+        term = term @ cross / i
+        found = found + term
+    return found
+
+
+def sampled(
+    one: Arm, on: Stretch, start: np.ndarray, step: float = 0.002
+) -> tuple[Follower, PathSamples]:
+    """The samples of a stretch at 0.25 m/s."""
+    follower = Follower(one, on, np.ones(len(start), dtype=bool), np.zeros(len(start)))
+    pieces = trapezoid(0.25 / on.length, 1.0 / on.length)
+    return follower, PathSamples.of(follower, start, pieces, step)
+
+
+def somewhere(one: Arm, draw: np.random.Generator) -> tuple[Stretch, Follower, PathSamples]:
+    """A stretch that the arm can follow far from singularities, and its samples."""
+    while True:
+        start = posture(one, draw)
+        on = stretch(one, start, draw)
+        try:
+            follower, samples = sampled(one, on, start)
+        except cl.ClearanceError:
+            continue
+        if np.isfinite(samples.deviations).all(axis=1).mean() > 0.9:
+            return on, follower, samples

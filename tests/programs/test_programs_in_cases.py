@@ -1,0 +1,197 @@
+"""Programs in case files: the tool's true line is measured, and what cannot be done is refused in one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+import clearance as cl
+from tests.programs.arms import FILES, arm
+
+JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
+START = dict(zip(JOINTS, (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2), strict=True))
+BASE = (1.0, -0.5, 0.2)
+
+
+def tool_at(joints: dict[str, float]) -> np.ndarray:
+    """(4, 4) `base_from_tool` with the tool tip at these joints."""
+    one = arm("heron6")
+    at = np.array([[joints[joint.name] for joint in one.joints]])
+    return one.poses(at)[0] @ np.linalg.inv(one.link_from_tool)
+
+
+def place(at: np.ndarray) -> dict:
+    return {"frame": "base", "xyz": [float(value) for value in at]}
+
+
+def case(folder: Path, moves: list, obstacles: list = (), start: dict = START, **more) -> Path:
+    """A case file with a program beside it."""
+    program = {"tool": {"link": "tool_tip"}, "start": start, "moves": moves, **more}
+    (folder / "program.yaml").write_text(yaml.safe_dump(program))
+    content = {
+        "robot": {"urdf": str(FILES["heron6"]), "base": {"xyz": list(BASE)}},
+        "trajectory": {"program": "program.yaml"},
+        "scene": {"obstacles": list(obstacles)},
+        "limits": {"fail": 0.0},
+    }
+    (folder / "case.yaml").write_text(yaml.safe_dump(content))
+    return folder / "case.yaml"
+
+
+def far() -> dict:
+    return {"name": "far", "box": {"size": [0.1, 0.1, 0.1]}, "pose": {"xyz": [5.0, 5.0, 5.0]}}
+
+
+def ball(at: np.ndarray, radius: float = 0.01) -> dict:
+    """A ball at a place seen from the robot's root."""
+    return {
+        "name": "ball",
+        "sphere": {"radius": radius},
+        "pose": {"xyz": (at + np.array(BASE)).tolist()},
+    }
+
+
+def line_and_arc_of_joints() -> tuple[dict, np.ndarray, np.ndarray]:
+    """A line across, where the tip is half-way on it, and where it is half-way between the joints of its ends."""
+    start = tool_at(START)[:3, 3]
+    end = start * np.array([1.0, -1.0, 1.0])
+    move = {"lin": {"to": place(end)}}
+    return move, 0.5 * (start + end), end
+
+
+@pytest.mark.parametrize("on_line", [True, False])
+def test_the_tools_line_is_measured_and_not_that_of_the_joints(tmp_path, on_line):
+    move, middle, _ = line_and_arc_of_joints()
+    ends = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
+    by_joints = {
+        name: float(0.5 * (a + b))
+        for name, a, b in zip(ends.joint_names, *ends.positions[[0, -1]], strict=True)
+    }
+    bulge = tool_at(by_joints)[:3, 3]
+    assert np.linalg.norm(bulge - middle) > 0.04
+    found = cl.load_case(case(tmp_path, [move], [ball(middle if on_line else bulge)]))
+    two = found.with_trajectory(ends.times[[0, -1]], ends.positions[[0, -1]])
+    true, joints = (cl.check(one).record.worst for one in (found, two))
+    assert true.touches == on_line and joints.touches != on_line
+
+
+def test_a_line_of_no_length_changes_nothing(tmp_path):
+    move, _, end = line_and_arc_of_joints()
+    one = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
+    two = (
+        cl.load_case(case(tmp_path, [move, {"lin": {"to": place(end)}}], [far()]))
+        .robots[0]
+        .trajectory
+    )
+    assert np.array_equal(one.times, two.times) and np.array_equal(one.positions, two.positions)
+
+
+def test_a_program_in_reverse_has_the_same_least_clearance(tmp_path):
+    move, middle, _ = line_and_arc_of_joints()
+    there = cl.load_case(case(tmp_path, [move], [ball(middle + [0.3, 0.0, 0.0])]))
+    trajectory = there.robots[0].trajectory
+    last = dict(zip(trajectory.joint_names, map(float, trajectory.positions[-1]), strict=True))
+    back = {"lin": {"to": place(tool_at(START)[:3, 3])}}
+    and_back = cl.load_case(case(tmp_path, [back], [ball(middle + [0.3, 0.0, 0.0])], start=last))
+    worst = [cl.check(one).record.worst.clearance for one in (there, and_back)]
+    assert worst[0] == pytest.approx(worst[1], abs=1e-6) and worst[0] > 0.0
+
+
+def test_a_frame_that_moves_with_the_cell_changes_nothing(tmp_path):
+    start = tool_at(START)[:3, 3] + np.array(BASE)
+    frames = {"table": {"on": "far", "xyz": (start - 5.0).tolist()}}
+    move = {"lin": {"to": {"frame": "table", "xyz": [0.0, 0.1, 0.0]}}}
+    by_frame = cl.load_case(case(tmp_path, [move], [far()], frames=frames)).robots[0].trajectory
+    move = {"lin": {"to": {"xyz": (start + [0.0, 0.1, 0.0]).tolist()}}}
+    by_world = cl.load_case(case(tmp_path, [move], [far()])).robots[0].trajectory
+    assert np.abs(by_frame.positions - by_world.positions).max() < 1e-9
+
+
+def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
+    start = tool_at(START)[:3, 3]
+    corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.15, -0.15]
+    at = start + [0.0, 0.2, 0.0]
+    least = []
+    for zone in (0.0, 0.01):
+        moves = [{"lin": {"to": place(corner), "zone": zone}}, {"lin": {"to": place(end)}}]
+        path = case(tmp_path, moves, [ball(at)])
+        least.append(cl.check(path).record.worst.clearance)
+    assert least[0] - 0.02 < least[1] <= least[0] + 1e-6
+
+
+def test_moves_have_names_and_times(tmp_path):
+    move, _, _ = line_and_arc_of_joints()
+    move["lin"]["to"]["name"] = "P1"
+    moves = [move, {"wait": 0.5}, {"ptp": {"joints": START, "speed": 0.5}}]
+    trajectory = cl.load_case(case(tmp_path, moves, [far()])).robots[0].trajectory
+    assert [one.name for one in trajectory.moves] == ["LIN 1 → P1", "WAIT 2", "PTP 3"]
+    ends = [one.end for one in trajectory.moves]
+    assert [one.start for one in trajectory.moves] == [0.0, *ends[:-1]] and ends[
+        -1
+    ] == trajectory.times[-1]
+    assert np.array_equal(
+        trajectory.positions[-1], [START[name] for name in trajectory.joint_names]
+    )
+
+
+FAULTS = {
+    "out of reach": ([{"lin": {"to": place(np.array([4.0, 0.0, 0.5]))}}], "the tool cannot go on"),
+    "an arc in one line": (
+        [
+            {
+                "circ": {
+                    "via": {"frame": "base", "xyz": "middle"},
+                    "to": {"frame": "base", "xyz": "end"},
+                }
+            }
+        ],
+        "lie on one line",
+    ),
+    "an arc through one point": (
+        [{"circ": {"via": {"frame": "base", "xyz": "end"}, "to": {"frame": "base", "xyz": "end"}}}],
+        "coincide",
+    ),
+    "a zone at the end": (
+        [{"lin": {"to": {"frame": "base", "xyz": "end"}, "zone": 0.01}}],
+        "without a line after it",
+    ),
+    "an unknown frame": (
+        [{"lin": {"to": {"frame": "tabel", "xyz": "end"}}}],
+        "unknown frame 'tabel'",
+    ),
+    "no speed": ([{"lin": {"to": {"frame": "base", "xyz": "end"}, "speed": 0}}], "speed"),
+    "an unknown joint": (
+        [{"ptp": {"joints": {**START, "joint_7": 0.0}}}],
+        "unknown joint 'joint_7'",
+    ),
+    "a joint left out": ([{"ptp": {"joints": {"joint_1": 0.0}}}], "no target of joint_2"),
+    "beyond a limit": ([{"ptp": {"joints": {**START, "joint_1": 9.0}}}], "beyond its limit"),
+    "two moves in one": ([{"wait": 1.0, "ptp": {"joints": START}}], "ptp and wait are given"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_what_cannot_be_done_is_refused_in_one_line(tmp_path, fault):
+    _, middle, end = line_and_arc_of_joints()
+    moves, told = FAULTS[fault]
+    text = yaml.safe_dump(moves)
+    for name, at in (("middle", middle), ("end", end)):
+        text = text.replace(f"xyz: {name}", f"xyz: {[float(value) for value in at]}")
+    with pytest.raises(cl.ClearanceError) as caught:
+        cl.load_case(case(tmp_path, yaml.safe_load(text), [far()]))
+    assert (
+        told in str(caught.value)
+        and "program.yaml" in str(caught.value)
+        and "\n" not in str(caught.value)
+    )
+
+
+def test_an_unknown_tool_or_start_is_refused(tmp_path):
+    move, _, _ = line_and_arc_of_joints()
+    with pytest.raises(cl.ClearanceError, match="no link 'tool'"):
+        cl.load_case(case(tmp_path, [move], [far()], tool={"link": "tool"}))
+    with pytest.raises(cl.ClearanceError, match="no position of joint_1"):
+        cl.load_case(case(tmp_path, [move], [far()], start={}))
