@@ -55,15 +55,14 @@ def multiset(corners: np.ndarray) -> Counter:
 
 
 def area_vector(corners: np.ndarray) -> list[Fraction]:
-    """Twice the sum of the triangles' area vectors, exactly."""
-    total = [Fraction(0)] * 3
-    for triangle in corners.tolist():
-        a, b, c = ([Fraction(x) for x in point] for point in triangle)
-        u, v = ([q - p for p, q in zip(a, end, strict=True)] for end in (b, c))
-        for k in range(3):
-            i, j = (k + 1) % 3, (k + 2) % 3
-            total[k] += u[i] * v[j] - u[j] * v[i]
-    return total
+    """Twice the sum of the triangles' area vectors, exactly: in whole numbers of a power of two."""
+    ratios = [x.as_integer_ratio() for x in corners.ravel().tolist()]
+    unit = max(below for _, below in ratios)
+    whole = np.array([above * (unit // below) for above, below in ratios], dtype=object)
+    a, b, c = whole.reshape(-1, 3, 3).transpose(1, 0, 2)
+    u, v = b - a, c - a
+    sums = ((u[:, i] * v[:, j] - u[:, j] * v[:, i]).sum() for i, j in ((1, 2), (2, 0), (0, 1)))
+    return [Fraction(one, unit * unit) for one in sums]
 
 
 @pytest.mark.parametrize("path", MESHES, ids=lambda p: f"{p.parent.name}-{p.name}")

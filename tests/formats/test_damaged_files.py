@@ -79,7 +79,7 @@ def test_files_of_another_structure_are_read_or_refused(kind, tmp_path, capfd):
 def test_files_cut_off_are_refused(kind, tmp_path, capfd):
     """But where a beginning is a file of its own, and but for the last letters of text."""
     valid = READERS[kind].valid
-    ends = range(0, len(valid), max(1, len(valid) // share_of(3 if kind == "STEP" else 100)))
+    ends = range(0, len(valid), max(1, len(valid) // share_of(3 if kind == "STEP" else 60)))
     said = {end: soundly(kind, valid[:end], tmp_path) for end in ends}
     assert {end: one for end, one in said.items() if one not in ("read", "refused")} == {}
     assert "refused" in said.values()
