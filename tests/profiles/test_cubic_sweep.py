@@ -16,8 +16,13 @@ from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
 from tests.examples import examples
 from tests.oracle.outlines import inside
-from tests.profiles.chord_bound import assert_within_chord_and_turn
-from tests.profiles.finely import finely_swept, interpolated, strays, sweeps
+from tests.profiles.finely import (
+    assert_within_chord_and_turn,
+    finely_swept,
+    interpolated,
+    strays,
+    sweeps,
+)
 from tests.profiles.moving import Z, joint, moved, rows, slab
 
 
