@@ -15,6 +15,7 @@ that goes on without a jump is in these boxes everywhere. Not for: what that tak
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -137,50 +138,117 @@ def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
 
 
 def _links(arm: Arm, found: Enclosed, spread: Spread) -> dict[str, Deviation]:
-    """How far each link that the arm moves may be off the nominal motion, in any cell.
+    """How far each link that the arm moves may be off the nominal motion, in any cell."""
+    robot = arm.robot
+    moving = [joint.name for joint in robot.moving_joints]
+    columns = [moving.index(joint.name) for joint in arm.joints]
+    links, lengths = links_of_robot(robot), _path_lengths(robot)
+    at, off = np.zeros((2, len(found.box), len(moving)))
+    at[:, columns], off[:, columns] = found.middle - spread.joints, found.middle
+    nominal, shifted = poses_by_link(links, at), poses_by_link(links, off)
+    told: dict[str, Deviation] = {}
+    for i, name in enumerate(robot.link_names):
+        above = _Above.of(links, i, columns)
+        if not above.driven:
+            continue
+        carrier = robot.link_names[above.driven[0]]
+        if above.others == 0:
+            told[name] = _off(links, nominal, shifted, above, lengths[name], found, spread)
+        elif carrier in told and above.others == above.others_below:
+            held, farther = told[carrier], lengths[name] - lengths[carrier]
+            told[name] = Deviation(held.at(farther) * MORE, held.turn)
+        else:
+            turned, slid = above.sums(np.abs(spread.joints) + found.box)
+            ways = lengths[name] * turned + slid
+            told[name] = Deviation(float(ways.max()) * MORE, float(turned.max()) * MORE)
+    return told
+
+
+class _Above(NamedTuple):
+    """The joints between a link and the root.
+
+    Attributes:
+        link: whose they are. driven: links whose joint the arm drives, from it to the root.
+        columns, factors, slides: (m,) of those joints: their place among the arm's, and how they follow it.
+        others: how many joints are not the arm's, wherever they are. others_below: how many of them are below the
+            driven.
+    """
+
+    link: int
+    driven: tuple[int, ...]
+    columns: np.ndarray
+    factors: np.ndarray
+    slides: np.ndarray
+    others: int
+    others_below: int
+
+    @classmethod
+    def of(cls, links: Links, link: int, columns: list[int]) -> _Above:
+        """Those of a link, where an arm drives some columns."""
+        driven, others, others_below, above = [], 0, 0, link
+        while above != NO_PARENT:
+            if int(links.columns[above]) in columns:
+                driven.append(above)
+            elif links.columns[above] != NO_COLUMN:
+                others += 1
+                others_below += not driven
+            above = int(links.parents[above])
+        own = [columns.index(int(links.columns[one])) for one in driven]
+        return cls(
+            link,
+            tuple(driven),
+            np.array(own, dtype=np.int64),
+            links.factors[driven],
+            links.kinds[driven] == SLIDING,
+            others,
+            others_below,
+        )
+
+    def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) [rad] what those that turn, and (n,) [m] what those that slide, move by with the arm's ways (n,
+        k)."""
+        moved = np.abs(self.factors) * ways[:, self.columns]
+        return moved[:, ~self.slides].sum(axis=1), moved[:, self.slides].sum(axis=1)
+
+    def change(
+        self, length: float, moved: np.ndarray, ways: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) [m] and [rad] by how much more joints that go by `ways` move the link once joints are `moved` (n,
+        k).
+
+        The column of a joint that turns has a way of at most `length` for the link's origin; a turn by a turns it
+        by a at most, a slide by d moves it by d. That of a joint that slides has length 1 and turns likewise.
+
+        Args:
+            length: [m] of the path from the root to the link.
+        """
+        (turned, slid), (turns, slides) = self.sums(moved), self.sums(ways)
+        return turns * (length * turned + slid) + slides * turned, turns * turned
+
+
+def _off(
+    links: Links,
+    nominal: np.ndarray,
+    shifted: np.ndarray,
+    above: _Above,
+    length: float,
+    found: Enclosed,
+    spread: Spread,
+) -> Deviation:
+    """How far a link may be off that the arm alone moves.
 
     At the middle of an interval the shift of a cell moves a link by what both poses differ by; within it by more
     by the change of the Jacobian with the shift, times how far the cubics go; and the box by the Jacobian there.
     """
-    robot, box, within = arm.robot, found.box, found.variation.within
-    moving = [joint.name for joint in robot.moving_joints]
-    columns = [moving.index(joint.name) for joint in arm.joints]
-    links = links_of_robot(robot)
-    at, off = np.zeros((2, len(box), len(moving)))
-    at[:, columns], off[:, columns] = found.middle - spread.joints, found.middle
-    nominal, shifted = poses_by_link(links, at), poses_by_link(links, off)
-    lengths = _path_lengths(robot)
-    told = {}
-    for i, name in enumerate(robot.link_names):
-        rates = _rates(links, shifted, i, columns)
-        above = np.asarray(rates.any(axis=(0, 1)))
-        if not above.any():
-            continue
-        by_shift = _change(arm, lengths[name], above, np.abs(spread.joints), within)
-        by_box = _change(arm, lengths[name], above, within + box, box)
-        rest = (np.abs(rates) @ box[..., None])[..., 0]
-        ways = np.linalg.norm(shifted[:, i, :3, 3] - nominal[:, i, :3, 3], axis=1)
-        ways += np.linalg.norm(rest[:, :3], axis=1) + by_shift[0] + by_box[0]
-        turns = _angles(nominal[:, i, :3, :3], shifted[:, i, :3, :3])
-        turns += np.linalg.norm(rest[:, 3:], axis=1) + by_shift[1] + by_box[1]
-        told[name] = Deviation(float(ways.max()) * MORE, float(turns.max()) * MORE)
-    return told
-
-
-def _change(
-    arm: Arm, length: float, above: np.ndarray, moved: np.ndarray, ways: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) [m] and [rad] by how much more joints that go by `ways` move a link once joints are `moved` (n, k).
-
-    The column of a joint that turns has a way of at most `length` for the link's origin; a turn by a turns it by
-    a at most, a slide by d moves it by d. That of a joint that slides has length 1 and turns likewise.
-
-    Args:
-        length: [m] of the path from the root to the link. above: (k,) the joints that move it.
-    """
-    turned, slid = arm.sums(moved * above)
-    turns, slides = arm.sums(ways * above)
-    return turns * (length * turned + slid) + slides * turned, turns * turned
+    box, within, i = found.box, found.variation.within, above.link
+    by_shift = above.change(length, np.abs(spread.joints), within)
+    by_box = above.change(length, within + box, box)
+    rest = (np.abs(_rates(links, shifted, above, box.shape[1])) @ box[..., None])[..., 0]
+    ways = np.linalg.norm(shifted[:, i, :3, 3] - nominal[:, i, :3, 3], axis=1)
+    ways += np.linalg.norm(rest[:, :3], axis=1) + by_shift[0] + by_box[0]
+    turns = _angles(nominal[:, i, :3, :3], shifted[:, i, :3, :3])
+    turns += np.linalg.norm(rest[:, 3:], axis=1) + by_shift[1] + by_box[1]
+    return Deviation(float(ways.max()) * MORE, float(turns.max()) * MORE)
 
 
 def _path_lengths(robot: Robot) -> dict[str, float]:
@@ -211,19 +279,16 @@ def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.arctan2(np.linalg.norm(twice, axis=0), cosines)
 
 
-def _rates(links: Links, poses: np.ndarray, link: int, columns: list[int]) -> np.ndarray:
-    """(n, 6, k) how the origin of a link's frame moves and how it turns by each of some columns."""
-    found = np.zeros((len(poses), 6, len(columns)))
-    at, above = poses[:, link, :3, 3], link
-    while above != NO_PARENT:
-        column = int(links.columns[above])
-        if column != NO_COLUMN and column in columns:
-            i = columns.index(column)
-            axes = links.factors[above] * (poses[:, above, :3, :3] @ links.axes[above])
-            if links.kinds[above] == SLIDING:
-                found[:, :3, i] += axes
-            else:
-                found[:, :3, i] += np.cross(axes, at - poses[:, above, :3, 3])
-                found[:, 3:, i] += axes
-        above = int(links.parents[above])
+def _rates(links: Links, poses: np.ndarray, above: _Above, k: int) -> np.ndarray:
+    """(n, 6, k) how the origin of a link's frame moves and how it turns by each joint of the arm."""
+    found, at = np.zeros((len(poses), 6, k)), poses[:, above.link, :3, 3]
+    for one, i, factor, slides in zip(
+        above.driven, above.columns, above.factors, above.slides, strict=True
+    ):
+        axes = factor * (poses[:, one, :3, :3] @ links.axes[one])
+        if slides:
+            found[:, :3, i] += axes
+        else:
+            found[:, :3, i] += np.cross(axes, at - poses[:, one, :3, 3])
+            found[:, 3:, i] += axes
     return found

@@ -83,7 +83,7 @@ class Enclosed(NamedTuple):
     def is_unique(self, arm: Arm, box: np.ndarray) -> np.ndarray:
         """(n,) True where no two q within boxes (n, k) hold the tool at the same pose of the spread."""
         mapped = (self.variation.bound(arm, box) @ box[..., None])[..., 0]
-        return np.asarray((mapped < box).all(axis=1))
+        return np.asarray(((mapped < box) | (box == 0.0)).all(axis=1))
 
 
 def deviations(arm: Arm, stretch: Stretch, given: Intervals, free: np.ndarray) -> np.ndarray:
@@ -114,11 +114,11 @@ def enclosed(
     error = greatest((inverse @ off[..., None])[..., 0])
     error += (np.abs(inverse) @ unknown[..., None])[..., 0]
     sizes = np.linalg.norm(inverse.reshape(*inverse.shape[:2], 2, 3), axis=3).transpose(2, 0, 1)
-    by_spread, turned = _of_spread(stretch, spread, inverse, sizes[1], path_turn[0])
+    off_middle = 1.1 * greatest(_sines(between)).sum(axis=1)
+    by_spread, turned = _of_spread(stretch, spread, inverse, sizes[1], path_turn[0], off_middle)
     within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
-    off_path = 1.1 * greatest(_sines(between)).sum(axis=1) + turned
-    variation = _Variation(np.abs(varied), sizes, within, off_path, longest)
+    variation = _Variation(np.abs(varied), sizes, within, off_middle + turned, longest)
     return Enclosed(
         _closed(arm, error + by_spread, variation, is_regular, free), joints[0], variation
     )
@@ -138,11 +138,13 @@ def _of_spread(
     inverse: np.ndarray,
     sizes: np.ndarray,
     path_turn: np.ndarray,
+    off: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(n, k) what the poses of a spread add to |Y F|, and (n,) [rad] how far they are turned from its middle.
 
     A stroke by a turns the tool by a w1 about an axis that the second stroke turns by up to |w2|; what two turns
-    come to is off their sum by half the product.
+    come to is off their sum by half the product, and their sine by half their product with how far the tool is
+    off the middle.
     """
     s, a, b = spread.halves.T
     own = np.linalg.norm(stretch.turns, axis=1)
@@ -150,7 +152,7 @@ def _of_spread(
     by_way = np.abs(inverse[:, :, :3] @ (stretch.ways[0] - stretch.ways[1]))
     by_turn = np.abs(np.einsum("nkc,nac->ank", inverse[:, :, 3:], seen))
     turned = a * own[0] + b * own[1]
-    rest = turned**2 + own[0] * own[1] * a
+    rest = turned * (turned + off) + own[0] * own[1] * a
     found = s[:, None] * by_way + a[:, None] * by_turn[0] + b[:, None] * by_turn[1]
     return found + sizes * rest[:, None], turned
 
@@ -249,14 +251,15 @@ class _Variation(NamedTuple):
         """(n, k, k) K for joints within boxes (n, k) about the cubics.
 
         The first derivatives of columns are those at the middle; the second are at most the arm's length, or 1
-        for turns. With the tool turned by b from the path, the sine's skew part changes with a turn w of the tool
-        by B w, and B - 1 is at most b / 2 + b^2 / 2.
+        for turns. With the tool turned by b from the path, the sine's skew part changes with a turn w seen from
+        the tool by B w, and B - 1 is at most b / 2 + b^2 / 2; at the middle w is seen from the path, off by b.
         """
         ways = self.within + box
         turned, slid = arm.sums(ways)
         off = self.off + arm.sums(box)[0]
-        by_way = 0.5 * turned * (self.longest * turned + 2.0 * slid)
-        by_turn = 0.5 * (turned**2 + off + off**2)
+        longest = self.longest + arm.sums(box)[1]
+        by_way = 0.5 * turned * (longest * turned + 2.0 * slid)
+        by_turn = 0.5 * (turned**2 + off + off**2) + self.off
         of_way, of_turn = self.sizes[0] * by_way[:, None], self.sizes[1] * by_turn[:, None]
         found = np.einsum("nkji,ni->nkj", self.by_joint, ways)
         for one in arm.chain.joints:

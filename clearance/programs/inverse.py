@@ -44,7 +44,8 @@ def joints_at(arm: Arm, wanted: np.ndarray, start: np.ndarray, free: np.ndarray)
             break
         least = np.minimum(least, left)
         at[:, free] += least_motion(rates[:, :, free], off[:, :, None])[:, :, 0]
-    return Solved(at, left)
+    cosines = np.einsum("nij,nij->n", wanted[:, :3, :3], poses[:, :3, :3])
+    return Solved(at, np.where(cosines > 1.0, left, np.inf))  # the sine of half a turn is 0 too
 
 
 def off_pose(wanted: np.ndarray, poses: np.ndarray) -> np.ndarray:

@@ -21,7 +21,7 @@ SHARE_OF_LINE = 0.5
 RUN_UP = 0.25
 """[s] In which a tool that turns on the spot reaches its speed."""
 
-SHORTEST = 1e-6
+SHORTEST = 1e-9
 """[m] and [rad] A line that is shorter, and turns less, is none."""
 
 
@@ -57,7 +57,7 @@ def legs_of(arm: Arm, program: Program, start: np.ndarray) -> list[Leg]:
         if stretch is None:
             found.append(Leg(move))
             continue
-        if stretch.length < SHORTEST and stretch.turned < SHORTEST:
+        if _is_none(stretch):
             continue
         before = radii[i - 1] / stretch.length if i and radii[i - 1] else 0.0
         after = radii[i] / stretch.length if radii[i] else 0.0
@@ -78,8 +78,9 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
     for move in program.moves:
         with at(move.where):
             if isinstance(move, PathMove):
-                found.append(_stretch(pose, move))
-                pose = found[-1].poses(np.array([[1.0, 0.0]]))[0]  # type: ignore[union-attr]
+                found.append(own := _stretch(pose, move))
+                if not _is_none(own):
+                    pose = own.poses(np.array([[1.0, 0.0]]))[0]
                 continue
             found.append(None)
             if isinstance(move, JointMove):
@@ -89,6 +90,11 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
                     else arm.poses(targets_of(arm, move)[None])[0]
                 )
     return found
+
+
+def _is_none(stretch: Stretch) -> bool:
+    """True where the tool stays: the next stretch begins where this one does."""
+    return stretch.length < SHORTEST and stretch.turned < SHORTEST
 
 
 def targets_of(arm: Arm, move: JointMove) -> np.ndarray:
@@ -137,6 +143,13 @@ def _radii(moves: Sequence[Move], stretches: Sequence[Stretch | None]) -> list[f
                         valid="0, or a lin move next",
                     )
             assert own is not None
+            if min(own.length, other.length) < SHORTEST:
+                with at(move.where):
+                    raise BadInput(
+                        "a corner zone beside a line of no length",
+                        where="zone",
+                        valid="0, or lines that the tool's point goes along",
+                    )
             radius = min(radius, SHARE_OF_LINE * own.length, SHARE_OF_LINE * other.length)
         found.append(radius if radius > SHORTEST else 0.0)
     return found
@@ -168,6 +181,8 @@ def _with_speeds(run: list[Leg]) -> Iterator[Leg]:
     for leg, first, last in zip(run, speeds, speeds[1:], strict=False):
         move, stretch = leg.move, leg.stretch
         assert isinstance(move, PathMove) and stretch is not None
+        if _is_none(stretch):
+            continue
         if leg.radius:
             rate = first / (2.0 * leg.radius)
             yield replace(leg, pieces=(Piece(1.0 / rate, 0.0, rate, 0.0),))
@@ -183,8 +198,12 @@ def _size_of(move: PathMove, stretch: Stretch) -> tuple[float, float, float]:
     rad."""
     if stretch.length < SHORTEST:
         return stretch.turned, move.turn_speed, move.turn_speed / RUN_UP
-    slower = move.turn_speed * stretch.length / max(stretch.turned, 1e-300)
-    return stretch.length, min(move.speed, slower), move.acceleration
+    return stretch.length, _speed(move, stretch.length, stretch.turned), move.acceleration
+
+
+def _speed(move: PathMove, length: float, turned: float) -> float:
+    """[m/s] The greatest speed on a way of a length [m] with a turn [rad]."""
+    return min(move.speed, move.turn_speed * length / max(turned, 1e-300))
 
 
 def _speeds_at_ends(run: Sequence[Leg]) -> list[float]:
@@ -210,9 +229,11 @@ def _speed_in_corner(before: Leg, corner: Leg, after: Leg) -> float:
     """[m/s] The lesser of both lines' speeds, and less where the parabola would take more than the
     acceleration."""
     assert isinstance(before.move, PathMove) and isinstance(after.move, PathMove)
-    assert corner.stretch is not None and before.stretch is not None and after.stretch is not None
+    assert corner.stretch is not None
+    turned = np.linalg.norm(corner.stretch.turns, axis=1)
     bend = float(np.linalg.norm(corner.stretch.ways[1] - corner.stretch.ways[0]))
     acceleration = min(before.move.acceleration, after.move.acceleration)
     bent = corner.radius * float(np.sqrt(2.0 * acceleration / max(bend, 1e-12)))
-    speeds = (_size_of(before.move, before.stretch)[1], _size_of(after.move, after.stretch)[1])
-    return min(*speeds, bent)
+    moves = before.move, after.move
+    speeds = (_speed(move, corner.radius, by) for move, by in zip(moves, turned, strict=True))
+    return float(min(*speeds, bent))

@@ -33,6 +33,9 @@ clearance."""
 MOST_HALVINGS = 8
 """Times that intervals are halved until that is proven."""
 
+SAME_SPEED = 1e-5
+"""[rad/s] or [m/s]: speeds of a joint that differ by less differ by rounding."""
+
 MOST_SAMPLES = 1_000_000
 """Most samples of a program: a step in the wrong unit needs more."""
 
@@ -113,6 +116,11 @@ class _Samples:
     corners: list[CornerZone] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        self.times.append(np.zeros(1))
+        self.positions.append(self.at[None])
+        self.velocities.append(np.zeros((1, len(self.at))))
+
     def add(self, leg: Leg) -> None:
         """Samples what a leg makes of the joints."""
         began = self.now
@@ -143,7 +151,7 @@ class _Samples:
             corners=tuple(self.corners),
             moves=tuple(self.spans),
         )
-        return ProgramMotion(trajectory, (*self.notes, *map(_note_on, self.corners)))
+        return ProgramMotion(trajectory, tuple(self.notes))
 
     def _stand(self, seconds: float) -> None:
         self._append(np.array([seconds]), self.at[None], np.zeros((1, len(self.at))))
@@ -181,15 +189,33 @@ class _Samples:
         follower = self._follower(leg, move)
         for n_halved in range(MOST_HALVINGS + 1):
             samples = PathSamples.of(follower, self.at, leg.pieces, self.program.step / 2**n_halved)
-            if samples.deviations.max(initial=0.0) <= PATH_ERROR:
+            off = float(samples.deviations.max(initial=0.0)) + self._seam(samples)
+            if off <= PATH_ERROR:
                 break
         else:
             raise _unproven(samples, self.arm)
-        self.error = max(self.error, float(samples.deviations.max(initial=0.0)))
+        self.error = max(self.error, off)
         if leg.radius:
-            self.corners.append(corner_of(follower, samples, self.now, leg.radius, move.name))
+            corner = corner_of(follower, samples, self.now, leg.radius, move.name)
+            self.corners.append(corner)
+            self.notes.append(_note_on(corner, move.zone))
         self._append(samples.times[1:], samples.positions[1:], samples.velocities[1:])
         self.at = samples.positions[-1]
+
+    def _seam(self, samples: PathSamples) -> float:
+        """[rad or m] How far the first cubic is off that of the samples, as it begins like what was before.
+
+        Raises:
+            BadInput: joints would change their speed at once, since moves that a zone joins hold others.
+        """
+        rates = np.abs(samples.velocities[0] - self.velocities[-1][-1]).max()
+        if rates > SAME_SPEED:
+            raise BadInput(
+                "a joint changes its speed at once where a corner zone begins or ends",
+                where="hold",
+                valid="the same joints held on both sides of a zone, where they are",
+            )
+        return float(np.abs(samples.positions[0] - self.at).max() + samples.times[1] * rates)
 
     def _follower(self, leg: Leg, move: PathMove) -> Follower:
         """The arm on a leg's path, joints that the move tells left out of it."""
@@ -211,19 +237,16 @@ class _Samples:
         return Follower(self.arm, leg.stretch, free, held)
 
     def _n_samples(self, poses: np.ndarray) -> int:
-        """How many samples a motion through poses needs."""
-        ways = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).sum()
+        """How many samples a motion through poses needs where it is quickest."""
+        n = len(poses) - 1
+        ways = n * np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).max()
         turned = np.swapaxes(poses[:-1, :3, :3], 1, 2) @ poses[1:, :3, :3]
         cosines = 0.5 * (np.trace(turned, axis1=1, axis2=2) - 1.0)
-        turns = np.arccos(np.clip(cosines, -1.0, 1.0)).sum()
+        turns = n * np.arccos(np.clip(cosines, -1.0, 1.0)).max()
         return max(1, int(np.ceil(ways / self.program.step)), int(np.ceil(turns / STEP_TURN)))
 
     def _append(self, times: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> None:
         """Adds samples that begin after now."""
-        if not self.times:
-            self.times.append(np.zeros(1))
-            self.positions.append(self.at[None])
-            self.velocities.append(np.zeros((1, len(self.at))))
         self.times.append(self.now + times)
         self.positions.append(positions)
         self.velocities.append(velocities)
@@ -283,10 +306,15 @@ def _unproven(samples: PathSamples, arm: Arm) -> BadInput:
     )
 
 
-def _note_on(corner: CornerZone) -> str:
-    """What a corner zone is taken to admit."""
+def _note_on(corner: CornerZone, asked: float) -> str:
+    """What a corner zone is taken to admit, whose program asks for a radius [m]."""
     most = max(off.way for off in corner.links.values())
-    size, when = f"{corner.radius * 1e3:.4g} mm", f"{corner.start:.3f} to {corner.end:.3f} s"
+    cut = (
+        ""
+        if corner.radius == asked
+        else f" (cut from {asked * 1e3:.4g} mm: at most half of a line)"
+    )
+    size, when = f"{corner.radius * 1e3:.4g} mm{cut}", f"{corner.start:.3f} to {corner.end:.3f} s"
     return (
         f"corner zone of {size} after {corner.name}, {when}: all paths of the tool in its triangle count; "
         f"links are up to {most * 1e3:.3g} mm off the parabola"

@@ -42,6 +42,12 @@ def fingerprint(
         asked = motion.placed.trajectory
         off = 0.0 if asked is None else asked.path_error
         digest.update(repr((sorted(motion.placed.padding.items()), off)).encode())
+        if asked is not None and asked.corners:
+            digest.update(
+                repr(
+                    [(one.start, one.end, sorted(one.links.items())) for one in asked.corners]
+                ).encode()
+            )
         _add_mount(digest, motion.placed.mount)
     for obstacle in case.obstacles:
         digest.update(obstacle.name.encode())

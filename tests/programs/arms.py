@@ -67,7 +67,7 @@ def turned(vector: np.ndarray) -> np.ndarray:
 
 
 def sampled(
-    one: Arm, on: Stretch, start: np.ndarray, step: float = 0.002
+    one: Arm, on: Stretch, start: np.ndarray, step: float = 0.003
 ) -> tuple[Follower, PathSamples]:
     """The samples of a stretch at 0.25 m/s."""
     follower = Follower(one, on, np.ones(len(start), dtype=bool), np.zeros(len(start)))

@@ -86,6 +86,7 @@ def test_no_admissible_path_takes_a_link_farther_than_is_proven(name, seed):
     moving = [joint.name for joint in one.robot.moving_joints]
     places = [moving.index(joint.name) for joint in one.joints]
     both = np.zeros((2, len(u), len(moving)))
+    both[:] = [min(joint.upper, 1.0) for joint in one.robot.moving_joints]
     both[0][:, places], both[1][:, places] = nominal, solved.positions
     at, off = (poses_by_link(links, positions) for positions in both)
     for i, link in enumerate(one.robot.link_names):

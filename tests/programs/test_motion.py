@@ -1,0 +1,111 @@
+"""Motions of programs at their edges: lines that zones use up, moves that go nowhere, half turns, joints that are
+told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.programs.motion import ProgramMotion, motion_of
+from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.world.cubic import positions_along
+from tests.programs.arms import arm, posture, turned
+
+START = (-0.5, 0.1, 0.4, 0.1, 1.1, 0.2)
+
+
+def motion(
+    moves: list[Move], name: str = "heron6", start: tuple[float, ...] = START
+) -> ProgramMotion:
+    one = arm(name)
+    joints = {joint.name: float(at) for joint, at in zip(one.joints, start, strict=True)}
+    return motion_of(one.robot, Program(one.link, one.link_from_tool, tuple(moves), joints))
+
+
+def tool(found: ProgramMotion, positions: np.ndarray, name: str = "heron6") -> np.ndarray:
+    one = arm(name)
+    columns = [found.trajectory.joint_names.index(joint.name) for joint in one.joints]
+    return one.poses(np.atleast_2d(positions)[:, columns])
+
+
+def first_pose(name: str = "heron6", start: tuple[float, ...] = START) -> np.ndarray:
+    return arm(name).poses(np.array([start]))[0]
+
+
+def lines(pose: np.ndarray, ways: list, turn=(0.0, 0.0, 0.0), **more) -> list[Move]:
+    """Lines one after another, all but the last with a zone."""
+    found: list[Move] = []
+    for i, way in enumerate(ways):
+        pose = pose.copy()
+        pose[:3, 3] += way
+        pose[:3, :3] = turned(turn) @ pose[:3, :3]
+        zone = more.get("zone", 0.0) if i + 1 < len(ways) else 0.0
+        found.append(
+            PathMove(f"LIN {i + 1}", f"moves[{i}]", pose, zone=zone, hold=more.get("hold"))
+        )
+    return found
+
+
+def test_zones_may_use_up_the_line_between_them():
+    ways = [(0.0, 0.02, 0.0), (0.0, 0.0, -0.02), (0.0, 0.02, 0.0), (0.0, 0.0, 0.02)]
+    moves = lines(first_pose(), ways, zone=0.1)
+    found = motion(moves)
+    corners = found.trajectory.corners
+    assert [corner.radius for corner in corners] == pytest.approx([0.01] * 3)
+    assert corners[1].start == corners[0].end and corners[2].start == corners[1].end
+    assert all("cut from 100 mm" in note for note in found.notes) and len(found.notes) == 3
+    at = tool(found, found.trajectory.positions)
+    assert np.abs(at[-1] - moves[-1].pose).max() < 1e-9
+    steps = np.linalg.norm(np.diff(at[:, :3, 3], axis=0), axis=1)
+    assert steps.max() <= 0.002 * (1.0 + 1e-9)
+
+
+def test_a_zone_beside_a_line_of_no_length_is_refused():
+    moves = lines(first_pose(), [(0.0, 0.02, 0.0), (0.0, 0.0, 0.0)], (0.1, 0.0, 0.0), zone=0.004)
+    with pytest.raises(cl.ClearanceError, match="beside a line of no length"):
+        motion(moves)
+
+
+def test_a_joint_move_makes_half_a_turn_where_it_is():
+    pose = first_pose() @ np.diag([1.0, -1.0, -1.0, 1.0])
+    found = motion([JointMove("PTP 1", "moves[0]", pose=pose)])
+    assert np.abs(tool(found, found.trajectory.positions[-1])[0] - pose).max() < 1e-9
+
+
+def test_a_move_to_where_the_joints_are_is_no_move():
+    names = [joint.name for joint in arm("heron6").joints]
+    stays = JointMove("PTP 1", "moves[0]", joints=dict(zip(names, START, strict=True)))
+    moves = lines(first_pose(), [(0.0, 0.02, 0.0)])
+    one, two = motion(moves).trajectory, motion([stays, *moves]).trajectory
+    assert np.array_equal(one.times, two.times) and np.array_equal(one.positions, two.positions)
+    assert np.array_equal(motion([stays]).trajectory.positions[0], START)
+
+
+def test_the_tool_is_taken_along_many_lines_that_are_very_short():
+    moves = lines(first_pose(), [(0.0, 9e-7, 0.0)] * 10 + [(0.0, 0.0, 1e-4)])
+    found = motion(moves).trajectory
+    times = np.linspace(0.0, found.times[-1], 500)
+    at = tool(motion(moves), positions_along(found, times))[:, :3, 3] - first_pose()[:3, 3]
+    off = np.minimum(
+        np.abs(at[:, [0, 2]]).max(axis=1), np.abs(at - [0.0, 9e-6, 0.0])[:, :2].max(axis=1)
+    )
+    assert off.max() < 1e-7
+
+
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_corner_is_proven_where_a_joint_is_held_and_refused_where_it_goes(moves):
+    one = arm("iiwa")
+    start = tuple(posture(one, np.random.default_rng(0)))
+    hold = {one.joints[2].name: start[2] + (0.02 if moves else 0.0)}
+    ways = [(0.0, 0.05, 0.0), (0.0, 0.0, 0.05)]
+    path = lines(first_pose("iiwa", start), ways, zone=0.002, hold=hold)
+    if moves:
+        with pytest.raises(cl.ClearanceError, match="changes its speed at once"):
+            motion(path, "iiwa", start)
+        return
+    found = motion(path, "iiwa", start).trajectory
+    (corner,) = found.corners
+    assert 0.0005 < corner.links[one.link].way < 0.006
+    column = found.joint_names.index(one.joints[2].name)
+    assert np.abs(found.positions[:, column] - start[2]).max() < 1e-12
