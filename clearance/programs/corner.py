@@ -30,6 +30,10 @@ from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
 from clearance.world.robot import JointKind, Robot
 
+PATH_ERROR = 1e-6
+"""[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of
+clearance."""
+
 CELLS = (4, 6, 8, 12)
 """Into how many parts each range is cut, one after another, until boxes are proven."""
 
@@ -122,7 +126,10 @@ def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
 
 
 def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
-    """(n, k) how far the boxes of a cell's neighbours, and its own, reach from its cubic."""
+    """(n, k) how far the boxes of a cell's neighbours, and its own, reach from its cubic.
+
+    That of the cell by which the zone is entered reaches to where the joints then are.
+    """
     shape = (*grid.shape, box.shape[1])
     joints, own = grid.spread.joints.reshape(shape), box.reshape(shape)
     reach = own.copy()
@@ -134,6 +141,8 @@ def _to_neighbours(grid: _Grid, box: np.ndarray) -> np.ndarray:
         between = np.abs(joints[first] - joints[second])
         reach[first] = np.maximum(reach[first], between + own[second])
         reach[second] = np.maximum(reach[second], between + own[first])
+    entered = 0, grid.shape[1] // 2, 0, 0
+    reach[entered] = np.maximum(reach[entered], np.abs(joints[entered]) + PATH_ERROR)
     return reach.reshape(box.shape)
 
 

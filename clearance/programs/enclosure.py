@@ -81,9 +81,11 @@ class Enclosed(NamedTuple):
     variation: _Variation
 
     def is_unique(self, arm: Arm, box: np.ndarray) -> np.ndarray:
-        """(n,) True where no two q within boxes (n, k) hold the tool at the same pose of the spread."""
-        mapped = (self.variation.bound(arm, box) @ box[..., None])[..., 0]
-        return np.asarray(((mapped < box) | (box == 0.0)).all(axis=1))
+        """(n,) True where no two q within boxes (n, k) hold the tool at the same pose of the spread.
+
+        N contracts there, so that two would be nearer to each other than they are.
+        """
+        return np.asarray(self.variation.bound(arm, box).sum(axis=2).max(axis=1) < 0.999)
 
 
 def deviations(arm: Arm, stretch: Stretch, given: Intervals, free: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadInput, UnknownJoint, UnknownLink, at, nearest_name
 from clearance.programs.arm import Arm
-from clearance.programs.corner import corner_of
+from clearance.programs.corner import PATH_ERROR, corner_of
 from clearance.programs.following import Follower
 from clearance.programs.inverse import nearest_joints
 from clearance.programs.legs import Leg, legs_of, targets_of
@@ -25,10 +25,6 @@ from clearance.programs.time_law import trapezoid
 from clearance.world.corner_zone import CornerZone
 from clearance.world.robot import Joint, Robot
 from clearance.world.trajectory import MoveSpan, Trajectory
-
-PATH_ERROR = 1e-6
-"""[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of
-clearance."""
 
 MOST_HALVINGS = 8
 """Times that intervals are halved until that is proven."""

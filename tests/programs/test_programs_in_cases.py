@@ -9,6 +9,10 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.report.topics.pairs import PairJudge
+from clearance.simulate.measure.sections import section_plan
+from clearance.world.motion import kinematic_motion
+from clearance.world.timeline import timeline_of
 from tests.programs.arms import FILES, arm
 
 JOINTS = ("joint_1", "joint_2", "joint_3", "joint_4", "joint_5", "joint_6")
@@ -195,3 +199,53 @@ def test_an_unknown_tool_or_start_is_refused(tmp_path):
         cl.load_case(case(tmp_path, [move], [far()], tool={"link": "tool"}))
     with pytest.raises(cl.ClearanceError, match="no position of joint_1"):
         cl.load_case(case(tmp_path, [move], [far()], start={}))
+
+
+def with_zone(folder: Path, radius: float) -> Path:
+    """A case whose tool passes a zone near a ball of a radius [m]."""
+    start = tool_at(START)[:3, 3]
+    corner, end = start + [0.0, 0.15, 0.0], start + [0.0, 0.02, -0.05]
+    moves = [{"lin": {"to": place(corner), "zone": 0.01}}, {"lin": {"to": place(end)}}]
+    return case(folder, moves, [ball(start + [0.0, 0.35, 0.0], radius)])
+
+
+def test_what_a_zone_takes_is_violated_and_no_contact(tmp_path):
+    run = cl.check(with_zone(tmp_path, 0.01))
+    (phase,) = [one for one in run.record.timeline.phases if one.case.robots[0].padding]
+    padding = phase.case.robots[0].padding[run.record.worst.link]
+    run = cl.check(with_zone(tmp_path, 0.01 + run.record.worst.clearance + 0.5 * padding))
+    assert -padding < run.record.worst.clearance < 0.0 and not run.record.worst.touches
+    judge = PairJudge.of(run.record)
+    assert {judge.status_of(one) for one in run.pair_minima} == {"violated", "clear"}
+
+
+def test_zones_of_two_robots_count_whatever_their_clocks(tmp_path):
+    with_zone(tmp_path, 0.01)
+    robots = [
+        {
+            "name": name,
+            "urdf": str(FILES["heron6"]),
+            "base": {"xyz": xyz},
+            "trajectory": {"program": "program.yaml", "start": start},
+        }
+        for name, xyz, start in (("left", [0, 0, 0], 0.0), ("right", [0, 3, 0], 5.0))
+    ]
+    content = {
+        "robots": robots,
+        "limits": {"fail": 0.0},
+        "scene": {"obstacles": []},
+        "clock": "unsynchronised",
+    }
+    (tmp_path / "two.yaml").write_text(yaml.safe_dump(content))
+    two = cl.load_case(tmp_path / "two.yaml")
+    timeline = timeline_of(two, [kinematic_motion(placed) for placed in two.robots])
+    plan, seen = section_plan(timeline), set()
+    for section in plan.sections:
+        if section.other is None:
+            continue
+        cases = section.phase.case, section.other.case
+        for pair in section.pairs:
+            own = [body.padding_in(one) for body, one in zip((pair.a, pair.b), cases, strict=True)]
+            assert section.padding == pytest.approx(sum(own) + timeline.path_error, abs=1e-15)
+            seen.add(tuple(padding > 0.0 for padding in own))
+    assert seen == {(False, False), (False, True), (True, False), (True, True)}

@@ -12,7 +12,7 @@ from clearance.record.wording import limit_mm, seconds, span_text
 from clearance.report.blocks import Section, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.topic import Line, Topic
-from clearance.world.case import PlacedRobot
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.mount import Mount
 from clearance.world.notice import listed
 from clearance.world.plausible_recordings import not_measured
@@ -129,11 +129,15 @@ def carried_of(record: Record) -> list[dict[str, Any]]:
 
 def paddings_of(record: Record) -> dict[str, float]:
     """[m] By how much clearances of a body are lessened; bodies without padding are left out."""
-    return {name: padding for name, padding in _paddings(record) if padding}
+    return paddings_in(record.case)
 
 
-def _paddings(record: Record) -> Iterator[tuple[str, float]]:
-    case = record.case
+def paddings_in(case: Case) -> dict[str, float]:
+    """The same in a case, as that of a phase."""
+    return {name: padding for name, padding in _paddings(case) if padding}
+
+
+def _paddings(case: Case) -> Iterator[tuple[str, float]]:
     for placed in case.robots:
         before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
         for body in placed.robot.bodies:

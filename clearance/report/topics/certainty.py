@@ -55,7 +55,7 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     step = certificate.worst_interval
     times = record.steps["time"].to_numpy()
     cubic = any(motion.velocities is not None for motion in record.motions)
-    asked = [placed.trajectory for placed in record.case.robots]
+    asked = [motion.placed.trajectory for motion in record.motions if motion.velocities is not None]
     is_program = any(one is not None and one.moves for one in asked)
     return {
         "joints": "program"

@@ -18,8 +18,9 @@ from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint
 from clearance.report.model import PageContent, ReportModel
 from clearance.report.moment import BODIES, at_moment
 from clearance.report.topic import TerminalTable, Topic
-from clearance.report.topics.cell import paddings_of
+from clearance.report.topics.cell import paddings_in, paddings_of
 from clearance.world.case import Limits
+from clearance.world.phase import Phase
 from clearance.world.rules import DEFAULT
 
 _PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}
@@ -34,21 +35,36 @@ MOST_SHOWN_AT_ONCE, MOST_LINES = 24, 5
 @dataclass(frozen=True)
 class PairJudge:
     """How the least clearance of a pair stands: the limits of each rule, the paddings [m] of the bodies that have
-    one, by name, and what paths are off [m]. Moments know by themselves whether bodies touch."""
+    one, by name, and what paths are off [m]; in `phases` with corner zones those of each. Moments know by
+    themselves whether bodies touch."""
 
     limits: dict[str, Limits]
     paddings: dict[str, float]
     path_error: float
+    phases: tuple[tuple[Phase, dict[str, float]], ...] = ()
 
     @staticmethod
     def of(record: Record) -> PairJudge:
         """That of a record."""
         limits = {answer.name: answer.limits for answer in record.rules}
-        return PairJudge(limits, paddings_of(record), record.timeline.path_error)
+        zones = (
+            [(phase, paddings_in(phase.case)) for phase in record.timeline.phases]
+            if any(one.trajectory and one.trajectory.corners for one in record.case.robots)
+            else []
+        )
+        return PairJudge(limits, paddings_of(record), record.timeline.path_error, tuple(zones))
 
     def status_of(self, minimum: PairMinimum) -> str:
         """The status; what padding alone brings to 0 or below is violated, no contact."""
-        padding = sum(self.paddings.get(name, 0.0) for name in (minimum.link, minimum.obstacle))
+        names, step = (minimum.link, minimum.obstacle), minimum.step
+        passed = [
+            paddings
+            for phase, paddings in self.phases
+            if phase.first <= step <= phase.last - minimum.between
+        ]
+        padding = max(
+            sum(one.get(name, 0.0) for name in names) for one in passed or [self.paddings]
+        )
         lessened = (
             padding + self.path_error
         )  # one sum, as it was taken off: a distance of 0 stays 0

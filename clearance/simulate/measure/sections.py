@@ -199,11 +199,15 @@ def _mixed(phase: Phase, other: Phase, clock: int) -> Phase:
         theirs if here.name in names else here
         for here, theirs in zip(phase.case.obstacles, other.case.obstacles, strict=True)
     )
+    robots = tuple(
+        theirs if (False, i) in things else here
+        for i, (here, theirs) in enumerate(zip(phase.case.robots, other.case.robots, strict=True))
+    )
     carried = {part: c for part, c in phase.carried.items() if part not in names}
     carried |= {part: c for part, c in other.carried.items() if part in names}
     return replace(
         phase,
-        case=replace(phase.case, obstacles=obstacles),
+        case=replace(phase.case, robots=robots, obstacles=obstacles),
         carried=carried,
         absent_robots=_absent(phase.absent_robots, other.absent_robots, things, of_obstacles=False),
         absent_obstacles=_absent(
