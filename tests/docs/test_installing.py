@@ -1,0 +1,91 @@
+"""The page Installing follows the project file, and holds what it says of networks and of the cache."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tomllib
+from pathlib import Path
+
+from clearance.geometry import surface_cache
+from clearance.geometry.shapes import box
+from tests.docs.code_blocks import GUIDE, ROOT
+
+PAGE = (GUIDE / "installing.md").read_text(encoding="utf-8")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+ROW = re.compile(r"^\| `([\w.-]+)` \|([^|\n]*)\|", re.MULTILINE)
+
+
+def rows_of(title: str) -> dict[str, str]:
+    """The first two cells of each row of the table under a title; the first is a name."""
+    _, _, below = PAGE.partition(f"\n## {title}\n")
+    return dict(ROW.findall(below.partition("\n## ")[0]))
+
+
+def names_of(requirements: list[str]) -> set[str]:
+    """The names of libraries; of our own package those of the extras."""
+    named = [
+        re.fullmatch(r"([\w.-]+)(?:\[([\w,]+)\])?.*", given).groups() for given in requirements
+    ]
+    return {
+        name
+        for library, extras in named
+        for name in (extras.split(",") if library == "clearance" else [library])
+    }
+
+
+def test_the_page_lists_the_required_libraries():
+    assert set(rows_of("Required libraries")) == names_of(PROJECT["dependencies"])
+
+
+def test_the_page_lists_the_extras_and_the_libraries_of_each():
+    listed = {
+        extra: set(re.findall(r"`([\w.-]+)`", cell)) for extra, cell in rows_of("Extras").items()
+    }
+    brought = PROJECT["optional-dependencies"]
+    assert listed == {extra: names_of(required) for extra, required in brought.items()}
+
+
+DOORS = {
+    "clearance/view/server.py": {"http.server"},
+    "clearance/batch/dask_engine.py": {"distributed"},
+}
+"""The only files that open a connection: to this machine, and to a scheduler that the user names."""
+
+NETWORK = re.compile(
+    r"(socket|ssl|ftplib|smtplib|socketserver|asyncio|requests|httpx|urllib3|urllib\.request"
+    r"|http\.client|http\.server|xmlrpc|websockets|zmq|distributed)(\.|$)"
+)
+
+
+def network_imports(path: Path) -> set[str]:
+    """The modules for networks that a file imports, wherever in it."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    matches = map(NETWORK.match, found)
+    return {match[1] for match in matches if match}
+
+
+def test_only_the_viewer_and_workers_of_a_cluster_open_a_connection():
+    found = {
+        str(path.relative_to(ROOT)): modules
+        for path in (ROOT / "clearance").rglob("*.py")
+        if (modules := network_imports(path))
+    }
+    assert found == DOORS
+
+
+def test_the_cache_lies_where_the_page_says(monkeypatch, tmp_path):
+    assert "`~/.cache/clearance`" in PAGE and "`XDG_CACHE_HOME`" in PAGE
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    place = surface_cache._path_of(box((1, 1, 1)))
+    assert place.is_relative_to(tmp_path / ".cache" / "clearance")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "caches"))
+    place = surface_cache._path_of(box((1, 1, 1)))
+    assert place.is_relative_to(tmp_path / "caches" / "clearance")
+    assert f"{surface_cache.MOST_BYTES // 1_000_000} MB" in PAGE
