@@ -1,4 +1,4 @@
-"""The code blocks of the README and the guide: their language, title, text and place."""
+"""The code blocks of the README, of `.github` and of the guide: their language, title, text and place."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "scripts" / "docs"
-PAGES = (ROOT / "README.md", *sorted(GUIDE.rglob("*.md")))
+PAGES = (ROOT / "README.md", *sorted((ROOT / ".github").glob("*.md")), *sorted(GUIDE.rglob("*.md")))
 
 _BLOCK = re.compile(
     r"^( *)```(\w*)(?: title=\"([^\"]+)\")?\n(.*?)^\1```$", re.DOTALL | re.MULTILINE
