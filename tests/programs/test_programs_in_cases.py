@@ -249,3 +249,15 @@ def test_zones_of_two_robots_count_whatever_their_clocks(tmp_path):
             assert section.padding == pytest.approx(sum(own) + timeline.path_error, abs=1e-15)
             seen.add(tuple(padding > 0.0 for padding in own))
     assert seen == {(False, False), (False, True), (True, False), (True, True)}
+
+
+def test_a_fault_of_a_program_within_a_case_names_its_field(tmp_path):
+    path = case(tmp_path, [{"wait": 1.0}], [far()])
+    content = yaml.safe_load(path.read_text())
+    content["trajectory"]["program"] = {"tool": {"link": "tool_tip"}, "moves": [{"wait": -1.0}]}
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(cl.ClearanceError, match=r"trajectory.program: moves\[0\]\.wait"):
+        cl.load_case(path)
+    content["trajectory"]["program"] |= {"moves": [{"wait": 1.0}], "start": START}
+    path.write_text(yaml.safe_dump(content))
+    assert cl.load_case(path).robots[0].trajectory.times[-1] == 1.0

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from clearance.errors import BadInput
 from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.schema.program import Program
-from clearance.formats.schema.strict_model import Name, StrictModel
+from clearance.formats.schema.strict_model import Name, StrictModel, validated
 from clearance.world.timing import Timing
 
 
@@ -108,7 +108,10 @@ class TrajectoryFile(TimedFile):
             return data
         if "file" in data:
             raise BadInput("both file and program are given", valid="one of them")
-        return {"file": "-", **data}
+        program = data["program"]
+        if isinstance(program, dict):
+            program = validated(Program, program, "program")
+        return {"file": "-", **data, "program": program}
 
     @property
     def choice(self) -> Choice:
