@@ -139,14 +139,14 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def require_folder_place(folder: Path | None) -> None:
+def require_folder_place(folder: Path | None, option: str = "--out") -> None:
     """Raises `Unwritable` if `folder` is given and is no folder, or none can be made or filled
     there.
     """
     if folder is None:
         return
     if folder.exists() and not folder.is_dir():
-        raise Unwritable("is a file", where=str(folder), valid="--out needs a folder")
+        raise Unwritable("is a file", where=str(folder), valid=f"{option} needs a folder")
     _require_writable(folder, folder)
 
 

@@ -12,6 +12,7 @@ from clearance.cli.batch import batch
 from clearance.cli.check import check
 from clearance.cli.comparison import compare
 from clearance.cli.convert import convert
+from clearance.cli.demo import demo
 from clearance.cli.gain import gain
 from clearance.cli.new import new
 from clearance.cli.pre_commit import pre_commit
@@ -47,6 +48,7 @@ for command in (
     check,
     compare,
     convert,
+    demo,
     gain,
     new,
     pre_commit,

@@ -1,4 +1,4 @@
-"""A wheel holds the compiled kernels, serves any Python 3 of its platform, and needs no compiler to be used."""
+"""A wheel holds compiled kernels and the demo, serves any Python 3 of its platform, and needs no compiler."""
 
 from __future__ import annotations
 
@@ -73,3 +73,23 @@ def test_a_distance_is_measured_from_a_wheel_without_a_compiler(wheel, tmp_path)
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == [str(tmp_path / "clearance" / "compile" / "built"), "2.0"]
+
+
+def test_the_demo_runs_from_a_wheel(wheel, tmp_path):
+    zipfile.ZipFile(wheel).extractall(tmp_path / "installed")
+    brought, ours = tmp_path / "installed" / "clearance" / "demo", ROOT / "clearance" / "demo"
+    assert contents(brought) == contents(ours) != {}
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "clearance", "demo"], cwd=tmp_path, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "installed")},
+    )  # fmt: skip
+    assert done.returncode == 0 and done.stdout.startswith("CLEAR  seam"), done.stderr
+    assert (tmp_path / "clearance_demo" / "report.html").is_file()
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }

@@ -1,0 +1,148 @@
+"""`clearance demo`: what comes with the package is checked, listed and copied, with nothing else at hand."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+from clearance.cli import run
+from clearance.cli.demo import FOLDER, SCENES
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def demo(capsys, *arguments: str) -> tuple[int, str, str]:
+    """Exit code, output and errors."""
+    capsys.readouterr()
+    code = run(["demo", *arguments])
+    return (code, *capsys.readouterr())
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def without_reports(monkeypatch):
+    monkeypatch.setattr("clearance.extras.is_installed", lambda library: library != "meshcat")
+
+
+def test_the_arm_is_that_of_the_repository():
+    assert files(FOLDER / "heron6") == files(ROOT / "robots" / "heron6")
+
+
+def test_what_every_wheel_brings_is_small():
+    assert sum(map(len, files(FOLDER).values())) < 300_000
+
+
+def test_every_file_belongs_to_the_arm_or_to_one_scene():
+    names = {path.name for path in FOLDER.iterdir()} - {"heron6"}
+    owners = {name: [scene for scene in SCENES if name.startswith(scene)] for name in names}
+    assert all(len(scenes) == 1 for scenes in owners.values())
+    assert {f"{scene}.yaml" for scene in SCENES} <= names
+
+
+@pytest.mark.slow
+def test_the_first_scene_is_clear_and_its_report_is_in_this_folder(folder, capsys):
+    code, out, err = demo(capsys)
+    assert (code, err) == (0, "") and out.startswith("CLEAR  seam: ")
+    assert "clearance_demo/report.html" in out
+    assert (folder / "clearance_demo" / "report.html").is_file()
+    assert [path.name for path in folder.iterdir()] == ["clearance_demo"]
+
+
+def test_the_tool_keeps_the_height_of_its_program():
+    """Its point is 24 mm above the flange, and the fingers reach 10 mm beyond it."""
+    assert cl.check(FOLDER / "seam.yaml").worst["clearance"] == pytest.approx(0.014, abs=2e-5)
+
+
+@pytest.mark.slow
+def test_the_second_scene_is_violated_between_its_rows_only(folder, capsys):
+    code, out, _ = demo(capsys, "post", "--out", "there")
+    assert code == 1 and "between the steps 1 and 2" in out.splitlines()[0]
+    assert (folder / "there" / "report.html").is_file()
+    assert cl.check(FOLDER / "post.yaml", certify=False).verdict.exit_code == 0
+
+
+def test_without_the_extra_it_is_checked_and_one_line_says_what_a_report_needs(
+    folder, capsys, monkeypatch
+):
+    without_reports(monkeypatch)
+    code, out, err = demo(capsys)
+    assert (code, err) == (0, "") and out.startswith("CLEAR  seam: ")
+    (line,) = [line for line in out.splitlines() if "meshcat" in line]
+    assert " ".join(line.split()) == (
+        "no report the report needs meshcat, which is not installed; pip install 'clearance[report]'"
+    )
+    assert list(folder.iterdir()) == []
+
+
+def test_a_report_that_is_asked_for_needs_the_extra(folder, capsys, monkeypatch):
+    without_reports(monkeypatch)
+    code, out, err = demo(capsys, "--out", "there")
+    assert (code, out) == (2, "") and err.count("\n") == 1 and "--out needs meshcat" in err
+    assert list(folder.iterdir()) == []
+
+
+def test_the_scenes_are_listed(folder, capsys):
+    code, out, err = demo(capsys, "--list")
+    assert (code, err) == (0, "") and [line.split()[0] for line in out.splitlines()] == [*SCENES]
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_a_copy_is_the_whole_case_and_stands_alone(folder, capsys, monkeypatch, scene):
+    code, out, err = demo(capsys, scene, "--copy", "my cell")
+    assert (code, err) == (0, "") and "clearance check 'my cell/case.yaml'" in out
+    copied = files(folder / "my cell")
+    assert copied.pop("case.yaml") == (FOLDER / f"{scene}.yaml").read_bytes()
+    assert {name.partition("/")[0].partition("_")[0] for name in copied} == {"heron6", scene}
+    case, original = cl.load_case("my cell/case.yaml"), cl.load_case(FOLDER / f"{scene}.yaml")
+    read = {Path(os.path.realpath(path)) for path in case.files_read}
+    assert len(read) > 20 and all(path.is_relative_to(folder.resolve()) for path in read)
+    ours, theirs = case.robots[0].trajectory, original.robots[0].trajectory
+    assert ours.positions.tobytes() == theirs.positions.tobytes()
+
+
+def test_a_copy_goes_over_nothing(folder, capsys):
+    (folder / "mine").mkdir()
+    (folder / "mine" / "case.yaml").write_text("mine")
+    (folder / "file").write_text("mine")
+    before = files(folder)
+    for place, said in (("mine", "is not empty"), ("file", "is a file"), ("", "an empty path")):
+        code, out, err = demo(capsys, "--copy", place)
+        assert (code, out) == (2, "") and said in err and "--copy" in err
+        assert err.count("\n") == 1
+    assert files(folder) == before
+
+
+def test_an_empty_folder_takes_a_copy(folder, capsys):
+    (folder / "new").mkdir()
+    assert demo(capsys, "--copy", "new")[0] == 0 and (folder / "new" / "case.yaml").is_file()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--list", "--copy", "a"], ["--copy", "a", "--out", "b"], ["--list", "--out", "b"]],
+)
+def test_one_thing_is_asked_for_at_a_time(folder, capsys, arguments):
+    code, out, err = demo(capsys, *arguments)
+    assert (code, out) == (2, "") and "exclude each other" in err
+    assert list(folder.iterdir()) == []
+
+
+def test_an_unknown_scene_is_refused_with_those_there_are(capsys):
+    code, out, err = demo(capsys, "weld")
+    assert (code, out) == (2, "") and all(scene in err for scene in SCENES)
