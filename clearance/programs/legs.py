@@ -21,6 +21,9 @@ SHARE_OF_LINE = 0.5
 RUN_UP = 0.25
 """[s] In which a tool that turns on the spot reaches its speed."""
 
+LONGEST = 100.0
+"""[m] A longer way is a mistake."""
+
 SHORTEST = 1e-9
 """[m] and [rad] A line that is shorter, and turns less, is none."""
 
@@ -79,6 +82,8 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
         with at(move.where):
             if isinstance(move, PathMove):
                 found.append(own := _stretch(pose, move))
+                if not own.length <= LONGEST:
+                    raise BadInput(f"a way of {own.length:.3g} m", valid=f"{LONGEST:g} m or less")
                 if not _is_none(own):
                     pose = own.poses(np.array([[1.0, 0.0]]))[0]
                 continue

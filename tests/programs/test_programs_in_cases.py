@@ -166,6 +166,14 @@ FAULTS = {
         [{"lin": {"to": {"frame": "tabel", "xyz": "end"}}}],
         "unknown frame 'tabel'",
     ),
+    "a way to the moon": (
+        [{"lin": {"to": {"frame": "base", "xyz": [4e8, 0.0, 0.0]}}}],
+        "a way of 4e+08 m",
+    ),
+    "a speed beyond all": (
+        [{"lin": {"to": {"frame": "base", "xyz": "end"}, "acceleration": 1e20}}],
+        "less than or equal to 1000000",
+    ),
     "no speed": ([{"lin": {"to": {"frame": "base", "xyz": "end"}, "speed": 0}}], "speed"),
     "an unknown joint": (
         [{"ptp": {"joints": {**START, "joint_7": 0.0}}}],
@@ -249,6 +257,15 @@ def test_zones_of_two_robots_count_whatever_their_clocks(tmp_path):
             assert section.padding == pytest.approx(sum(own) + timeline.path_error, abs=1e-15)
             seen.add(tuple(padding > 0.0 for padding in own))
     assert seen == {(False, False), (False, True), (True, False), (True, True)}
+
+
+def test_what_is_of_files_of_samples_is_refused_beside_a_program(tmp_path):
+    path = case(tmp_path, [{"wait": 1.0}], [far()])
+    content = yaml.safe_load(path.read_text())
+    content["trajectory"]["period"] = 0.1
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(cl.ClearanceError, match="period is of a file, not of a program"):
+        cl.load_case(path)
 
 
 def test_a_fault_of_a_program_within_a_case_names_its_field(tmp_path):

@@ -18,7 +18,7 @@ from clearance.formats.schema.strict_model import Name, StrictModel, Triple
 WORLD, BASE = "world", "base"
 """Frames that every program has: the world's, and the robot's root link."""
 
-Above0 = Annotated[float, Field(gt=0)]
+Above0 = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Tool(Pose):

@@ -108,6 +108,9 @@ class TrajectoryFile(TimedFile):
             return data
         if "file" in data:
             raise BadInput("both file and program are given", valid="one of them")
+        others = sorted(data.keys() - {"program", "start", "rate", "after", "start_state"})
+        if others:
+            raise BadInput(f"{others[0]} is of a file, not of a program", valid="no such key")
         program = data["program"]
         if isinstance(program, dict):
             program = validated(Program, program, "program")
