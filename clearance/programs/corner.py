@@ -26,6 +26,7 @@ from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
 from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
 from clearance.programs.path_samples import PathSamples
+from clearance.programs.tool_path import Stretch
 from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
 from clearance.world.robot import JointKind, Robot
@@ -36,6 +37,9 @@ clearance."""
 
 CELLS = (4, 6, 8, 12)
 """Into how many parts each range is cut, one after another, until boxes are proven."""
+
+MOST_CELLS = 50_000
+"""Cells of a zone, over all its intervals: some seconds of work. A zone that needs more is refused."""
 
 
 def corner_of(
@@ -50,6 +54,8 @@ def corner_of(
         BadInput: nothing is proven: the zone is too wide for the arm so near a singularity.
     """
     for n_cells in CELLS:
+        if np.prod(_shape(follower.stretch, samples, n_cells)) > MOST_CELLS:
+            break
         found = _cells(follower, samples, n_cells)
         if found is not None:
             ends = start + samples.times[[0, -1]]
@@ -92,13 +98,18 @@ def _cells(
     return (found, grid.spread) if found.is_unique(arm, reach).all() else None
 
 
+def _shape(stretch: Stretch, samples: PathSamples, n_cells: int) -> tuple[int, ...]:
+    """How many intervals there are, and cells of s, a' and b': one of a turn that is none."""
+    turned = np.linalg.norm(stretch.turns, axis=1) > 0.0
+    return (len(samples.shares) - 1, n_cells, *np.where(turned, n_cells, 1).tolist())
+
+
 def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
     """The cells, and the cubics shifted to the joints that hold the pose in the middle of each."""
-    stretch, shares = follower.stretch, samples.shares
-    n = len(shares) - 1
-    sizes = (0.25, *np.linalg.norm(stretch.turns, axis=1))
-    counts = [n_cells if size else 1 for size in sizes]
-    shape = (n, *counts)
+    stretch = follower.stretch
+    sizes = np.linalg.norm(stretch.turns, axis=1)
+    shape = _shape(stretch, samples, n_cells)
+    counts = shape[1:]
     i, *cell = (axis.ravel() for axis in np.indices(shape))
     given = samples.intervals
     half = 0.5 * given.lengths[:, None]
@@ -115,8 +126,8 @@ def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
         [np.full(len(i), 0.25 / counts[0]), *(0.5 / counts[1 + k] + moved[i, k] for k in range(2))],
         axis=1,
     )
-    shifts[:, 1:][:, np.array(sizes[1:]) == 0.0] = 0.0
-    halves[:, 1:][:, np.array(sizes[1:]) == 0.0] = 0.0
+    shifts[:, 1:][:, sizes == 0.0] = 0.0
+    halves[:, 1:][:, sizes == 0.0] = 0.0
     near = 0.5 * (given.before + given.after) + 0.25 * half * (given.rates[0] - given.rates[1])
     poses = stretch.poses(
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
