@@ -17,7 +17,7 @@ from clearance.gains.paths_together import PathsTogether
 from clearance.gains.search import FINE, Search, SearchResult
 from clearance.gains.shortfalls import State
 from clearance.simulate.answers.approaches import Approach
-from clearance.simulate.answers.point_motion import moves_apart
+from clearance.simulate.answers.point_motion import has_joint_between
 
 FLAT = 1e-3
 """[-] Of what is missing: where a first step foretells less, the way is not known from it."""
@@ -91,7 +91,7 @@ def _starts(offsets: Offsets, flat: FlatMoment) -> Iterator[np.ndarray]:
     for part in offsets.parts:
         shapes = _shapes(part, flat.time)
         for joint, column in enumerate(part.columns):
-            if moves_apart(flat.approach.case, flat.approach.pair, [column]):
+            if has_joint_between(flat.approach.case, flat.approach.pair, [column]):
                 own = slice(before + joint * part.n_splines, before + (joint + 1) * part.n_splines)
                 for shape in shapes:
                     for far in (*FAR, *(-one for one in FAR)):

@@ -23,7 +23,7 @@ from clearance.gains.shortfalls import Rows
 from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.answers.approaches import Approach
-from clearance.simulate.answers.point_motion import motion_of_frame, moves_apart
+from clearance.simulate.answers.point_motion import has_joint_between, motion_of_frame
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import link_poses_at
@@ -151,14 +151,14 @@ class JointOffsets:
         return replace(self.placed, trajectory=changed)
 
     def moves(self, case: Case, pair: Pair) -> bool:
-        by_joint = moves_apart(case, pair, self.columns)
+        by_joint = has_joint_between(case, pair, self.columns)
         return by_joint or self.transfers.has_of(case, pair)
 
     def gradient(self, approach: Approach, timeline: Timeline | None = None) -> np.ndarray | None:
         if timeline is not None and self.transfers.has(approach):
             size = self.n_joints * self.n_splines
             return Grasps(timeline, self._of_frame, size).gradient(approach)
-        if not moves_apart(approach.case, approach.pair, self.columns):
+        if not has_joint_between(approach.case, approach.pair, self.columns):
             return None
         by_joint = approach.by_columns()[:, self.columns]
         splines = self._between_samples(self._table_times(approach))

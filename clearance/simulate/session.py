@@ -1,6 +1,6 @@
 """One object that works out on demand what a record leaves open: pairs, moments, stretches, a replay.
 
-Whoever makes a record holds its session beside it, and gives it to those who ask.
+Whoever makes a record has its session with it, and gives it to those who ask.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class MeasuringSession(MeasuredRun):
 
     @cached_property
     def not_listed(self) -> dict[str, int]:
-        """The number of intervals of each level and of events that are left out of these."""
+        """The number of intervals of each level and of events that these omit."""
         return intervals.not_listed(self)
 
     def extent(self, level: str) -> tuple[int, int]:
@@ -162,9 +162,9 @@ class MeasuringSession(MeasuredRun):
 
     @cached_property
     def details(self) -> RunDetails:
-        """All that a report shows beside the record."""
+        """All that a report shows with the record."""
         worst = {rule.name: self.worst_among([rule]) for rule in self.record.rules}
-        left = self.record.budget or ()
+        budgets = self.record.budget or ()
         return RunDetails(
             minima=self.motion_minima(),
             n_pairs=Counter(pair.rule for pair in self.pair_minima()),
@@ -179,6 +179,6 @@ class MeasuringSession(MeasuredRun):
                 one.rule: tuple(
                     self.error_sources(one, i) for i in range(len(self.least_left(one)))
                 )
-                for one in left
+                for one in budgets
             },
         )

@@ -26,7 +26,7 @@ from clearance.world.pairs import Pair
 MOST_DEPTHS = 12
 """Steps in contact of one pair whose depth is worked out, evenly spread; one takes 2 to 20 ms."""
 
-APART = 1e-9
+NO_DIRECTION = 1e-9
 """[m] Nearest points that are nearer have no direction of their own."""
 
 
@@ -40,7 +40,7 @@ class Approach:
         clearances: (k,) [m] less padding; where the bodies overlap less their depth as well.
         points: (k, 2, 3) nearest points on a and b [m], world; of an overlap one in both.
         directions: (k, 3) unit vectors from a to b.
-        depths_at_least: (k,) [m] no shorter way parts the bodies where they overlap; 0 where they are apart, or
+        depths_at_least: (k,) [m] no shorter way parts the bodies where they overlap; 0 where they are separate, or
             where that was not asked for.
     """
 
@@ -108,47 +108,49 @@ def _approach(
     poses = link_poses_at(case, phase.motions, own)
     a, b = (body.poses_in(case, poses) for body in pair)
     found = Query(*(body.shape_in(case) for body in pair)).distances(a, b)
-    apart = found.distances > APART
+    is_separate = found.distances > NO_DIRECTION
     gaps = found.points[:, 1] - found.points[:, 0]
     lengths = np.linalg.norm(gaps, axis=1)
-    directions = np.divide(gaps, lengths[:, None], out=np.zeros_like(gaps), where=apart[:, None])
-    told = Approach(
+    directions = np.divide(
+        gaps, lengths[:, None], out=np.zeros_like(gaps), where=is_separate[:, None]
+    )
+    approach = Approach(
         rule, section, pair, steps, poses, found.distances - section.padding, found.points,
         directions, np.zeros(len(steps)),
     )  # fmt: skip
-    touching = np.flatnonzero(~apart)
+    touching = np.flatnonzero(~is_separate)
     if len(touching):
-        told = _with_depths(told, touching, bounded=bounded)
-    yield told
+        approach = _with_depths(approach, touching, bounded=bounded)
+    yield approach
 
 
-def _with_depths(told: Approach, touching: np.ndarray, *, bounded: bool) -> Approach:
-    """The approach with depth and way out at some of the steps in contact; the others are left out."""
+def _with_depths(approach: Approach, touching: np.ndarray, *, bounded: bool) -> Approach:
+    """The approach with depth and way out at some of the steps in contact; the others are dropped."""
     chosen = touching[np.unique(np.linspace(0, len(touching) - 1, MOST_DEPTHS).astype(int))]
-    case, pair = told.case, told.pair
+    case, pair = approach.case, approach.pair
     overlaps = Overlaps(*(body.shape_in(case) for body in pair), bounded=bounded)
-    kept = set(np.flatnonzero(told.directions.any(axis=1)).tolist())
-    columns = [told.clearances.copy(), told.points.copy(), told.directions.copy()]
-    columns.append(told.depths_at_least.copy())
+    selected = set(np.flatnonzero(approach.directions.any(axis=1)).tolist())
+    columns = [approach.clearances.copy(), approach.points.copy(), approach.directions.copy()]
+    columns.append(approach.depths_at_least.copy())
     for row in chosen.tolist():
-        poses = [body.poses_in(case, told.poses[row : row + 1])[0] for body in pair]
+        poses = [body.poses_in(case, approach.poses[row : row + 1])[0] for body in pair]
         found = overlaps.at(*poses)
         if found is None:
             continue
-        kept.add(row)
+        selected.add(row)
         columns[0][row] -= found.depth
         columns[1][row] = found.point
         columns[2][row] = found.direction
         columns[3][row] = found.at_least
-    rows = np.array(sorted(kept), dtype=np.int64)
+    rows = np.array(sorted(selected), dtype=np.int64)
     clearances, points, directions, depths = (column[rows] for column in columns)
     return replace(
-        told, steps=told.steps[rows], poses=told.poses[rows], clearances=clearances,
+        approach, steps=approach.steps[rows], poses=approach.poses[rows], clearances=clearances,
         points=points, directions=directions, depths_at_least=depths,
     )  # fmt: skip
 
 
-THIN = 1e-7
+POINT_RADIUS = 1e-7
 """[m] Radius of the balls that stand for the points themselves."""
 
 
@@ -177,7 +179,7 @@ class Overlaps:
         self.shapes, self.bounded = (a, b), bounded
 
     def at(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
-        """That at two poses (4, 4) [m]; None where they are apart, or no way out is known: the middle of a ball
+        """That at two poses (4, 4) [m]; None where they are separate, or no way out is known: the middle of a ball
         is inside a solid."""
         if any(isinstance(shape, PointCloud) for shape in self.shapes):
             return self._of_balls(pose_a, pose_b)
@@ -193,27 +195,27 @@ class Overlaps:
         )
 
     def _of_balls(self, pose_a: np.ndarray, pose_b: np.ndarray) -> BodyOverlap | None:
-        """A ball that reaches depth past a point of the other body holds it until one is moved so far."""
-        found = self._thin.distances(pose_a[None], pose_b[None])
+        """A ball that reaches depth past a point of the other body overlaps it until one is moved so far."""
+        found = self._point_query.distances(pose_a[None], pose_b[None])
         distance, (on_a, on_b) = float(found.distances[0]), found.points[0]
         depth = self._beyond - distance
         length = float(np.linalg.norm(on_b - on_a))
-        if depth < 0.0 or distance <= THIN or length <= THIN:
+        if depth < 0.0 or distance <= POINT_RADIUS or length <= POINT_RADIUS:
             return None
         return BodyOverlap(depth, depth, (on_b - on_a) / length, (on_a + on_b) / 2.0)
 
     @cached_property
-    def _thin(self) -> Query:
-        return Query(*(_thinned(shape) for shape in self.shapes))
+    def _point_query(self) -> Query:
+        return Query(*(_with_point_radius(shape) for shape in self.shapes))
 
     @property
     def _beyond(self) -> float:
         """[m] What the balls are greater by than those that stand for their points."""
         clouds = (one for one in self.shapes if isinstance(one, PointCloud))
-        return sum(max(one.ball_radius - THIN, 0.0) for one in clouds)
+        return sum(max(one.ball_radius - POINT_RADIUS, 0.0) for one in clouds)
 
 
-def _thinned(shape: Polyhedron) -> Polyhedron:
+def _with_point_radius(shape: Polyhedron) -> Polyhedron:
     if not isinstance(shape, PointCloud):
         return shape
-    return PointCloud(shape.vertices, min(THIN, shape.ball_radius))
+    return PointCloud(shape.vertices, min(POINT_RADIUS, shape.ball_radius))

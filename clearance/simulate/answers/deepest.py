@@ -16,7 +16,7 @@ class WorstMoments:
     """The moments of a run that stand worst against what judges them.
 
     Attributes:
-        contacts: those of the run. between: whether depth is looked for between the steps too.
+        contacts: those of the run. between: whether depth is computed between the steps too.
     """
 
     contacts: ContactRows | tuple[()]

@@ -16,7 +16,7 @@ from clearance.simulate.answers.stretches import RuleStretches
 from clearance.simulate.measure.moment_query import MomentQuery
 from clearance.world.forest import forest_of, positions_between
 
-LOOKS = 9
+N_MOMENTS = 9
 """Moments at which the depth of a stretch of contact with fewer steps is computed, and as many again near the
 deepest; each takes milliseconds."""
 
@@ -41,8 +41,8 @@ def _deepest_in(rule: MeasuredRule, start: float, end: float) -> Moment | None:
     best = _deepest([*_moments(rule, start, end)])
     if best is None:
         return None
-    apart = (end - start) / (LOOKS + 1)
-    about = max(start, best.time - apart), min(end, best.time + apart)
+    spacing = (end - start) / (N_MOMENTS + 1)
+    about = max(start, best.time - spacing), min(end, best.time + spacing)
     return _deepest([best, *_moments(rule, *about)])
 
 
@@ -59,7 +59,7 @@ def _spans(rules: Sequence[MeasuredRule]) -> Iterator[tuple[MeasuredRule, float,
                 [one.section.phase.motions[0].times for one in answer.pairs.answers]
             )
             for start, end in RuleStretches(answer, "contact").spans.tolist():
-                if ((times >= start) & (times <= end)).sum() < LOOKS:
+                if ((times >= start) & (times <= end)).sum() < N_MOMENTS:
                     yield answer, start, end
 
 
@@ -71,7 +71,7 @@ def _moments(rule: MeasuredRule, start: float, end: float) -> Iterator[Moment]:
         case, times = phase.case, phase.motions[0].times
         if pair.has_cloud(case):
             continue
-        for time in np.linspace(start, end, LOOKS + 2)[1:-1].tolist():
+        for time in np.linspace(start, end, N_MOMENTS + 2)[1:-1].tolist():
             step = int(np.searchsorted(times, time, side="right")) - 1
             if not 0 <= step < len(times) - 1:
                 continue
@@ -90,5 +90,5 @@ def _moments(rule: MeasuredRule, start: float, end: float) -> Iterator[Moment]:
                 moment = query.between(step, share, 0, touches=True)
                 exact = bool(found.exact[0])
                 depth = Depth(found.penetration, found.penetration_at_least, exact)
-                told = moment.of_run(phase.first, answer.section.padding, rule.name)
-                yield replace(told, depth=depth)
+                reported = moment.of_run(phase.first, answer.section.padding, rule.name)
+                yield replace(reported, depth=depth)

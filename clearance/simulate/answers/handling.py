@@ -25,10 +25,10 @@ TOUCHING = 1e-6
 """[m] What stands on something touches it, whichever way rounding goes."""
 
 FAR = 1.0
-"""[m] Balls farther apart need no search: no limit is so wide that it would matter here."""
+"""[m] Balls with more than this between them need no search: no limit is so wide that it would matter here."""
 
 MOST_STEPS = 2000
-"""Most steps before and after that are looked at for the end of a contact."""
+"""Most steps before and after that are checked for the end of a contact."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +54,10 @@ class HandlingHint:
     @property
     def row(self) -> str:
         """The row of `allow` that excuses it."""
-        told = [f"between: {json.dumps([self.part, self.mate], ensure_ascii=False)}"]
-        told += [] if self.start is None else [f"from: {self.start!r}"]
-        told += [] if self.end is None else [f"until: {self.end!r}"]
-        return f"{{{', '.join(told)}}}"
+        fields = [f"between: {json.dumps([self.part, self.mate], ensure_ascii=False)}"]
+        fields += [] if self.start is None else [f"from: {self.start!r}"]
+        fields += [] if self.end is None else [f"until: {self.end!r}"]
+        return f"{{{', '.join(fields)}}}"
 
     def __str__(self) -> str:
         return f"{self.part} touches {self.mate} when it is {self.when}"
@@ -103,7 +103,7 @@ def _at_change(
 
 @dataclass(frozen=True, eq=False)
 class _PairGaps:
-    """How far two bodies are apart at the steps at which they are measured."""
+    """The distance of two bodies at the steps at which they are measured."""
 
     record: Record
     plan: SectionPlan
@@ -145,12 +145,12 @@ class _PairGaps:
         return next(own, None)
 
     def _is_clear(self, section: Section, step: int) -> bool:
-        """True if they are apart, and not below the fail limit of the rule that judges them there."""
+        """True if they are separate, and not below the fail limit of the rule that judges them there."""
         gap = self._gap(section, step)
         return gap > TOUCHING and not section.limits.below(gap, section.limits.fail)
 
     def _gap(self, section: Section, step: int) -> float:
-        """[m] at one of a section's steps, paddings left out."""
+        """[m] at one of a section's steps, without paddings."""
         case, own = section.phase.case, step - section.phase.first
         poses = link_poses_at(case, section.phase.motions, slice(own, own + 1))
         a, b = self.pair.a, self.pair.b
@@ -169,11 +169,11 @@ def gap_between(
     world_from_b: np.ndarray,
     far: float = FAR,
 ) -> float:
-    """[m] The distance of two bodies, or less of it where balls about their boxes are more than `far` apart."""
+    """[m] The distance of two bodies, or less of it where balls about their boxes are farther than `far`."""
     centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
                for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip
     radii = [np.linalg.norm(np.ptp(shape.bounds, axis=0)) / 2.0 for shape in (a, b)]
-    apart = float(np.linalg.norm(centres[0] - centres[1]) - 1.001 * sum(radii))
-    if apart > far:
-        return apart
+    between_balls = float(np.linalg.norm(centres[0] - centres[1]) - 1.001 * sum(radii))
+    if between_balls > far:
+        return between_balls
     return distance(a, b, pose_a=world_from_a, pose_b=world_from_b).distance

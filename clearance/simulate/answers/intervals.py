@@ -11,7 +11,7 @@ from clearance.record.levels import LEVELS, Event, Interval
 from clearance.record.record import Record
 from clearance.record.row_status import RowStatus, status_codes_of
 from clearance.simulate.answers.measured_run import MeasuredRun
-from clearance.simulate.answers.motion_levels import MotionLevels, Span, told_moment
+from clearance.simulate.answers.motion_levels import MotionLevels, Span, moment_fields
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
@@ -22,14 +22,14 @@ _ENTERED = {
     "below_fail": "fail limit entered",
     "contact": "contact begins",
 }
-_LEFT = {
+_EXITED = {
     "below_warn": "warn limit left",
     "below_fail": "fail limit left",
     "contact": "contact ends",
 }
 
 
-_TOLD = ("time", "clearance", "link", "obstacle", "rule")
+_FIELDS = ("time", "clearance", "link", "obstacle", "rule")
 
 
 def intervals(run: MeasuredRun) -> dict[str, list[Interval]]:
@@ -56,11 +56,11 @@ def events(run: MeasuredRun) -> list[Event]:
         return _motion_events(motion)
     steps, order, what, stops = [], [], [], []
     for level, runs in _level_runs(record).items():
-        left = runs[runs[:, 1] < record.steps.num_rows, 1]
-        steps += [runs[:, 0], left]
-        stops += [runs[:, 1], left]
-        order += [np.full(len(runs), LEVELS[level]), np.full(len(left), -LEVELS[level])]
-        what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
+        exits = runs[runs[:, 1] < record.steps.num_rows, 1]
+        steps += [runs[:, 0], exits]
+        stops += [runs[:, 1], exits]
+        order += [np.full(len(runs), LEVELS[level]), np.full(len(exits), -LEVELS[level])]
+        what += [_ENTERED[level]] * len(runs) + [_EXITED[level]] * len(exits)
     step, stop = np.concatenate(steps), np.concatenate(stops)
     first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
     seen = _Levels.of(run)
@@ -70,16 +70,16 @@ def events(run: MeasuredRun) -> list[Event]:
 
 def _motion_interval(motion: MotionLevels, level: str, span: Span) -> Interval:
     steps, worst = motion.steps_in(span), motion.worst(level, span)
-    told = told_moment(worst, span[0] if worst is None else worst.time)
+    fields = moment_fields(worst, span[0] if worst is None else worst.time)
     return Interval(
         first_step=int(steps[0]),
         last_step=int(steps[-1]),
         start=span[0],
         end=span[1],
         worst_step=int(steps[0]) if worst is None else worst.step,
-        worst_time=told.pop("time"),
+        worst_time=fields.pop("time"),
         between=worst is None or worst.between,
-        **told,
+        **fields,
     )
 
 
@@ -97,14 +97,14 @@ def _motion_events(motion: MotionLevels) -> list[Event]:
         moment = motion.edge(level, span, last=leaves)
         worst = None if leaves else motion.worst(level, span)
         step = int(np.searchsorted(motion.times, time, side="right")) - 1
-        told = told_moment(moment, time)
+        fields = moment_fields(moment, time)
         found.append(
             Event(
                 step=step,
                 between=bool(motion.times[step] != time),
-                what=(_LEFT if leaves else _ENTERED)[level],
+                what=(_EXITED if leaves else _ENTERED)[level],
                 least=None if worst is None else worst.clearance,
-                **told,
+                **fields,
             )
         )
     return found
@@ -185,17 +185,17 @@ class _Levels:
         certificate = self.run.rules[int(self.rows.rule_between[step])].certificate
         assert certificate is not None
         moment = certificate.moment_of(step)
-        return {name: getattr(moment, name) for name in _TOLD}
+        return {name: getattr(moment, name) for name in _FIELDS}
 
     def sample(self, step: int) -> dict[str, Any]:
         """What is known of a step."""
         row = self.run.record.steps.slice(step, 1).to_pylist()[0]
         columns = ("time", "clearance", *self.run.record.sides[:2], "rule")
-        return {name: row[column] for name, column in zip(_TOLD, columns, strict=True)}
+        return {name: row[column] for name, column in zip(_FIELDS, columns, strict=True)}
 
     def interval(self, start: int, stop: int) -> Interval:
         worst = start + self._worst(slice(start, stop))
-        told = self.moment(worst)
+        fields = self.moment(worst)
         times = self.run.record.motions[0].times
         between = self.rows.between
         last = min(stop, len(times) - 1) if between[stop - 1] else stop - 1
@@ -205,9 +205,9 @@ class _Levels:
             start=float(times[start]),
             end=float(times[last]),
             worst_step=worst,
-            worst_time=told.pop("time"),
+            worst_time=fields.pop("time"),
             between=bool(between[worst]),
-            **told,
+            **fields,
         )
 
     def _worst(self, steps: slice) -> int:
@@ -225,5 +225,5 @@ class _Levels:
         known = self.rows.least[step:stop]
         least = None if stop == step or np.isnan(known).all() else float(np.nanmin(known))
         between = stop > step and bool(self.own[step] < code)
-        told = self.moment(step) if between else self.sample(step)
-        return Event(step=step, between=between, what=what, least=least, **told)
+        fields = self.moment(step) if between else self.sample(step)
+        return Event(step=step, between=between, what=what, least=least, **fields)

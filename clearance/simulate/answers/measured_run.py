@@ -1,4 +1,4 @@
-"""The record of a run beside what can measure more of it. Not for: what is worked out on demand (`session`)."""
+"""The record of a run with what can measure more of it. Not for: what is worked out on demand (`session`)."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class MeasuredRun:
 
     def answers(self, rules: Iterable[MeasuredRule]) -> tuple[RuleAnswer, ...]:
         """The data of some rules, of which more can be asked later."""
-        told = {rule.answer: rule for rule in rules}
-        self._by_answer.update(told)
-        return tuple(told)
+        by_answer = {rule.answer: rule for rule in rules}
+        self._by_answer.update(by_answer)
+        return tuple(by_answer)
 
     def overlap(self, row: StepContact) -> Contact:
         """All of an overlap, with its region; worked out now where the record does not have it."""

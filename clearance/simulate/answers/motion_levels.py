@@ -61,7 +61,7 @@ class MotionLevels:
         return None
 
 
-def told_moment(moment: Moment | None, time: float) -> dict[str, Any]:
+def moment_fields(moment: Moment | None, time: float) -> dict[str, Any]:
     """The fields of a moment; if none is known, of a time [s]."""
     if moment is None:
         return {"time": time, "clearance": None, "link": None, "obstacle": None, "rule": ""}

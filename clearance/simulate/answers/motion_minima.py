@@ -94,10 +94,10 @@ class _RuleMinima:
         self, asked: dict[int, float], known: dict[int, PairMinimum]
     ) -> dict[int, PairMinimum]:
         """The least of some pairs up to a clearance [m] each; `known`: their least at the steps."""
-        told = least_between(self.rule, asked) if asked else {}
+        found = least_between(self.rule, asked) if asked else {}
         return {
             pair: _lesser(known.get(pair), moment, proven)
-            for pair, (proven, moment) in told.items()
+            for pair, (proven, moment) in found.items()
         }
 
     @cached_property

@@ -189,7 +189,7 @@ def _alone(answer: SectionAnswer, rows: NearRows, pair: int, within: float) -> S
     own = certify_motion(alone.in_motion, _measured(asked, asked), whole.gap)
     own.lower_bound[-1] = min(own.lower_bound[-1], found.lower_bound[-1])
     np.maximum(own.lower_bound, whole.lower_bound, out=own.lower_bound)
-    seen = np.flatnonzero(whole.pair == place)  # told as the rule tells it
+    seen = np.flatnonzero(whole.pair == place)  # reported as the rule reports it
     own.upper_bound[seen], own.share[seen] = whole.upper_bound[seen], whole.share[seen]
     own.pair[seen] = 0
     nearest = np.append(answer.found.pair, -1)

@@ -52,10 +52,10 @@ def moves_with_joints(case: Case, body: BodyIndex, columns: Collection[int]) -> 
     return _has_joint(case, _under(case, body), columns)
 
 
-def moves_apart(case: Case, pair: Pair, columns: Collection[int]) -> bool:
-    """False if no joint that follows one of some columns of the forest is between two bodies.
+def has_joint_between(case: Case, pair: Pair, columns: Collection[int]) -> bool:
+    """True if a joint that follows one of some columns of the forest is between two bodies.
 
-    They are as near then wherever these joints are. A joint that carries both is not between them.
+    If none is, these joints never change their distance. A joint that carries both is not between them.
     """
     return _has_joint(case, _under(case, pair.a) ^ _under(case, pair.b), columns)
 

@@ -87,7 +87,7 @@ class _Layer(NamedTuple):
 
     Attributes:
         rows: of the run. padding: [m] that clearances are less by. places: (p,) of its pairs in the run; None
-            where they are counted as there. rule: that judges it, if its moments are not yet told of the run.
+            where they are counted as there. rule: that judges it, if its moments are not yet those of the run.
     """
 
     found: MeasuredSteps | ProvenMotion
@@ -127,8 +127,8 @@ def _nearest_layer(layers: Sequence[_Layer], n_steps: int, column: str) -> np.nd
     touching = np.zeros(n_steps, dtype=bool)
     for i, (layer, rows) in enumerate((layer, layer.rows) for layer in layers):
         reached, touches = layer.column(column), layer.column("touching")
-        held = touching[rows]
-        nearer = (touches & ~held) | ((touches == held) & (reached < least[rows]))
+        in_contact = touching[rows]
+        nearer = (touches & ~in_contact) | ((touches == in_contact) & (reached < least[rows]))
         owner[rows][nearer], least[rows][nearer] = i, reached[nearer]
         touching[rows][nearer] = touches[nearer]
     return owner

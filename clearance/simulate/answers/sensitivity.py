@@ -31,7 +31,7 @@ BAND = 1e-5
 """[m] A pair that is no farther above the nearest counts with it: as little takes it there."""
 
 LEAST = 1e-5
-"""[m] Bodies that are nearer have no slope that would hold on: they are taken for touching."""
+"""[m] Bodies that are nearer have no lasting slope: they count as touching."""
 
 
 def sensitivity_of(run: MeasuredRun) -> Sensitivity:
@@ -44,7 +44,7 @@ def sensitivity_of(run: MeasuredRun) -> Sensitivity:
     pairs = run.measured(run.record.rule(moment.rule)).pairs
     if pairs is None:
         return Sensitivity(why_not="only the nearest pair of each step is known")
-    sections = [one.section for one in pairs.answers if _holds(one.section, moment)]
+    sections = [one.section for one in pairs.answers if _covers(one.section, moment)]
     near = [found for section in sections for found in _near(section, moment)]
     if not any({*one.names} == {moment.link, moment.obstacle} for one in near):
         return Sensitivity(why_not="its pair is not measured at one time")
@@ -53,7 +53,7 @@ def sensitivity_of(run: MeasuredRun) -> Sensitivity:
     return Sensitivity(tuple(one.names for one in near), tuple(_rates(near)))
 
 
-def _holds(section: Section, moment: Moment) -> bool:
+def _covers(section: Section, moment: Moment) -> bool:
     last = moment.step + int(moment.between)
     return section.tied and section.steps.start <= moment.step and last < section.steps.stop
 
@@ -138,15 +138,15 @@ def _near(section: Section, moment: Moment) -> list[_NearPair]:
 
 
 def _box(bounds: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(3,) middle and (3,) half size of a box in the world that holds what is in the bounds."""
+    """(3,) middle and (3,) half size of a box in the world that contains what is in the bounds."""
     middle, half = bounds.mean(axis=0), (bounds[1] - bounds[0]) / 2.0
     return pose[:3, :3] @ middle + pose[:3, 3], np.abs(pose[:3, :3]) @ half
 
 
 def _gap(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> float:
-    """[m] Two boxes along the axes are at least so far apart."""
-    apart = np.abs(one[0] - other[0]) - one[1] - other[1]
-    return float(np.linalg.norm(np.maximum(apart, 0.0))) * (1.0 - 1e-9) - 1e-12
+    """[m] A lower bound on the distance of two boxes along the axes."""
+    gaps = np.abs(one[0] - other[0]) - one[1] - other[1]
+    return float(np.linalg.norm(np.maximum(gaps, 0.0))) * (1.0 - 1e-9) - 1e-12
 
 
 def _rates(near: list[_NearPair]) -> Iterator[Rate]:
@@ -167,7 +167,7 @@ def _rates(near: list[_NearPair]) -> Iterator[Rate]:
 def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
     """Of bases and obstacles that stand or move by themselves.
 
-    Of parts that are picked up or let go elsewhere where they are moved nothing is told: their way depends on how
+    Parts that are picked up or let go elsewhere where they are moved are not reported: their way depends on how
     they are turned since.
     """
     things: list[tuple[str, str, Callable[[Case, BodyIndex, int], bool], int]] = [
@@ -194,7 +194,7 @@ def _of_places(near: list[_NearPair], case: Case) -> Iterator[Rate]:
 
 
 def _rate(kind: str, of: str, name: str, unit: str, slopes: np.ndarray) -> Rate:
-    """The rate of both slopes; one that holds both ways is their mean, which is off by less."""
+    """The rate of both slopes; one that is true both ways is their mean, which is off by less."""
     more, less = (0.0 if abs(slope) < NO_SLOPE else float(slope) for slope in slopes)
     made = Rate(kind, of, name, unit, more, less)
     if made.both_ways:

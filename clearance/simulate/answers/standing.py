@@ -1,6 +1,6 @@
 """Pairs that touch all the time, as an arm's foot and its table, or links drawn into one another: hints.
 
-Not for: pairs that touch for a while, which are what a run looks for, but where a part changes hands (`handling`).
+Not for: pairs that touch for a while, which are what a run finds, but where a part changes hands (`handling`).
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
 def always_in_contact(record: Record) -> list[tuple[str, str]]:
     """The pairs that touch at every step of several at which they are measured.
 
-    A link that a joint moves against an obstacle that stands is left out: that is what a run looks for.
+    A link that a joint moves against an obstacle that stands is excluded: that is what a run finds.
     """
     rows = record.contacts
     if not isinstance(rows, ContactRows) or not len(rows) or record.steps.num_rows < 2:
@@ -104,20 +104,20 @@ def standing_hint(record: Record) -> list[str]:
     links = [pair for pair in always if _are_links(record.case, pair)]
     known = {frozenset(pair) for pair in (*standing, *always)}
     parts = [hint for hint in handling_hints(record) if hint.pair not in known]
-    told = [
+    hints = [
         *_hint(standing, "all the time, since the link never moves"),
         *_hint(links, "at every step, link against link"),
         *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
         *map(str, parts),
     ]
-    if told:
+    if hints:
         rows = [json.dumps(pair, ensure_ascii=False) for pair in (*standing, *links, *always)]
         block = ", ".join(dict.fromkeys([*rows, *(hint.row for hint in parts)]))
         lines = (
             f"its rows of allow: {block}" if record.case.allow else f"the case: allow: [{block}]"
         )
-        told[-1] += f"; where that is meant, add to {lines}"
-    return told
+        hints[-1] += f"; where that is meant, add to {lines}"
+    return hints
 
 
 def _are_links(case: Case, pair: tuple[str, str]) -> bool:
@@ -134,7 +134,7 @@ def _hint(pairs: list[tuple[str, str]], when: str) -> Iterator[str]:
 def _touch(
     a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
 ) -> bool:
-    """True if two bodies touch; balls about their boxes that are apart decide without a search."""
+    """True if two bodies touch; balls about their boxes that are disjoint decide without a search."""
     return gap_between(a, world_from_a, b, world_from_b, far=0.0) <= 0.0
 
 

@@ -1,7 +1,7 @@
 """Stretches of time below a level: every moment outside a stretch is proven to be above the level.
 
 Intervals that are not proven as a whole are proven in parts of a millisecond, or of a hundredth of the interval if
-that is more. Parts that are not proven belong to the stretch. Not for: whether a level is kept (`certificate`).
+that is more. Parts that are not proven belong to the stretch. Not for: whether a level is proven (`certificate`).
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ MOST_PARTS = 2**6
 MOST_SPLIT = 2000
 """Most intervals of a section that are proven in parts as a level is passed in them; others count as a whole."""
 
-MOST_LOOKS = 700
+MOST_VISITS = 700
 """Most parts in all intervals of a section with both ends below the level: between them it may be exceeded.
 These are seven long intervals, or 35 of 20 ms; with more, samples are dense enough."""
 
@@ -169,7 +169,7 @@ def joined_spans(spans: np.ndarray) -> np.ndarray:
 
 
 def _places(n: int, test: Callable[[slice], np.ndarray]) -> np.ndarray:
-    """(k,) where a test holds among n rows, asked a block at a time to save memory."""
+    """(k,) where a test is true among n rows, asked a block at a time to save memory."""
     found = [block.start + np.flatnonzero(test(block)) for block in blocks(n)]
     return np.concatenate([np.empty(0, dtype=np.int64), *found])
 
@@ -181,8 +181,8 @@ def threshold_of(section: Section, level: str | float) -> Threshold:
     limits = section.limits
     named = {"below_fail": limits.fail, "below_warn": limits.warn}
     distance = named[level] if isinstance(level, str) else level + section.padding
-    held = distance - limits.rounding
-    return Threshold(section.padding, True) if held <= section.padding else Threshold(held, False)
+    least = distance - limits.rounding
+    return Threshold(section.padding, True) if least <= section.padding else Threshold(least, False)
 
 
 def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts:
@@ -192,7 +192,7 @@ def _parts_of(i_answer: int, answer: SectionAnswer, level: str | float) -> Parts
     opened = own.opened
     inner = own.inside(opened) & own.inside(opened + 1)
     parted = (own.most_parts(opened) > 1) & answer.section.tied
-    if own.most_parts(opened[inner]).sum() > MOST_LOOKS:
+    if own.most_parts(opened[inner]).sum() > MOST_VISITS:
         parted &= ~inner
     split = opened[parted][:MOST_SPLIT]
     whole = np.setdiff1d(opened, split, assume_unique=True)
@@ -280,8 +280,8 @@ class _Intervals:
     def _is_outside(self, step: int, proven: np.ndarray) -> np.ndarray:
         """(k,) True for parts above the level: those that are proven, unless a body is within another.
 
-        A proof is of surfaces, and of bodies that begin or end apart. So parts that are proven one after another
-        need no look if they join a step that is above the level; of others one moment is measured.
+        A proof is of surfaces, and of bodies that begin or end disjoint. So parts that are proven one after
+        another need no visit if they join a step that is above the level; of others one moment is measured.
         """
         n, ends = len(proven), ~self.below(slice(step, step + 2))
         edges = np.flatnonzero(np.diff(np.concatenate([[False], proven, [False]]).astype(np.int8)))

@@ -27,7 +27,7 @@ from clearance.record.moment import Moment
 from clearance.record.rows.blocks import blocks
 from clearance.record.rows.resumable import MeasuredRows
 from clearance.simulate.measure.layout import PairsInMotion
-from clearance.simulate.measure.measure import HELD
+from clearance.simulate.measure.measure import PARTS_IN_MEMORY
 from clearance.simulate.measure.measured import ProvenMotion
 from clearance.simulate.measure.moment_query import MomentQuery
 from clearance.simulate.measure.parts import in_order, parts
@@ -46,7 +46,7 @@ BEYOND = 1.001
 """Gaps beyond the warn limit that are asked about where more is not known: a proof within the gap decides it."""
 
 MOST_PARTS = 2**24
-"""Parts of one interval that a pair is looked at in before its gap is widened: half a minute to two. A whole turn
+"""Parts of one interval that a pair is checked in before its gap is widened: half a minute to two. A whole turn
 takes 3,000 to a tenth of a millimetre."""
 
 
@@ -63,8 +63,8 @@ def certify_motion(
     Args:
         need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
-        resources: threads, progress, and where the bounds are kept.
-        levels: [m] that are to be decided beside the limits.
+        resources: threads, progress, and where the bounds are stored.
+        levels: [m] that are to be decided as well as the limits.
     """
     gap, notices = no_finer_than_rounding(what.case, what.motions, gap)
     work = _Work(what, _Question.of(found, what.limits, need, gap))
@@ -155,26 +155,26 @@ def _or_far(clearance: np.ndarray, far: float) -> np.ndarray:
 class _Log:
     """The bounds, (n,) each, and how many parts of them are proven."""
 
-    def __init__(self, kept: MeasuredRows, name: str, n_steps: int, question: _Question) -> None:
-        self._kept = kept
+    def __init__(self, rows: MeasuredRows, name: str, n_steps: int, question: _Question) -> None:
+        self._rows = rows
         self.bounds = IntervalBounds(
-            kept.array(f"{name}.lower", (n_steps,)),
-            kept.array(f"{name}.upper", (n_steps,)),
-            kept.array(f"{name}.share", (n_steps,)),
-            kept.array(f"{name}.pair", (n_steps,), np.int64),
+            rows.array(f"{name}.lower", (n_steps,)),
+            rows.array(f"{name}.upper", (n_steps,)),
+            rows.array(f"{name}.share", (n_steps,)),
+            rows.array(f"{name}.pair", (n_steps,), np.int64),
         )
         last = _or_far(question.found.clearance[-1:], question.unknown)[0]
         for column, value in zip(self.bounds, (last, last, -1.0, -1), strict=True):
             column[-1] = value
         self.spans = parts(n_steps - 1)
-        self._log = kept.log(name, self.spans)
+        self._log = rows.log(name, self.spans)
         self.done, self.tally = self._log.done, self._log.gathered.get("tally", _no_counts())
 
     def note(self, done: int, counts: np.ndarray, *, last: bool) -> None:
         self.tally = self.tally + counts
         self._log.note(done, {"tally": self.tally}, last=last)
-        if done % HELD == 0:
-            self._kept.let_go()
+        if done % PARTS_IN_MEMORY == 0:
+            self._rows.let_go()
 
 
 @dataclass(frozen=True, eq=False)

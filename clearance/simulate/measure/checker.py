@@ -1,6 +1,6 @@
 """How close a robot comes at one configuration: for planners, controllers and tests that ask many times.
 
-What one question finds is kept for the next, so configurations near the last one are answered in 10 to 51 us on
+What one question finds is cached for the next, so configurations near the last one are answered in 10 to 51 us on
 four real robots (AMD EPYC). Not for: motions (`run.check`, which also says what happens between the samples).
 """
 
@@ -88,7 +88,7 @@ class Checker:
     Args:
         case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
             are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
-        accept: kinds of suspect input to accept ("units", "limits", …), beside those that the case accepts.
+        accept: kinds of suspect input to accept ("units", "limits", …), with those that the case accepts.
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
@@ -99,7 +99,7 @@ class Checker:
 
     Raises:
         SuspectInput: suspect input, as in `check`, in the case or in joints that no configuration gives.
-        NothingToMeasure: no pair is left. BadInput: a body from a CAD file. BadDimension: a body far beyond any
+        NothingToMeasure: no pair remains. BadInput: a body from a CAD file. BadDimension: a body far beyond any
             place that a robot works at.
     """
 
@@ -126,11 +126,11 @@ class Checker:
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
         )
-        self._held = Scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
+        self._scene = Scene(self._layout.surface, self._layout.world, no_rows, len(self._fixed))
         self._lock = threading.Lock()
         self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         self._row, self._position = _rows(1), self._fixed[None].copy()
-        self._nearest = self._held.always_at(self._position, self._row, self._counts)
+        self._nearest = self._scene.always_at(self._position, self._row, self._counts)
 
     def distance(self, configuration: Configuration) -> Clearance:
         """The least clearance at one configuration and where it is attained.
@@ -169,7 +169,7 @@ class Checker:
         positions, rows = np.tile(self._fixed, (len(given), 1)), _rows(len(given))
         positions[:, self._columns] = given
         with self._lock:
-            self._held.nearest_at(positions, rows, self._counts)
+            self._scene.nearest_at(positions, rows, self._counts)
             in_doubt = self._doubtful.at(positions)
         self._layout.to_world(positions, rows.pair, rows.points)
         undecided = np.zeros(len(positions), dtype=bool)
@@ -298,10 +298,10 @@ class AskedPositions:
         """
         notices = list(self._notices(given))
         self.require_not_suspect(notices)
-        told = [one.text for one in notices if one.severity is not Severity.SUSPECT]
-        if told and "limits" not in self._accept:
+        texts = [one.text for one in notices if one.severity is not Severity.SUSPECT]
+        if texts and "limits" not in self._accept:
             self._least, self._greatest = self._bounds(far=True)
-            warnings.warn(f"{told[0]}; further ones are not reported", stacklevel=4)
+            warnings.warn(f"{texts[0]}; further ones are not reported", stacklevel=4)
 
     def _notices(self, given: np.ndarray) -> Iterator[Notice]:
         """The notices of `check` on a trajectory with these rows as samples."""

@@ -26,7 +26,7 @@ from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import BodyIndex, Pair
 
 AT_ONCE = 1024
-"""Steps whose poses are looked at together."""
+"""Steps whose poses are checked together."""
 
 FEWER = "close the mesh, or accept: [inside] in the case if it is hollow"
 
@@ -36,7 +36,7 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
     found: dict[int, Notice] = {}
     for section in plan.sections:
         if section.other not in (None, section.phase):
-            continue  # what is apart at one time, and at all pairs of times, is inside at none
+            continue  # what is disjoint at one time, and at all pairs of times, is inside at none
         for place, notice in _of_section(section):
             found.setdefault(place, notice)
     return tuple(notice for _, notice in sorted(found.items()))
@@ -119,13 +119,13 @@ def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
 class DoubtfulPairs:
     """The pairs of a case that can be in doubt, asked about at any positions of all that moves.
 
-    A pair whose boxes do not overlap is in no doubt; only others are looked into. For one thread at a time.
+    A pair whose boxes do not overlap is in no doubt; only others are checked. For one thread at a time.
     """
 
     def __init__(self, case: Case, pairs: Sequence[Pair]) -> None:
         self._case, self._pairs, self._open = case, pairs, _open_pairs(case, pairs)
-        self._held = forest_of(case).links, self._open.boxes, self._open.pairs
-        self._written = Written(self._held[0], Links), Written(self._held[1], CarriedBoxes)
+        self._inputs = forest_of(case).links, self._open.boxes, self._open.pairs
+        self._written = Written(self._inputs[0], Links), Written(self._inputs[1], CarriedBoxes)
         self._for_one: tuple[np.ndarray, tuple[np.ndarray, np.ndarray], Callable] | None = None
 
     def at(self, positions: np.ndarray) -> Sequence[tuple[int, int]]:
@@ -144,18 +144,18 @@ class DoubtfulPairs:
     def _asked(
         self, positions: np.ndarray
     ) -> tuple[tuple[np.ndarray, np.ndarray], Callable[[], int]]:
-        """The arrays that a question fills, and the question; that of one position is kept for its array."""
+        """The arrays that a question fills, and the question; that of one position is cached for its array."""
         if self._for_one is not None and self._for_one[0] is positions:
             return self._for_one[1:]
-        room = self._room(len(positions))
-        ask = overlaps_at_positions.prepared(*self._written, self._held[2], positions, *room)
+        arrays = self._new_arrays(len(positions))
+        ask = overlaps_at_positions.prepared(*self._written, self._inputs[2], positions, *arrays)
         if len(positions) == 1:
-            self._for_one = positions, room, ask
-        return room, ask
+            self._for_one = positions, arrays, ask
+        return arrays, ask
 
-    def _room(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+    def _new_arrays(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Arrays for the poses of all links at n positions, and for a span of each pair."""
-        links, _, pairs = self._held
+        links, _, pairs = self._inputs
         poses = np.empty((n, len(links.parents), 4, 4))
         return poses, np.empty((len(pairs), 2), dtype=np.int64)
 

@@ -1,7 +1,7 @@
 """Measures a motion exactly, as far as is asked: every step, every pair, what is near, or the minimum.
 
 The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
-interrupted; how the steps are parted depends on their number alone, and so does every result. Rows are kept in
+interrupted; how the steps are parted depends on their number alone, and so does every result. Rows are stored in
 memory or on disk (`rows.resumable`). Not for: where the motion comes from (`world.motion`, `physics.bullet`).
 """
 
@@ -29,17 +29,17 @@ NEEDS = ("steps", "pairs", "limit", "minimum")
 """What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,
 with a lower bound for the others; the least of all steps only."""
 
-FIRST_LOOK = 0.5
-"""Of so many times the root of their number, steps are looked at first, evenly spread, where only the least of
+FIRST_SAMPLES = 0.5
+"""Of so many times the root of their number, steps are sampled first, evenly spread, where only the least of
 many is asked for."""
 
 FIRST_EFFORT = 256
-"""Node pairs of each search in that first look: any distance that occurs will do."""
+"""Node pairs of each search at these first samples: any distance that occurs will do."""
 
 Steps = np.ndarray | range
 """(k,) increasing step indices; a range is of all steps between two."""
 
-HELD = 128
+PARTS_IN_MEMORY = 128
 """Parts after which the memory of rows that are on disk is let go: 10 MB at most."""
 
 
@@ -61,7 +61,7 @@ class _Sweep:
 
     @property
     def quiet(self) -> _Sweep:
-        """The same without progress, for passes beside the one that is counted."""
+        """The same without progress, for passes other than the one that is counted."""
         return replace(self, resources=replace(self.resources, progress=None))
 
     @property
@@ -71,13 +71,13 @@ class _Sweep:
 
     def step_rows(
         self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
-    ) -> KeptRows:
+    ) -> StoredRows:
         """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
         rows = self._rows(name, len(steps))
         self._run(name, steps, SweepGoal(np.full(self.n_pairs, within), False, lasting), rows=rows)
         return rows
 
-    def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
+    def every_row(self, name: str, steps: Steps) -> tuple[StoredRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
         every = self._array(f"{name}.every", (len(steps), self.n_pairs))
@@ -88,8 +88,8 @@ class _Sweep:
         """The least of every pair by itself, within (p,) [m]."""
         return self._run(name, steps, SweepGoal(within, True, True))
 
-    def _rows(self, name: str, n_rows: int) -> KeptRows:
-        return KeptRows(
+    def _rows(self, name: str, n_rows: int) -> StoredRows:
+        return StoredRows(
             self._array(f"{name}.clearance", (n_rows,)),
             self._array(f"{name}.lower_bound", (n_rows,)),
             self._array(f"{name}.pair", (n_rows,), np.int64),
@@ -140,7 +140,7 @@ class _Sweep:
         steps: Steps,
         goal: SweepGoal,
         *,
-        rows: KeptRows | None = None,
+        rows: StoredRows | None = None,
         every: np.ndarray | None = None,
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
@@ -160,7 +160,7 @@ class _Sweep:
                 _take_lesser(least, found)
             tally += counts
             log.note(i_part, {**least._asdict(), "tally": tally}, last=i_part == len(spans))
-            if i_part % HELD == 0:
+            if i_part % PARTS_IN_MEMORY == 0:
                 self.resources.rows.let_go()
             if self.resources.progress:
                 self.resources.progress(done, len(steps))
@@ -168,8 +168,8 @@ class _Sweep:
         return least
 
 
-class KeptRows(NamedTuple):
-    """What is kept of `StepRows`: (n,) clearance [m], floor [m], pair, and (n, 2, 3) points [m]."""
+class StoredRows(NamedTuple):
+    """What is stored of `StepRows`: (n,) clearance [m], floor [m], pair, and (n, 2, 3) points [m]."""
 
     clearance: np.ndarray
     floor: np.ndarray
@@ -177,15 +177,15 @@ class KeptRows(NamedTuple):
     points: np.ndarray
 
 
-def _rows_of(rows: KeptRows | None, span: slice) -> StepRows:
-    """Room for the rows of a part: of those that are kept, and for what is not."""
+def _rows_of(rows: StoredRows | None, span: slice) -> StepRows:
+    """Arrays for the rows of a part: those that are stored, and new ones for the rest."""
     n_rows = span.stop - span.start
     faces = np.empty((n_rows, 2), dtype=np.int64)
     if rows is not None:
-        part = KeptRows(*(column[span] for column in rows))
+        part = StoredRows(*(column[span] for column in rows))
     else:
         numbers, pair = np.empty((2, n_rows)), np.empty(n_rows, dtype=np.int64)
-        part = KeptRows(numbers[0], numbers[1], pair, np.empty((n_rows, 2, 3)))
+        part = StoredRows(numbers[0], numbers[1], pair, np.empty((n_rows, 2, 3)))
     return StepRows(part.clearance, part.floor, part.pair, faces, part.points)
 
 
@@ -203,7 +203,7 @@ def measure(
 
     Args:
         need: one of `NEEDS`.
-        resources: threads, progress, and where the rows are kept.
+        resources: threads, progress, and where the rows are stored.
     """
     work = _Sweep(what, resources)
     if need == "pairs":
@@ -234,14 +234,14 @@ def nearest_at(what: PairsInMotion, positions: np.ndarray) -> StepRows:
 
 
 class NearestPairs(NamedTuple):
-    """The nearest pair of some steps (n,), -1 where none is known, and how far apart it is (n,) [m]."""
+    """The nearest pair of some steps (n,), -1 where none is known, and its distance (n,) [m]."""
 
     pairs: np.ndarray
     distances: np.ndarray
 
 
 def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
+    """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; what is separate is not measured."""
     rows, pairs, _ = pairs_within(what, steps, 0.0)
     return rows, pairs
 
@@ -249,9 +249,9 @@ def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray
 def pairs_within(
     what: PairsInMotion, steps: np.ndarray, within: float, nearest: NearestPairs | None = None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(k,) places in `steps` (n,), (k,) pairs within [m] there, in order, and (k,) how far apart they are [m].
+    """(k,) places in `steps` (n,), (k,) pairs within [m] there, in order, and (k,) their distances [m].
 
-    Nothing that is farther apart is measured.
+    Nothing that is farther is measured.
 
     Args:
         nearest: what is known of the steps, and is not measured again.
@@ -281,7 +281,7 @@ def _every_pair(work: _Sweep) -> MeasuredSteps:
 
 def _minimum(work: _Sweep) -> MeasuredSteps:
     within = np.inf
-    if len(parts(work.n_steps, sparse=True)) > 1:  # else a first look is part of the sweep
+    if len(parts(work.n_steps, sparse=True)) > 1:  # else a first sampling is part of the sweep
         few = work.aside.step_rows("first", _first_steps(work.n_steps), lasting=True)
         within = few.clearance.min() * NOT_LESS
     rows = work.step_rows("minimum", range(work.n_steps), within, lasting=True)
@@ -306,11 +306,11 @@ def _within_limit(work: _Sweep, limit: float) -> MeasuredSteps:
     return least
 
 
-def _pair_minima(work: _Sweep, rows: KeptRows, most: int | None) -> Minima:
-    """The least of each pair: a first look at few steps, then only what could be nearer.
+def _pair_minima(work: _Sweep, rows: StoredRows, most: int | None) -> Minima:
+    """The least of each pair: first at a few sampled steps, then only what could be nearer.
 
-    If only the nearest pairs are wanted, what is farther than as many of them is left out; and if as many have
-    been the nearest of a step, so is the first look.
+    If only the nearest pairs are wanted, what is farther than as many of them is dropped; and if as many have
+    been the nearest of a step, so are the first samples.
     """
     infinite = np.full(work.n_pairs, np.inf)
     seen = infinite if most is None else _least_as_nearest(work, rows)
@@ -323,7 +323,7 @@ def _pair_minima(work: _Sweep, rows: KeptRows, most: int | None) -> Minima:
     return work.aside.least_rows("nearest", range(work.n_steps), within)
 
 
-def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:
+def _least_as_nearest(work: _Sweep, rows: StoredRows) -> np.ndarray:
     """(p,) [m] the least clearance of each pair over the steps at which it is the nearest; infinite if none."""
     least = np.full(work.n_pairs, np.inf)
     for block in blocks(work.n_steps):
@@ -335,13 +335,13 @@ _NO_STEPS = np.empty(0, dtype=np.int64)
 
 
 def _first_steps(n_steps: int) -> np.ndarray:
-    last = min(n_steps, 2 + round(FIRST_LOOK * math.sqrt(n_steps))) - 1
+    last = min(n_steps, 2 + round(FIRST_SAMPLES * math.sqrt(n_steps))) - 1
     return np.arange(last + 1) * (n_steps - 1) // max(1, last)
 
 
 def _measurement(
     work: _Sweep,
-    rows: KeptRows,
+    rows: StoredRows,
     measure_pair_minima: Callable[[int | None], Minima] | None,
     every: np.ndarray | None = None,
 ) -> MeasuredSteps:
@@ -376,7 +376,7 @@ def _no_minima(n_pairs: int) -> Minima:
 
 
 def _no_pair_rows(n_pairs: int, n_minima: int, every: np.ndarray | None = None) -> PairRows:
-    """Room for what a part finds of each pair: at every step, if `every` is given, and its least, if asked for."""
+    """Arrays for what a part finds of each pair: every step, if `every` is given, and its least, if asked for."""
     return PairRows(np.empty((0, n_pairs)) if every is None else every, *_no_minima(n_minima))
 
 

@@ -1,6 +1,6 @@
 """Measures a motion by the first paper's algorithm as published: every pair at every step, no bounds.
 
-Kept beside `measure` so that a whole run can be held against it; its answers carry no guarantee.
+It is next to `measure` so that a whole run can be checked against it; its answers carry no guarantee.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 
 CHUNK = 64
-"""Steps whose poses are held at a time."""
+"""Steps whose poses are in memory at a time."""
 
 
 def measure_paper(

@@ -1,4 +1,4 @@
-"""A run as it was measured: the data of its record, beside what can measure more of it.
+"""A run as it was measured: the data of its record, with what can measure more of it.
 
 The classes here are those of the record with what measures; `plain` gives the data alone.
 """

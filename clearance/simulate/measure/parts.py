@@ -16,7 +16,7 @@ LONGEST_PART = 256
 """Rows of a part at most; short enough to show progress, long enough for bounds to be carried."""
 
 SPARSE = 4
-"""Times as long are parts of which many rows need not be looked at."""
+"""Times as long are parts of which many rows need no visit."""
 
 WAITING = 8
 """Parts a thread that are handed out ahead: so many results wait at most."""
@@ -62,7 +62,7 @@ def in_order(
 
 
 def _help(work: Callable[[slice], Result], ahead: deque[tuple[slice, Future[Result]]]) -> None:
-    """Does what no thread has begun, in this one, until the first result is there or nothing is left to begin.
+    """Does what no thread has begun, in this one, until the first result is there or nothing remains to begin.
 
     A thread that only waited for results would take the others' processor each time it woke.
     """

@@ -56,23 +56,23 @@ class Refinement:
         """
         counts = np.zeros(4, dtype=np.int64)
         for level in sorted({0.0, *levels}):
-            held = level - self.rounding if level > self.rounding else self.rounding
-            if ((bounds.lower < held) & (bounds.upper >= held)).any():
+            target = level - self.rounding if level > self.rounding else self.rounding
+            if ((bounds.lower < target) & (bounds.upper >= target)).any():
                 if not bounds.lower.flags.owndata:
                     bounds = IntervalBounds(*(np.array(column) for column in bounds))
-                counts += self._decide(bounds, held)
+                counts += self._decide(bounds, target)
         return bounds, counts
 
-    def _decide(self, bounds: IntervalBounds, held: float) -> np.ndarray:
-        """Proves again, into `bounds`, the intervals not proven to have a clearance of `held` [m]; counters."""
+    def _decide(self, bounds: IntervalBounds, target: float) -> np.ndarray:
+        """Proves again, into `bounds`, the intervals not proven to have a clearance of `target` [m]; counters."""
         counts, gap = np.zeros(4, dtype=np.int64), self.gap
         expected = np.zeros(len(bounds.lower) - 1)  # searches until an interval is decided
         while True:
-            aim = CertificateGoal(gap, held, MOST_PARTS)
+            aim = CertificateGoal(gap, target, MOST_PARTS)
             finer = max(gap * FINER, self.finest)
-            last = finer if held <= self.rounding else self.finest  # contact may still be seen
-            at_level = bounds.upper[:-1] - held <= (SEEN_AT_LEVEL + 1.0) * self.rounding
-            is_open = (bounds.lower[:-1] < held) & (bounds.upper[:-1] >= held)
+            last = finer if target <= self.rounding else self.finest  # contact may still be seen
+            at_level = bounds.upper[:-1] - target <= (SEEN_AT_LEVEL + 1.0) * self.rounding
+            is_open = (bounds.lower[:-1] < target) & (bounds.upper[:-1] >= target)
             is_open &= ~(at_level & (expected > MOST_EXPECTED))
             for step in np.flatnonzero(is_open).tolist():
                 if counts[1] > MOST_QUERIES:

@@ -17,7 +17,7 @@ class Resources:
     Attributes:
         jobs: threads; as many as the machine has to offer if None. The answer does not depend on it.
         progress: called with steps done and all steps.
-        rows: where they are kept; in memory by default. In `open_resumable_rows` memory does not grow with the
+        rows: where they are stored; in memory by default. In `open_resumable_rows` memory does not grow with the
             steps, and the same question asked again goes on where an interrupted run was.
         prefix: of the names of its rows.
 

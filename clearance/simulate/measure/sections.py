@@ -34,7 +34,7 @@ class Section:
         pairs: those of the section. places: (p,) of each in the pairs of the run.
         other: the phase that the second bodies are in, where their clock is not tied to that of the first; else
             None.
-        levels: [m] of clearance that are to be decided beside the limits, as a waiver's.
+        levels: [m] of clearance that are to be decided as well as the limits, as a waiver's.
     """
 
     number: int
@@ -97,7 +97,7 @@ class SectionPlan:
 
     Attributes:
         pairs: all that are measured at some time, each once.
-        sections: by phase, then rule, then padding. unmeasured: what is left out in some phase, each once.
+        sections: by phase, then rule, then padding. unmeasured: what is not measured in some phase, each once.
         empty: phases in which nothing is measured.
     """
 
@@ -116,7 +116,7 @@ def section_plan(timeline: Timeline) -> SectionPlan:
     """The sections of a case over time.
 
     Raises:
-        NothingToMeasure: no pair is left in any phase.
+        NothingToMeasure: no pair remains in any phase.
     """
     phases = timeline.phases
     selections = [selected_pairs(phase) for phase in phases]
@@ -150,7 +150,7 @@ def _add(
     clocks: tuple[int, int] | None = None,
 ) -> None:
     """Adds the sections of a selection whose pairs are tied, or are of two clocks that are not."""
-    if other is not None and _apart(phase, other) > phase.case.clock.slack:
+    if other is not None and _time_gap(phase, other) > phase.case.clock.slack:
         return
     for (rule, padding), alike in selection.alike.items():
         pairs = _of_clocks(phase.case, alike, clocks)
@@ -178,8 +178,8 @@ def _of_clocks(
     return tuple(pair for pair in pairs if clock_pair(case, pair.a, pair.b) == clocks)
 
 
-def _apart(phase: Phase, other: Phase) -> float:
-    """[s] How far apart the times of two phases are at least."""
+def _time_gap(phase: Phase, other: Phase) -> float:
+    """[s] The gap between the times of two phases; 0 where they overlap."""
     return max(phase.span[0] - other.span[1], other.span[0] - phase.span[1], 0.0)
 
 

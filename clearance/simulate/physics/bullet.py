@@ -2,7 +2,7 @@
 
 The robot's masses, joints, limits and efforts come from its URDF, its shapes from our own loader;
 gravity is on, every moving joint is position-controlled towards the trajectory, and each simulation
-step's state is kept. Not for: clearance (`measure`), which is taken from those states by our own
+step's state is stored. Not for: clearance (`measure`), computed from those states by our own
 kinematics.
 """
 
@@ -35,7 +35,7 @@ SUBSTEPS = 16
 """Solver steps inside each step: the engine integrates joint damping explicitly; at 240 Hz alone a
 Fetch's wrist (5 N m s/rad) diverges: tracking error 2.2 rad; 0.007 with 4, 0.005 with 16. They are
 our own loop: with the engine's `numSubSteps` a motor pushes 16 times as hard as it may."""
-SETTLE_TIME = 0.25  # [s] kept after the trajectory's end: the robot arrives late
+SETTLE_TIME = 0.25  # [s] recorded after the trajectory's end: the robot arrives late
 GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
 _UNLIMITED = 1e6  # [N] or [N m] where the URDF states no effort
 
@@ -55,8 +55,8 @@ def simulated_motion(
     another rate, the physics are those of the robot that is so fast; times are the trajectory's.
 
     Args:
-        placed: its trajectory is what is asked; joints it does not name are held at their fixed
-        value. obstacles: push back only if `contact_response`; then the links' shapes are taken as
+        placed: its trajectory is what is asked; joints it does not name stay at their fixed
+        value. obstacles: push back only if `contact_response`; then the links' shapes count as
         their convex
             hulls by the engine (obstacles stay as they are). The robot does not push itself.
         settle_time: [s] of the run.
@@ -86,7 +86,7 @@ def simulated_motion(
 
 
 def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
-    """The pose of every link as the engine's own kinematics sees it, to hold ours against.
+    """The pose of every link as the engine's own kinematics sees it, to check ours against.
 
     Args:
         positions: (n, k) [rad] or [m], columns as `placed.robot.moving_joints`.
@@ -289,7 +289,7 @@ def _silence() -> Iterator[None]:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     flush(None)
-    kept = os.dup(1), os.dup(2)
+    saved = os.dup(1), os.dup(2)
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)
         os.dup2(nowhere.fileno(), 2)
@@ -297,7 +297,7 @@ def _silence() -> Iterator[None]:
         yield
     finally:
         flush(None)
-        for copy, target in zip(kept, (1, 2), strict=True):
+        for copy, target in zip(saved, (1, 2), strict=True):
             os.dup2(copy, target)
             os.close(copy)
 

@@ -21,7 +21,7 @@ from clearance.world.timeline import Timeline, timeline_of
 
 
 def simulated_motions(case: Case) -> tuple[Motion, ...]:
-    """The motion of each robot at the times of its own table, its notes with what was left out.
+    """The motion of each robot at the times of its own table, its notes with what was ignored.
 
     Raises:
         BadInput: what pushes back does not stand, or a robot loops. And what `simulated_motion` raises.
@@ -33,7 +33,7 @@ def simulated_motions(case: Case) -> tuple[Motion, ...]:
     made = [_simulated(case, asked, i) for i in range(len(case.robots))]
     weights = _weights(asked)
     return tuple(
-        _told(motion, [*motion.notes, *weights[i]], several=len(made) > 1)
+        _with_notes(motion, [*motion.notes, *weights[i]], several=len(made) > 1)
         for i, motion in enumerate(made)
     )
 
@@ -143,12 +143,12 @@ def _loads(asked: Timeline) -> Iterator[tuple[int, str]]:
                 (below, phase.case.robots[i].robot.name) for below in robots_below(phase.case, i)
             )
         for i, obstacle in enumerate(phase.case.obstacles):
-            held = link_below(phase, i)
-            if held is not None:
-                yield held[0], obstacle.name
+            below_it = link_below(phase, i)
+            if below_it is not None:
+                yield below_it[0], obstacle.name
 
 
-def _told(motion: Motion, notes: list[str], *, several: bool) -> Motion:
+def _with_notes(motion: Motion, notes: list[str], *, several: bool) -> Motion:
     """The motion with notes; where there are several robots each says of which it is."""
     if several:
         of_this = f"simulated motion of {motion.placed.robot.name}"

@@ -37,7 +37,7 @@ class FramePlace:
 
     Attributes:
         step: the step or the one before. share: how much of the way to the next has passed, 0 to 1.
-        clearance: [m] what is told of it, or None.
+        clearance: [m] the one reported for it, or None.
         pair: the names of its two bodies, None where a bound decides.
         time_b: [s] when the second body is there, if its clock is another.
     """
@@ -164,7 +164,7 @@ def _is_seen(
     poses: np.ndarray,
     shown: np.ndarray,
 ) -> bool:
-    """True if what is told of a frame is so with all bodies where they are drawn."""
+    """True if what is reported of a frame is so with all bodies where they are drawn."""
     case = record.case
     pair = [i for name in frame.pair for i, body in enumerate(bodies) if body.name_in(case) == name]
     if len(pair) != 2 or frame.clearance is None or frame.time_b is not None:

@@ -27,7 +27,7 @@ BEYOND_REACH = 4.0 * REACH
 """[m] More than any margin, so that a worse status comes first."""
 
 FINE = 200
-"""Parts of a run; each has a frame, even if samples are farther apart in time."""
+"""Parts of a run; each has a frame, even if samples are farther from each other in time."""
 
 
 def curve_moments(run: MeasuredRun) -> list[Moment]:
@@ -35,8 +35,8 @@ def curve_moments(run: MeasuredRun) -> list[Moment]:
     record = run.record
     if record.certificate is None:
         return []
-    told = [one for one in (record.nearest, record.worst) if one.between]
-    found = [*_evenly(run), *_dips(run.rules), *told]  # of one moment the last counts
+    reported = [one for one in (record.nearest, record.worst) if one.between]
+    found = [*_evenly(run), *_dips(run.rules), *reported]  # of one moment the last counts
     each = {(one.step, one.share): one for one in found}
     return [each[key] for key in sorted(each)]
 

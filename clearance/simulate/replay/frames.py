@@ -25,10 +25,10 @@ from clearance.simulate.replay.bodies import FramePlace
 
 @dataclass(frozen=True, eq=False)
 class ReplayFrames:
-    """The kept steps and the moments between them, in order of time.
+    """The selected steps and the moments between them, in order of time.
 
     Attributes:
-        arrays: by name as in `Replay`. places: when each frame is, and between whom what is told of it.
+        arrays: by name as in `Replay`. places: when each frame is, and between whom its clearance is.
     """
 
     arrays: dict[str, np.ndarray]
@@ -36,33 +36,33 @@ class ReplayFrames:
 
     @staticmethod
     def of(
-        record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
+        record: Record, chosen: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
     ) -> ReplayFrames:
-        table = _rows_at(record, kept, rows)
+        table = _rows_at(record, chosen, rows)
         known = table["clearance"].is_valid().to_numpy()
-        after = np.searchsorted(kept, [moment.step for moment in moments], side="right")
+        after = np.searchsorted(chosen, [moment.step for moment in moments], side="right")
         shown = {moment.step for moment in moments}
-        own = RowStatus(record).of_samples(kept).astype(np.uint8)
-        is_shown = known & np.isin(kept, list(shown)) & between_of(table)
+        own = RowStatus(record).of_samples(chosen).astype(np.uint8)
+        is_shown = known & np.isin(chosen, list(shown)) & between_of(table)
         clearances = np.array([moment.clearance for moment in moments])
         ends = [(*moment.point_link, *moment.point_obstacle) for moment in moments]
         rule_names = [rule.name for rule in record.rules]
         joined: dict[str, tuple[np.ndarray, ArrayLike]] = {
-            "steps": (kept, [moment.step for moment in moments]),
+            "steps": (chosen, [moment.step for moment in moments]),
             "times": (
                 table["time"].to_numpy().astype(np.float64),
                 [moment.time for moment in moments],
             ),
             "times_b": (_times_b(table), [_or_nan(moment.time_b) for moment in moments]),
             "clearances": (least_of(table), clearances),
-            "between": (np.zeros(len(kept), dtype=np.uint8), 1),
+            "between": (np.zeros(len(chosen), dtype=np.uint8), 1),
             "known": (known.astype(np.uint8), 1),
             "status": (
                 np.where(is_shown, own, status_codes_of(table)),
                 codes_of_moments(record, list(moments)),
             ),
             "rule": (
-                rule_places(record)[kept].astype(np.int32),
+                rule_places(record)[chosen].astype(np.int32),
                 [rule_names.index(moment.rule) for moment in moments],
             ),
         }
@@ -70,16 +70,16 @@ class ReplayFrames:
         lines = _lines(record, table)
         arrays["lines"] = np.insert(lines, after, np.array(ends).reshape(-1, 6), axis=0)
         return ReplayFrames(
-            arrays, _places(record, kept, table, list(zip(after, moments, strict=True)))
+            arrays, _places(record, chosen, table, list(zip(after, moments, strict=True)))
         )
 
 
 def _places(
-    record: Record, kept: np.ndarray, table: pa.Table, moments: Sequence[tuple[int, Moment]]
+    record: Record, chosen: np.ndarray, table: pa.Table, moments: Sequence[tuple[int, Moment]]
 ) -> list[FramePlace]:
     names = zip(*(table[name].to_pylist() for name in record.sides[:2]), strict=True)
     clearances, times_b = table["clearance"].to_pylist(), _times_b(table)
-    rows = zip(kept.tolist(), clearances, names, times_b.tolist(), strict=True)
+    rows = zip(chosen.tolist(), clearances, names, times_b.tolist(), strict=True)
     places = [
         FramePlace(step, 0.0, clearance, pair, None if np.isnan(time_b) else time_b)
         for step, clearance, pair, time_b in rows
@@ -102,15 +102,15 @@ def _or_nan(value: float | None) -> float:
     return np.nan if value is None else value
 
 
-def _rows_at(record: Record, kept: np.ndarray, on_disk: MeasuredRows) -> pa.Table:
-    """The rows of some steps, block by block: taken at once, all rows would be put together first."""
-    taken = []
+def _rows_at(record: Record, chosen: np.ndarray, on_disk: MeasuredRows) -> pa.Table:
+    """The rows of some steps, block by block: at once, all rows would be put together first."""
+    tables = []
     for block in blocks(record.steps.num_rows):
-        here = kept[np.searchsorted(kept, block.start) : np.searchsorted(kept, block.stop)]
+        here = chosen[np.searchsorted(chosen, block.start) : np.searchsorted(chosen, block.stop)]
         rows = record.steps.slice(block.start, block.stop - block.start)
-        taken.append(rows.take(here - block.start))
+        tables.append(rows.take(here - block.start))
         on_disk.let_go()
-    return pa.concat_tables(taken).combine_chunks()
+    return pa.concat_tables(tables).combine_chunks()
 
 
 def least_of(steps: pa.Table) -> np.ndarray:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from clearance.query.contact import Contact
 
 MAX_FRAMES = 3000
-"""Most frames kept: at 20 links these are 1.7 MB of poses, and no screen is wider in pixels."""
+"""Most frames selected: at 20 links these are 1.7 MB of poses, and no screen is wider in pixels."""
 
 
 def replay_of(
@@ -45,11 +45,11 @@ def replay_of(
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
     the deepest contact, and where something changes hands, comes or goes; and moments between them:
-    where the motion is nearer, and on the way where steps are far apart."""
-    record, kept = run.record, kept_steps(run, max_frames)
+    where the motion is nearer, and on the way where steps are far from each other."""
+    record, steps = run.record, frame_steps(run, max_frames)
     moments = curve_moments(run)
-    contacts, regions = drawn_contacts(run, kept)
-    frames = ReplayFrames.of(record, kept, moments, rows)
+    contacts, regions = drawn_contacts(run, steps)
+    frames = ReplayFrames.of(record, steps, moments, rows)
     indices = bodies_of(record.case)
     drawn = placed_bodies(record, indices, frames.places)
     bodies, shapes = _drawn_bodies(record.case, indices)
@@ -69,7 +69,7 @@ def replay_of(
         carries=carries_of(record, indices),
         i_worst=_frame_of(record.worst, frames),
         nearest=_nearest(bodies, frames),
-        contacts=tuple(replace(one, frame=place_of[int(kept[one.frame])]) for one in contacts),
+        contacts=tuple(replace(one, frame=place_of[int(steps[one.frame])]) for one in contacts),
         regions=regions,
         **frames.arrays,
     )
@@ -101,7 +101,7 @@ def _nearest(bodies: Sequence[DrawnBody], frames: ReplayFrames) -> np.ndarray:
     return np.array(pairs, dtype=np.int32).reshape(-1, 2)
 
 
-def kept_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
+def frame_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
     """(frames,) int64 increasing step indices: all, or the choice that `replay_of` describes."""
     record = run.record
     clearances = _row_margins(record)
@@ -111,19 +111,19 @@ def kept_steps(run: MeasuredRun, max_frames: int) -> np.ndarray:
     pair_steps = [minimum.step for minimum in run.pair_minima()]
     deepest = [] if record.deepest is None else [record.deepest.step]
     turns = [phase.first for phase in record.timeline.phases[1:]][: max_frames // 4]
-    told = [moment.step for moment in (record.worst, record.nearest) if not moment.between]
-    kept = {0, n_steps - 1, record.worst_step, *pair_steps, *deepest, *turns, *told}
-    edges = np.linspace(0, n_steps, max(1, (max_frames - len(kept)) // 2) + 1).astype(np.int64)
+    reported = [moment.step for moment in (record.worst, record.nearest) if not moment.between]
+    selected = {0, n_steps - 1, record.worst_step, *pair_steps, *deepest, *turns, *reported}
+    edges = np.linspace(0, n_steps, max(1, (max_frames - len(selected)) // 2) + 1).astype(np.int64)
     starts = np.unique(edges[:-1])
     least = [
         a + int(np.argmin(clearances[a:b]))
         for a, b in zip(starts, [*starts[1:], n_steps], strict=True)
     ]
-    return np.array(sorted(kept.union(starts.tolist(), least)), dtype=np.int64)
+    return np.array(sorted(selected.union(starts.tolist(), least)), dtype=np.int64)
 
 
 def _row_margins(record: Record) -> np.ndarray:
-    """(n,) [m] what rows are kept by: the clearance, or with several rules how far it is above its fail limit."""
+    """(n,) [m] the clearance by which rows are selected, with several rules its excess over the fail limit."""
     least = least_of(record.steps)
     if len(record.rules) == 1:
         return least
@@ -156,16 +156,16 @@ MOST_TRIANGLES = 200_000
 
 
 def drawn_contacts(
-    run: MeasuredRun, kept: np.ndarray
+    run: MeasuredRun, steps: np.ndarray
 ) -> tuple[tuple[DrawnContact, ...], tuple[tuple[np.ndarray, np.ndarray], ...]]:
-    """The overlaps that the run works out of the steps `kept`, and the region of each: vertices (n, 3) float32,
+    """The overlaps that the run works out at `steps`, and the region of each: vertices (n, 3) float32,
     triangles (m, 3) int32.
 
     Beyond `MOST_CONTACTS` or `MOST_TRIANGLES`, every second, third, … contact; always the deepest.
     """
-    frames = {int(step): i for i, step in enumerate(kept)}
+    frames = {int(step): i for i, step in enumerate(steps)}
     rows = [row for row in run.record.worked_out if row.step in frames]
-    chosen = _thinned(run, rows)
+    chosen = _decimated(run, rows)
     return (
         tuple(_drawn(row, found, frames[row.step]) for row, found in chosen),
         tuple(
@@ -175,7 +175,7 @@ def drawn_contacts(
     )
 
 
-def _thinned(run: MeasuredRun, rows: Sequence[StepContact]) -> list[tuple[StepContact, Contact]]:
+def _decimated(run: MeasuredRun, rows: Sequence[StepContact]) -> list[tuple[StepContact, Contact]]:
     every, deepest = max(1, -(-len(rows) // MOST_CONTACTS)), run.record.deepest
     while True:
         chosen = [row for i, row in enumerate(rows) if i % every == 0 or _same(row, deepest)]
@@ -211,7 +211,7 @@ def _drawn(row: StepContact, found: Contact, frame: int) -> DrawnContact:
     )
 
 
-APART = 1e-6
+MOVED = 1e-6
 """[m] and, of unit quaternions, [-]: a body that was off by less is not drawn twice."""
 
 
@@ -227,7 +227,7 @@ def earlier_motion(earlier: Record, replay: Replay) -> list[EarlierBody]:
     return [
         EarlierBody(i, before, shown.astype(np.uint8))
         for i, (before, after, shown) in enumerate(zip(was, replay.poses, drawn.shown, strict=True))
-        if (np.abs(before - after) > APART).any()
+        if (np.abs(before - after) > MOVED).any()
     ]
 
 

@@ -301,7 +301,9 @@ def test_both_bounds_of_a_box_hold_at_every_position_in_it(seed, n_joints, size)
     points = np.stack([seen.point_a, seen.point_b])[None]
     bounds = JointBox.of(chain, shapes[a], shapes[b])
     motion = bounds.motion(half, frames)
-    apart = bounds.seen_apart(half, BoxDistances(np.array([seen.distance]), points, frames))
+    apart = bounds.first_order_separation(
+        half, BoxDistances(np.array([seen.distance]), points, frames)
+    )
     proven = max(seen.distance - motion.way[0], apart[0] - motion.rest[0]) - bounds.slack
     corners = rng.choice([-1.0, 1.0], (200, middle.shape[1]))
     inside = rng.uniform(-1.0, 1.0, (200, middle.shape[1]))

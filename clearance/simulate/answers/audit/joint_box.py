@@ -4,10 +4,10 @@ Two lower bounds, in the frame of the first link. No point of the second link mo
 
     sum over joints k of half_k arm_k,
 
-arm_k how far the link gets from the axis of joint k (Lipschitz bound). Where both links are seen apart along the
+arm_k how far the link gets from the axis of joint k (Lipschitz bound). Where both links are separate along the
 direction u of their nearest points, sliding past each other costs nothing in the first order: a point x of the
-second link keeps u.x - sum |half_k u.v_k(x)| - rest, with v_k the velocity by joint k. It is concave in x, so the
-corners of the link's hull decide; rest is of second order (source: `kernels.motion.joint_motion_bound`).
+second link stays beyond u.x - sum |half_k u.v_k(x)| - rest, with v_k the velocity by joint k. It is concave in x,
+so the corners of the link's hull decide; rest is of second order (source: `kernels.motion.joint_motion_bound`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ SLACK = 1e-9
 """Rounding of poses and bounds, relative to the sizes of bodies and chain: some hundred products of 2^-52."""
 
 MOST_CORNERS = 1024
-"""Of a hull of which all corners are looked at; of larger ones the corners of a box are."""
+"""Most corners of a hull that are all checked; a larger hull is replaced by the corners of its box."""
 
 
 class PositionBoxes(NamedTuple):
@@ -91,7 +91,7 @@ class JointBox:
     """Two links, the joints between them, and what the bounds need of their shapes.
 
     Attributes:
-        corners_a, corners_b: (n, 3) of polytopes that hold them. box_b: (8, 3) of one that holds the second.
+        corners_a, corners_b: (n, 3) of polytopes that contain them. box_b: (8, 3) of a box that contains b.
         slack: [m] what rounding can do to a bound.
     """
 
@@ -132,8 +132,8 @@ class JointBox:
             moved = moved + way
         return BoxMotion(share, rest)
 
-    def seen_apart(self, half: np.ndarray, seen: BoxDistances) -> np.ndarray:
-        """(n,) [m] how far apart both stay along their direction over boxes of half widths (n, k), less `rest`."""
+    def first_order_separation(self, half: np.ndarray, seen: BoxDistances) -> np.ndarray:
+        """(n,) [m] their least separation along `directions` over boxes of half widths (n, k), but for `rest`."""
         u = seen.directions
         corners = _moved(seen.frames[:, -1], self.corners_b)
         velocities = np.zeros((half.shape[1], *corners.shape[:2]))
@@ -146,9 +146,9 @@ class JointBox:
             else:
                 along = np.einsum("ni,ni->n", u, axes)[:, None]
             velocities[joint.column] += joint.factor * along
-        kept = np.einsum("nvi,ni->nv", corners, u)
-        kept -= np.einsum("knv,nk->nv", np.abs(velocities), half)
-        return kept.min(axis=1) - (u @ self.corners_a.T).max(axis=1)
+        lowest = np.einsum("nvi,ni->nv", corners, u)
+        lowest -= np.einsum("knv,nk->nv", np.abs(velocities), half)
+        return lowest.min(axis=1) - (u @ self.corners_a.T).max(axis=1)
 
     def slopes(self, seen: BoxDistances) -> np.ndarray:
         """(n, k) the derivatives of the distances by each free joint [m per rad or m]."""

@@ -1,8 +1,8 @@
 """Whether two links of one robot can ever meet within their joints' limits, by branch and bound.
 
-Poses all over the joints' ranges are looked at first, and the nearest followed downhill: most pairs that can
-meet are seen to. Of the others, a box of positions that no bound keeps apart is halved, across the joint that
-moves most, until all are proven apart, or one is so small that the links come within `GAP` there.
+Poses all over the joints' ranges are checked first, and the nearest followed downhill: most pairs that can
+meet are seen to. Of the others, a box of positions that no bound proves disjoint is halved, across the joint that
+moves most, until all are proven disjoint, or one is so small that the links come within `GAP` there.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ GAP = 1e-4
 """[m] Links that come nearer than this without being seen to meet may stay undecided."""
 
 ENOUGH = 0.5 * GAP
-"""[m] A box is done with where the links stay this far apart."""
+"""[m] A box is proven where the links keep this separation."""
 
 SHARE = 0.25
-"""Of the least distance seen: so much is proven of a pair that stays apart, as far as the boxes reach."""
+"""Of the least distance seen: so much is proven of a pair that stays disjoint, as far as the boxes reach."""
 
 MOST_BOXES = 400_000
 """Of one pair; what is then open stays undecided, and is said to be."""
 
 AT_ONCE = 512
-"""Boxes that are looked at together."""
+"""Boxes that are visited together."""
 
 N_SAMPLES = 512
-"""Poses that are looked at first."""
+"""Poses that are checked first."""
 
 N_STARTS = 8
 """Of the nearest of them, from which the search goes downhill."""
@@ -50,8 +50,8 @@ MOST_STEPS = 40
 def audit_pair(robot: Robot, link_a: str, link_b: str, most_boxes: int = MOST_BOXES) -> PairFinding:
     """Whether two links with geometry can meet, at any positions of the joints between them.
 
-    Joints that follow others are where these take them, all within their limits. Joints without limits are looked
-    at over a turn.
+    Joints that follow others are where these take them, all within their limits. Joints without limits are
+    checked over a turn.
     """
     search = _Search(robot, link_a, link_b)
     status, lower_bound, why = search.answer(most_boxes)
@@ -78,10 +78,10 @@ class _Search:
         """What is known of the pair, [m] a proven lower bound, and why it is undecided."""
         ranges, why = _ranges(self.chain)
         if why:
-            self._look(np.zeros((1, len(ranges))))
+            self._measure(np.zeros((1, len(ranges))))
             return PairStatus.UNDECIDED, 0.0, why
         whole = PositionBoxes(ranges.mean(axis=1)[None], 0.5 * np.ptp(ranges, axis=1)[None])
-        self._look_around(whole)
+        self._measure_samples(whole)
         lower_bound, why = self._proven(whole, most_boxes) if self.least > 0.0 else (0.0, "")
         if self.least <= 0.0:
             return PairStatus.MEETS, 0.0, ""
@@ -91,7 +91,7 @@ class _Search:
             return PairStatus.UNDECIDED, 0.0, why
         return PairStatus.APART, float(min(lower_bound, self.least)), ""
 
-    def _look(self, positions: np.ndarray) -> BoxDistances:
+    def _measure(self, positions: np.ndarray) -> BoxDistances:
         """Measures the pair at n positions (n, k)."""
         frames = self.chain.frames(positions)
         found = self._query.distances(None, frames[:, -1])
@@ -101,10 +101,10 @@ class _Search:
             self.least, self.nearest_at = float(found.distances[i]), positions[i].copy()
         return BoxDistances(found.distances, found.points, frames)
 
-    def _look_around(self, whole: PositionBoxes) -> None:
-        """Looks at poses all over the box, and goes downhill from the nearest."""
+    def _measure_samples(self, whole: PositionBoxes) -> None:
+        """Measures poses all over the box, and goes downhill from the nearest."""
         positions = _spread(whole, N_SAMPLES if self.chain.masters else 1)
-        distances = self._look(positions).distances
+        distances = self._measure(positions).distances
         for i in np.argsort(distances, kind="stable")[:N_STARTS]:
             if self.least > 0.0:
                 self._go_downhill(positions[i], whole)
@@ -112,7 +112,7 @@ class _Search:
     def _go_downhill(self, at: np.ndarray, whole: PositionBoxes) -> None:
         """Follows the slope of the distance from one pose, within the box, as long as it falls."""
         low, high = whole.middle[0] - whole.half[0], whole.middle[0] + whole.half[0]
-        seen, step = self._look(at[None]), 1.0
+        seen, step = self._measure(at[None]), 1.0
         for _ in range(MOST_STEPS):
             distance = seen.distances[0]
             if distance <= 0.0 or step < 1e-3:
@@ -122,7 +122,7 @@ class _Search:
             if not slope.any():
                 return
             there = np.clip(at - step * 1.5 * distance / (slope @ slope) * slope, low, high)
-            seen_there = self._look(there[None])
+            seen_there = self._measure(there[None])
             if seen_there.distances[0] < distance:
                 at, seen, step = there, seen_there, min(1.0, 2.0 * step)
             else:
@@ -152,19 +152,21 @@ class _Search:
     def _bounds(self, boxes: PositionBoxes) -> tuple[np.ndarray, BoxMotion]:
         """(n,) [m] lower bounds on the distance over each box, and how far the second link moves there."""
         self.n_boxes += len(boxes.middle)
-        seen = self._look(boxes.middle)
+        seen = self._measure(boxes.middle)
         motion = self._box.motion(boxes.half, seen.frames)
         bounds = seen.distances - motion.way - self._box.slack
         wanted = max(ENOUGH, SHARE * self.least)
         maybe = np.flatnonzero((bounds <= wanted) & (seen.distances > motion.rest))
         if len(maybe):
-            apart = self._box.seen_apart(boxes.half[maybe], seen.of(maybe))
-            bounds[maybe] = np.maximum(bounds[maybe], apart - motion.rest[maybe] - self._box.slack)
+            separation = self._box.first_order_separation(boxes.half[maybe], seen.of(maybe))
+            bounds[maybe] = np.maximum(
+                bounds[maybe], separation - motion.rest[maybe] - self._box.slack
+            )
         return bounds, motion
 
 
 def _ranges(chain: KinematicChain) -> tuple[np.ndarray, str]:
-    """(k, 2) from where to where each free joint is looked at, and why that is not known."""
+    """(k, 2) from where to where each free joint is checked, and why that is not known."""
     ranges = chain.ranges.copy()
     for column, joint in enumerate(chain.masters):
         low, high = ranges[column]

@@ -1,4 +1,4 @@
-"""All excused pairs of a robot held against its geometry, and a proposal of which to excuse."""
+"""All excused pairs of a robot checked against its geometry, and a proposal of which to excuse."""
 
 from __future__ import annotations
 

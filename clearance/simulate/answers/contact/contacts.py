@@ -1,7 +1,7 @@
-"""Looks closer at the steps in contact: which pairs overlap, how deep, in which region.
+"""Overlaps at the steps in contact: which pairs overlap, how deep, in which region.
 
 Called when the clearance of every step is known and some of them are 0; a run without contact does not even
-load this room. Work is counted in triangles, not in seconds: the same input gives the same bytes on any machine.
+load this module. Work is counted in triangles, not in seconds: the same input gives the same bytes on any machine.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def overlap_finder(
     """What finds the overlap of every pair in contact, step by step and pair by pair.
 
     Args:
-        clearance: (n,) [m] of every step; those at 0 are looked at.
+        clearance: (n,) [m] of every step; those at 0 are checked.
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
         work_out: as in `contacts_of`.
     """
@@ -122,12 +122,12 @@ class _OverlapFinder:
     work_out: str
     _known: dict[tuple[int, bytes], Contact] = field(default_factory=dict)
     _made: dict[int, BodyPair | str] = field(default_factory=dict)
-    _told: dict[str, None] = field(default_factory=dict)
+    _notes: dict[str, None] = field(default_factory=dict)
 
     def touching(self) -> tuple[np.ndarray, np.ndarray]:
         """(n,) steps and (n,) pairs in contact, steps first; the nearest pair of a step is one for sure.
 
-        Clouds of points are left out: what of a ball is in a body says nothing of the thing that was scanned.
+        Clouds of points are excluded: what of a ball is in a body says nothing of the thing that was scanned.
         """
         rows, pairs = pairs_in_contact(
             PairsInMotion(self.case, self.motions, self.pairs), self.steps
@@ -135,8 +135,8 @@ class _OverlapFinder:
         sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
         both = np.union1d(rows * len(self.pairs) + pairs, sure)
         rows, pairs = np.divmod(both, len(self.pairs))
-        kept = ~np.array([pair.has_cloud(self.case) for pair in self.pairs])[pairs]
-        return self.steps[rows[kept]], pairs[kept]
+        is_solid = ~np.array([pair.has_cloud(self.case) for pair in self.pairs])[pairs]
+        return self.steps[rows[is_solid]], pairs[is_solid]
 
     def chosen(
         self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
@@ -159,7 +159,7 @@ class _OverlapFinder:
 
     def notes(self) -> tuple[str, ...]:
         """What stands for the bodies that were in contact, where it is not they themselves."""
-        return tuple(self._told)
+        return tuple(self._notes)
 
     def contact(self, step: int, i_pair: int) -> Contact:
         """The overlap of a pair that is in contact at a step, in the world frame."""
@@ -231,7 +231,7 @@ class _OverlapFinder:
         a, b = self._shapes(i_pair)
         b_from_a = self._poses(i_pair, np.array([step]))[0]
         near = distance(a, b, pose_a=b_from_a)
-        self._tell(i_pair, why)
+        self._note(i_pair, why)
         bounded = bounded_contact(a, b, b_from_a, near.point_b, why)
         return bounded.placed(self._world_from_b(i_pair, step))
 
@@ -256,15 +256,15 @@ class _OverlapFinder:
             try:
                 parts.append(convex_parts(body, rough=self.work_out != "every"))
             except ClearanceError as error:
-                self._told[f"contact: {name}: no depth from below, {error.problem}"] = None
+                self._notes[f"contact: {name}: no depth from below, {error.problem}"] = None
                 return f"{name}: {error.problem}"
             if parts[-1].note:
-                self._told[f"contact: {name}: {parts[-1].note}"] = None
+                self._notes[f"contact: {name}: {parts[-1].note}"] = None
         return BodyPair(*bodies, parts[0], parts[1])
 
-    def _tell(self, i_pair: int, why: str) -> None:
+    def _note(self, i_pair: int, why: str) -> None:
         links, obstacles = self._names
-        self._told[f"contact: {links[i_pair]} - {obstacles[i_pair]}: {why}"] = None
+        self._notes[f"contact: {links[i_pair]} - {obstacles[i_pair]}: {why}"] = None
 
     def _budget(self, i_pair: int) -> ContactWork:
         return ContactWork(sum(body.n_triangles for body in self._shapes(i_pair)))
@@ -302,10 +302,10 @@ ROW = 300_000
 """An overlap, its bodies however small: 20 ms, most of it calls."""
 
 RATED = 15_000
-"""A look at how deep a step may be: 1 ms."""
+"""Rating how deep a step may be: 1 ms."""
 
-LOOKS = 18
-"""Such looks at an event at most."""
+RATINGS = 18
+"""Most ratings of an event."""
 
 PER_TRIANGLE = 12
 """Times that each triangle of both bodies is gone through in an overlap: a solid made of them takes as much."""
@@ -313,11 +313,11 @@ PER_TRIANGLE = 12
 
 @dataclass(eq=False)
 class ContactWork:
-    """What is left for a pair of so many triangles in all."""
+    """Remaining work for a pair of so many triangles in all."""
 
     n_triangles: int
-    left: int = field(default_factory=lambda: WORK)
-    left_for_deeper: int = field(default_factory=lambda: WORK // 2)
+    remaining: int = field(default_factory=lambda: WORK)
+    remaining_for_deeper: int = field(default_factory=lambda: WORK // 2)
 
     @property
     def why(self) -> str:
@@ -326,17 +326,17 @@ class ContactWork:
 
     def take_event(self, n_steps: int) -> bool:
         """True if the deepest moment of one more event of so many steps may be worked out; it is counted then."""
-        looks = min(n_steps, LOOKS) if n_steps > 1 else 0
-        work = ROW + PER_TRIANGLE * self.n_triangles + looks * (RATED + self.n_triangles)
-        if work > self.left:
+        n_rated = min(n_steps, RATINGS) if n_steps > 1 else 0
+        work = ROW + PER_TRIANGLE * self.n_triangles + n_rated * (RATED + self.n_triangles)
+        if work > self.remaining:
             return False
-        self.left -= work
+        self.remaining -= work
         return True
 
     def take_deeper(self) -> bool:
         """True if one more overlap may be worked out to find a deeper one; it is counted then, by itself."""
         work = ROW + PER_TRIANGLE * self.n_triangles
-        if work > self.left_for_deeper:
+        if work > self.remaining_for_deeper:
             return False
-        self.left_for_deeper -= work
+        self.remaining_for_deeper -= work
         return True

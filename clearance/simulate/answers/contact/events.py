@@ -40,8 +40,8 @@ def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[ContactEvent]:
         steps, pairs: (n,) of each row, steps first.
     """
     order = np.lexsort((steps, pairs))
-    apart = (np.diff(pairs[order]) != 0) | (np.diff(steps[order]) != 1)
-    for rows in np.split(order, np.flatnonzero(apart) + 1):
+    begins = (np.diff(pairs[order]) != 0) | (np.diff(steps[order]) != 1)
+    for rows in np.split(order, np.flatnonzero(begins) + 1):
         if len(rows):
             yield ContactEvent(int(pairs[rows[0]]), rows)
 

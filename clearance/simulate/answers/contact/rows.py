@@ -14,7 +14,7 @@ from clearance.query.contact import Contact
 from clearance.record.contact import FIGURES, OVERLAP, ContactRows, KnownOverlaps, StepContact
 
 MOST_REGIONS = 2000
-"""Regions of a part that are kept; one takes some 2 to 10 kB."""
+"""Regions of a part that are cached; one takes some 2 to 10 kB."""
 
 
 class ContactFinder(Protocol):
@@ -97,7 +97,7 @@ class FoundContacts:
     parts: Sequence[ContactPart]
 
     def overlap(self, row: StepContact) -> Contact:
-        """All of an overlap, with its region; worked out now where it is not kept."""
+        """All of an overlap, with its region; worked out now where it is not cached."""
         if row.known is not None and row.has_region:
             return row.known
         pair = self.rows.names.index((row.link, row.obstacle))
@@ -123,7 +123,7 @@ def joined_contacts(
     is_first = np.append(True, changes)[: len(order)]
     row_of = np.empty(len(order), dtype=np.int64)
     row_of[order] = np.cumsum(is_first) - 1
-    kept = order[is_first]
+    first_rows = order[is_first]
     starts = np.cumsum([0, *(len(part.steps) for part in parts)])
     worked = np.concatenate([one.worked + start for one, start in zip(parts, starts, strict=False)])
     places = np.full(len(order), -1)
@@ -132,9 +132,9 @@ def joined_contacts(
     rows = ContactRows(
         names,
         times,
-        steps[kept],
-        pairs[kept],
-        places[kept],
+        steps[first_rows],
+        pairs[first_rows],
+        places[first_rows],
         np.column_stack([row_of[worked], places[worked]])[by_part],
         _joined_overlaps([part.known for part in parts]),
         any(part.finder.work_out != "none" for part in parts),

@@ -1,4 +1,4 @@
-"""What a robot's links and what it has in hand pass through, as convex pieces that hold all of it.
+"""What a robot's links and what it has in hand pass through, as convex pieces that contain all of it.
 
 A piece is the hull of one convex part of a body at the samples of a stretch of a run, made wider by what a point
 can leave its chord between two samples. Not for: distance between the samples (`certify`), which
@@ -57,7 +57,7 @@ class SweptPiece:
 
     @cached_property
     def body(self) -> Polytope:
-        """The convex body that holds the part throughout: the hull, wider by a cube."""
+        """The convex body that contains the part throughout: the hull, wider by a cube."""
         corners = _corners_of_hull(self.points)
         cube = (self.leaves + ROUNDING) * np.array(list(product((-1.0, 1.0), repeat=3)))
         return Polytope((corners[:, None] + cube[None]).reshape(-1, 3))
@@ -66,7 +66,7 @@ class SweptPiece:
 def swept_pieces(
     timeline: Timeline, i_robot: int, within: float, cut_links: Collection[str] = ()
 ) -> list[SweptPiece]:
-    """Pieces that together hold every measured link of a robot, and what it has in hand, at every moment.
+    """Pieces that together contain every measured link of a robot, and what it has in hand, at every moment.
 
     Args:
         within: [m] a stretch ends before a point of the body can leave the chord over it by more.
@@ -103,8 +103,8 @@ def _held_bodies(phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
             link = forest.robot_starts[i_robot] + placed.robot.link_names.index(body.name)
             yield _HeldBody(body.name, body.shape, link)
     for i, obstacle in enumerate(phase.case.obstacles):
-        held = holding_link(phase, i)
-        if held is not None and held[0] == i_robot:
+        holder = holding_link(phase, i)
+        if holder is not None and holder[0] == i_robot:
             shape = obstacle.body.shape
             if isinstance(shape, PointCloud):
                 shape = shape.box_about()
@@ -142,7 +142,7 @@ def _corners_of_hull(points: np.ndarray) -> np.ndarray:
 
 
 def _parts(shape: Polyhedron, cut: bool) -> list[np.ndarray]:
-    """The corners (k, 3) [m] of convex bodies that hold a shape."""
+    """The corners (k, 3) [m] of convex bodies that contain a shape."""
     if cut:
         return [part.vertices for part in convex_parts(shape).outer]
     return [Polytope(shape.vertices[np.unique(shape.face_vertices)]).vertices]

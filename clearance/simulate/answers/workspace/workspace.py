@@ -46,7 +46,7 @@ def shared_workspace(
             frame); two robots on one spot; no two robots of which neither stands on the other.
         BadDimension: `within` is no length. Unavailable: manifold3d is missing.
 
-    Exactness: an upper bound: the pieces hold the links at every moment, and between the samples.
+    Exactness: an upper bound: the pieces contain the links at every moment, and between the samples.
     """
     if not 0.0 < within < np.inf:
         raise BadDimension(f"within is {within!r} m", valid="a length above 0")
@@ -59,7 +59,7 @@ def shared_workspace(
     _require_one_cell(cases)
     _require_different_places(robots)
     carried = [(a, b) for a in robots for b in robots if a.stands_on(b)]
-    pairs = _pairs_apart(robots, carried)
+    pairs = _independent_pairs(robots, carried)
     swept = [swept_pieces(one.timeline, one.i_robot, within) for one in robots]
     meeting, links = _meeting(robots, swept, pairs)
     if cut_concave and links:  # only what meets as hulls
@@ -81,7 +81,7 @@ def shared_workspace(
     )
 
 
-def _pairs_apart(
+def _independent_pairs(
     robots: Sequence[RobotInCell], carried: Sequence[tuple[RobotInCell, RobotInCell]]
 ) -> list[tuple[int, int]]:
     """The pairs of robots of which neither stands on the other."""
@@ -130,18 +130,20 @@ def _meeting(
 ) -> tuple[list[list[SweptPiece]], tuple[SharedLinks, ...]]:
     """Of each robot the pieces that overlap a piece of another, and the pairs of links they are of."""
     names = [robot.name for robot in robots]
-    kept: list[set[int]] = [set() for _ in swept]
+    selected: list[set[int]] = [set() for _ in swept]
     links: dict[SharedLinks, None] = {}
     for a, b in pairs:
         for i, j in _boxes_that_meet(swept[a], swept[b]):
             shared = SharedLinks(names[a], swept[a][i].link, names[b], swept[b][j].link)
-            if i in kept[a] and j in kept[b] and shared in links:
+            if i in selected[a] and j in selected[b] and shared in links:
                 continue
             if common_point([swept[a][i].body, swept[b][j].body]).relation == "overlap":
-                kept[a].add(i)
-                kept[b].add(j)
+                selected[a].add(i)
+                selected[b].add(j)
                 links[shared] = None
-    chosen = [[rows[i] for i in sorted(keep)] for rows, keep in zip(swept, kept, strict=True)]
+    chosen = [
+        [rows[i] for i in sorted(places)] for rows, places in zip(swept, selected, strict=True)
+    ]
     order = {
         (n, p.link): i for n, rows in zip(names, swept, strict=True) for i, p in enumerate(rows)
     }
@@ -153,8 +155,8 @@ def _boxes_that_meet(a: list[SweptPiece], b: list[SweptPiece]) -> list[tuple[int
     if not a or not b:
         return []
     one, two = np.array([piece.box for piece in a]), np.array([piece.box for piece in b])
-    apart = (one[:, None, 0] > two[None, :, 1]) | (two[None, :, 0] > one[:, None, 1])
-    return [(int(i), int(j)) for i, j in np.argwhere(~apart.any(axis=2))]
+    disjoint = (one[:, None, 0] > two[None, :, 1]) | (two[None, :, 0] > one[:, None, 1])
+    return [(int(i), int(j)) for i, j in np.argwhere(~disjoint.any(axis=2))]
 
 
 def _shared_region(solids: Sequence[list[Any]], pairs: Sequence[tuple[int, int]]) -> ClosedMesh:

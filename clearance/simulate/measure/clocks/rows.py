@@ -82,7 +82,7 @@ def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> Proven
 
 
 def _widest(intervals: UnsynchronisedIntervals, gap: float) -> float:
-    """[m] How far apart the bounds of an interval were allowed to stay."""
+    """[m] The gap that the bounds of an interval were allowed."""
     known = np.isfinite(intervals.upper_bound)
-    apart = intervals.upper_bound[known] - intervals.lower_bound[known]
-    return max(gap, float(apart.max(initial=0.0)))
+    gaps = intervals.upper_bound[known] - intervals.lower_bound[known]
+    return max(gap, float(gaps.max(initial=0.0)))

@@ -58,7 +58,7 @@ MOST_RECTANGLES = 2**22
 """Rectangles of one interval after which its gap is widened: about a minute. A step of an arm takes tens."""
 
 TIME_ROUNDING = 2.0**-48
-"""Rounding of a time in an interval, relative to the greatest time and the slack: a few operations, with room."""
+"""Rounding of a time in an interval, relative to the greatest time and the slack: some operations, with margin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +102,7 @@ class UnsynchronisedAnswers:
 
     Attributes:
         slack: [s]. gap: [m] how far lower bounds may be below the upper bounds.
-        steps, intervals: of the first clock; no intervals where only the steps were looked at.
+        steps, intervals: of the first clock; no intervals where only the steps were checked.
         tally: counters by name, of the steps and of the intervals.
         moment_of: the moment of an interval at which its upper bound was seen.
     """
@@ -129,7 +129,7 @@ def least_unsynchronised(
     """The least distances of pairs of two clocks.
 
     Args:
-        gap: [m] the lower bounds are within it of a distance that occurs; None to look at the steps only.
+        gap: [m] the lower bounds are within it of a distance that occurs; None to check the steps only.
 
     Raises:
         BadTime: a slack that is no time. BadInput: pairs that are not of two clocks.
