@@ -1,8 +1,8 @@
 """What is hot stays hot: a warm question makes as many calls of Python as the table beside this file says.
 
 Calls are those of functions of the package, and those that it makes of numpy; a clock says something else on each
-machine. Comprehensions are left out, which Python calls up to 3.11 only. A commit that changes the calls on purpose
-writes the table anew: `python -m tests.simulate.measure.test_counted_calls`.
+machine. Comprehensions are left out, which Python calls up to 3.11 only. A commit that changes the calls
+on purpose writes the table anew: `python -m tests.simulate.measure.test_counted_calls`.
 """
 
 from __future__ import annotations
