@@ -147,7 +147,7 @@ class PointLocator:
         return float(point_triangle_distances(point, self.near(point)).min())
 
     def near(self, point: np.ndarray) -> np.ndarray:
-        """(k, 3, 3) the triangles of which one is nearest, by the spheres round them."""
+        """(k, 3, 3) the triangles that may be nearest, by the spheres round them."""
         to_centres = np.linalg.norm(self._centres - point, axis=1)
         near = to_centres - self._radii <= (to_centres + self._radii).min() * (1 + 1e-12)
         return self._corners[near]

@@ -26,6 +26,7 @@ from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
 from clearance.programs.following import Follower
 from clearance.programs.inverse import joints_at
 from clearance.programs.path_samples import PathSamples
+from clearance.programs.series import half_skew
 from clearance.programs.tool_path import Stretch
 from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
@@ -289,14 +290,8 @@ MORE = 1.0 + 1e-6
 def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """(n,) [rad] between rotations (n, 3, 3)."""
     between = np.swapaxes(a, 1, 2) @ b
-    twice = np.stack(
-        [
-            between[:, (k + 2) % 3, (k + 1) % 3] - between[:, (k + 1) % 3, (k + 2) % 3]
-            for k in range(3)
-        ]
-    )
-    cosines = np.trace(between, axis1=1, axis2=2) - 1.0
-    return np.arctan2(np.linalg.norm(twice, axis=0), cosines)
+    cosines = 0.5 * (np.trace(between, axis1=1, axis2=2) - 1.0)
+    return np.arctan2(np.linalg.norm(half_skew(between), axis=1), cosines)
 
 
 def _rates(links: Links, poses: np.ndarray, above: _Above, k: int) -> np.ndarray:

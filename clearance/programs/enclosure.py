@@ -22,6 +22,7 @@ from clearance.programs.arm import Arm
 from clearance.programs.series import (
     ORDER,
     greatest,
+    half_skew,
     majorant_of_turns,
     majorant_product,
     matrix_product,
@@ -107,7 +108,7 @@ def enclosed(
     turn, origin = arm.series(joints)
     path_turn, path_origin = stretch.series(*_shifted(strokes, spread))
     between = matrix_product(np.swapaxes(path_turn, 2, 3), turn)
-    off = np.concatenate([origin - path_origin, _sines(between)], axis=2)
+    off = np.concatenate([origin - path_origin, half_skew(between)], axis=2)
     _, rates = arm.poses_and_rates(joints[0])
     inverse, is_regular = _inverses(rates, path_turn[0], free)
     longest = arm.longest(np.concatenate([given.before, given.after])) + _slid(arm, joints)
@@ -116,7 +117,7 @@ def enclosed(
     error = greatest((inverse @ off[..., None])[..., 0])
     error += (np.abs(inverse) @ unknown[..., None])[..., 0]
     sizes = np.linalg.norm(inverse.reshape(*inverse.shape[:2], 2, 3), axis=3).transpose(2, 0, 1)
-    off_middle = 1.1 * greatest(_sines(between)).sum(axis=1)
+    off_middle = 1.1 * greatest(half_skew(between)).sum(axis=1)
     by_spread, turned = _of_spread(stretch, spread, inverse, sizes[1], path_turn[0], off_middle)
     within = np.abs(joints[1:]).sum(axis=0)
     varied = np.einsum("nkc,ncji->nkji", inverse, arm.second_rates(joints[0], path_turn[0]))
@@ -179,15 +180,6 @@ def _strokes(given: Intervals, half: np.ndarray) -> np.ndarray:
     found[1] = half * (rate + change * half)
     found[2] = 0.5 * change * half**2
     return found
-
-
-def _sines(between: np.ndarray) -> np.ndarray:
-    """(…, 3) half the skew part of rotations (…, 3, 3)."""
-    pairs = [
-        between[..., (k + 2) % 3, (k + 1) % 3] - between[..., (k + 1) % 3, (k + 2) % 3]
-        for k in range(3)
-    ]
-    return 0.5 * np.stack(pairs, axis=-1)
 
 
 def _inverses(

@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.programs.arm import Arm
+from clearance.programs.series import half_skew
 
 REACHED = 1e-12
 """[m] and [rad]: a pose that is this near is reached, where rounding allows."""
@@ -51,10 +52,7 @@ def joints_at(arm: Arm, wanted: np.ndarray, start: np.ndarray, free: np.ndarray)
 def off_pose(wanted: np.ndarray, poses: np.ndarray) -> np.ndarray:
     """(n, 6) what brings poses (n, 4, 4) to those that are wanted: a way [m] and a turn, sine times axis."""
     turned = wanted[:, :3, :3] @ np.swapaxes(poses[:, :3, :3], 1, 2)
-    sines = [
-        turned[:, (k + 2) % 3, (k + 1) % 3] - turned[:, (k + 1) % 3, (k + 2) % 3] for k in range(3)
-    ]
-    return np.hstack([wanted[:, :3, 3] - poses[:, :3, 3], 0.5 * np.stack(sines, axis=1)])
+    return np.hstack([wanted[:, :3, 3] - poses[:, :3, 3], half_skew(turned)])
 
 
 def least_motion(rates: np.ndarray, aims: np.ndarray) -> np.ndarray:

@@ -36,9 +36,7 @@ SHORTEST = 1e-9
 def trapezoid(rate: float, change: float, first: float = 0.0, last: float = 0.0) -> list[Piece]:
     """The quickest pieces from share 0 to 1 with a greatest rate [1/s] and a greatest change of rate [1/s^2].
 
-    Where the path is too short for it, the rates `first` and `last` at its ends [1/s] are not more than can be
-    reached
-    or stopped from: the caller sees to that (`reachable`).
+    The path is long enough to change between the rates `first` and `last` at its ends [1/s]; callers check that.
     """
     peak = min(rate, np.sqrt(change + 0.5 * (first**2 + last**2)))
     speeding, slowing = max(peak - first, 0.0) / change, max(peak - last, 0.0) / change
@@ -51,8 +49,3 @@ def trapezoid(rate: float, change: float, first: float = 0.0, last: float = 0.0)
             pieces.append(Piece(duration, share, now, by))
             share, now = share + duration * (now + 0.5 * by * duration), now + by * duration
     return pieces
-
-
-def reachable(rate: float, change: float, other: float) -> float:
-    """[1/s] The greatest rate at one end of a path, up to `rate`, that changes to `other` within it."""
-    return float(min(rate, np.sqrt(other**2 + 2.0 * change)))

@@ -20,6 +20,7 @@ from clearance.errors import BadInput
 from clearance.geometry.quaternions import quaternions_of
 from clearance.programs.series import (
     ORDER,
+    half_skew,
     majorant_of_turns,
     matrix_product,
     moved,
@@ -116,14 +117,7 @@ class Stretch:
         series[0], series[1] = strokes, by_time
         turn, origin = self.series(series)
         spin = turn[1] @ np.swapaxes(turn[0], 1, 2)
-        turning = 0.5 * np.stack(
-            [
-                spin[:, (k + 2) % 3, (k + 1) % 3] - spin[:, (k + 1) % 3, (k + 2) % 3]
-                for k in range(3)
-            ],
-            axis=1,
-        )
-        return np.hstack([origin[1], turning])
+        return np.hstack([origin[1], half_skew(spin)])
 
     def series(
         self, strokes: np.ndarray, turn_strokes: np.ndarray | None = None

@@ -96,7 +96,7 @@ class _Numbers:
     timing: dict[_Key, float] = field(default_factory=dict)
 
     def take(self, given: Tolerance) -> None:
-        """Lets the rows of a block take the place of what they are of."""
+        """Replaces the errors that the rows of a block name."""
         self._take_of_robots(given)
         if given.obstacles:
             with at("obstacles"):
