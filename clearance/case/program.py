@@ -131,7 +131,7 @@ def _move(move: schema.Move, frames: _Frames, number: int, where: str) -> Move:
         to = move.ptp.to
         pose = None if to is None else frames.pose(to)
         name = _name("PTP", number, to)
-        return JointMove(name, f"{where}.ptp", move.ptp.joints, pose, move.ptp.speed)
+        return JointMove(name, f"{where}.ptp", move.ptp.joints, pose, move.ptp.speed, move.ptp.zone)
     key = "lin" if move.circ is None else "circ"
     path = move.circ or move.lin
     assert path is not None
@@ -147,7 +147,7 @@ def _move(move: schema.Move, frames: _Frames, number: int, where: str) -> Move:
         speed=path.speed,
         acceleration=path.acceleration,
         turn_speed=path.turn_speed,
-        zone=move.lin.zone if move.lin is not None else 0.0,
+        zone=path.zone,
         hold=dict(path.hold),
     )
 

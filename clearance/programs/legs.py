@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
 from clearance.programs.arm import Arm
-from clearance.programs.moves import JointMove, Move, PathMove, Program
+from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
 from clearance.programs.time_law import Piece, trapezoid
 from clearance.programs.tool_path import Stretch, arc, line
 
@@ -128,8 +128,6 @@ def _stretch(start: np.ndarray, move: PathMove) -> Stretch:
         end[:3, :3] = start[:3, :3]
     if move.via is None:
         return line(start, end)
-    if move.zone:
-        raise BadInput("a corner zone after an arc", where="zone", valid="no zone, or a line")
     return arc(start, move.via, end, move.along)
 
 
@@ -137,17 +135,16 @@ def _radii(moves: Sequence[Move], stretches: Sequence[Stretch | None]) -> list[f
     """[m] The radius of the corner zone at the end of each move: 0 where it stops there."""
     found = []
     for i, (move, own) in enumerate(zip(moves, stretches, strict=True)):
-        radius = move.zone if isinstance(move, PathMove) else 0.0
+        radius = 0.0 if isinstance(move, Wait) else move.zone
         if radius:
             other = stretches[i + 1] if i + 1 < len(moves) else None
-            if other is None or other.arc is not None:
+            if other is None or other.arc is not None or own is None or own.arc is not None:
                 with at(move.where):
                     raise BadInput(
-                        "a corner zone without a line after it",
+                        "a corner zone that is not between two lines",
                         where="zone",
-                        valid="0, or a lin move next",
+                        valid="0, or a lin move before and after it",
                     )
-            assert own is not None
             if min(own.length, other.length) < SHORTEST:
                 with at(move.where):
                     raise BadInput(

@@ -18,7 +18,7 @@ class JointMove:
         name: what the report calls it. where: in which file and field.
         joints: targets by name [rad or m]; None where `pose` is given. pose: (4, 4) of the tool [m].
         speed: share of the joints' greatest speeds. acceleration: [1/s^2] of the share of the way; None for the
-            default.
+            default. zone: [m] radius of the corner zone at its end.
     """
 
     name: str
@@ -26,6 +26,7 @@ class JointMove:
     joints: dict[str, float] | None = None
     pose: np.ndarray | None = None
     speed: float = 1.0
+    zone: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -160,7 +160,24 @@ FAULTS = {
     ),
     "a zone at the end": (
         [{"lin": {"to": {"frame": "base", "xyz": "end"}, "zone": 0.01}}],
-        "without a line after it",
+        "that is not between two lines",
+    ),
+    "a zone after a joint move": (
+        [{"ptp": {"joints": START, "zone": 0.01}}, {"lin": {"to": place(np.array([1, 0, 1]))}}],
+        "that is not between two lines",
+    ),
+    "a zone after an arc": (
+        [
+            {
+                "circ": {
+                    "via": {"frame": "base", "xyz": [1.0, 0.0, 1.0]},
+                    "to": {"frame": "base", "xyz": "end"},
+                    "zone": 0.01,
+                }
+            },
+            {"lin": {"to": place(np.array([1, 0, 1]))}},
+        ],
+        "that is not between two lines",
     ),
     "an unknown frame": (
         [{"lin": {"to": {"frame": "tabel", "xyz": "end"}}}],

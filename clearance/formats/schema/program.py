@@ -19,6 +19,8 @@ WORLD, BASE = "world", "base"
 """Frames that every program has: the world's, and the robot's root link."""
 
 Above0 = Annotated[float, Field(ge=1e-6, le=1e6)]
+Zone = Annotated[float, Field(ge=0)]
+"""[m] The radius of the corner at a move's end."""
 
 
 class Tool(Pose):
@@ -56,12 +58,13 @@ class Target(Pose):
 
 class JointMove(StrictModel):
     """`ptp`: all joints go straight to their targets, begin together and end together; `speed` is a share of their
-    greatest.
+    greatest, and `zone` the radius of the corner at its end [m].
     """
 
     joints: dict[Name, float] | None = None
     to: Target | None = None
     speed: Annotated[float, Field(gt=0, le=1)] = 1.0
+    zone: Zone = 0.0
 
     @model_validator(mode="after")
     def _one_target(self) -> JointMove:
@@ -77,20 +80,19 @@ class JointMove(StrictModel):
 
 class PathMove(StrictModel):
     """What `lin` and `circ` share: speed of the tool's point [m/s], its acceleration [m/s^2], speed of a turn
-    [rad/s], and joints that go straight to values meanwhile.
+    [rad/s], radius of the corner at its end [m], and joints that go straight to values meanwhile.
     """
 
     to: Target
     speed: Above0 = 0.25
     acceleration: Above0 = 1.0
     turn_speed: Above0 = 1.0
+    zone: Zone = 0.0
     hold: dict[Name, float] = {}
 
 
 class LinearMove(PathMove):
-    """`lin`: the tool's point goes along a straight line; `zone` is the radius of the corner at its end [m]."""
-
-    zone: Annotated[float, Field(ge=0)] = 0.0
+    """`lin`: the tool's point goes along a straight line."""
 
 
 class ArcMove(PathMove):
