@@ -183,7 +183,8 @@ def certified_text(certified: dict) -> str:
         "linear": "linearly",
         "cubic": "on cubics through the given velocities",
         "quintic": "on quintics through the given velocities and accelerations",
-        "program": "so that the tool keeps to the lines, arcs and corner zones of its program",
+        "program": "so that the tool keeps to the lines and arcs of its program",
+        "program with zones": "so that the tool keeps to the lines, arcs and corner zones of its program",
     }[certified["joints"]]
     if certified["is_pose"]:
         return least_proven(certified)

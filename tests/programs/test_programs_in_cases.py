@@ -9,6 +9,8 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.record.wording import certified_text
+from clearance.report.topics.certainty import certified_of
 from clearance.report.topics.pairs import PairJudge
 from clearance.simulate.measure.sections import section_plan
 from clearance.world.motion import kinematic_motion
@@ -122,7 +124,10 @@ def test_a_corner_zone_takes_what_its_triangle_takes(tmp_path):
     for zone in (0.0, 0.01):
         moves = [{"lin": {"to": place(corner), "zone": zone}}, {"lin": {"to": place(end)}}]
         path = case(tmp_path, moves, [ball(at)])
-        least.append(cl.check(path).record.worst.clearance)
+        record = cl.check(path).record
+        told = certified_text(certified_of(record, record.certificate))
+        assert ("corner zones" in told) == (zone > 0.0)
+        least.append(record.worst.clearance)
     assert least[0] - 0.02 < least[1] <= least[0] + 1e-6
 
 

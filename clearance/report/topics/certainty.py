@@ -57,8 +57,11 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     cubic = any(motion.velocities is not None for motion in record.motions)
     asked = [motion.placed.trajectory for motion in record.motions if motion.velocities is not None]
     is_program = any(one is not None and one.moves for one in asked)
+    has_zones = any(one is not None and one.corners for one in asked)
     return {
-        "joints": "program"
+        "joints": "program with zones"
+        if has_zones
+        else "program"
         if is_program
         else "quintic"
         if record.timeline.path_error
