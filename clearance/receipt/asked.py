@@ -1,6 +1,6 @@
 """The options of a run beside its case's files, written to a receipt and read back to run the case again.
 
-Whoever wrote the receipt chose these options. So `told_beside` names each one that changes how the case is
+Whoever wrote the receipt chose these options. So `changed_options` names each one that changes how the case is
 judged. Not for: answering (`run`).
 """
 
@@ -19,23 +19,23 @@ from clearance.world.case import Case
 OF_THE_CASE = ("levels", "accept", "unproven_ok")
 """Fields of a case that a command line can change."""
 
-NOT_TOLD = ("case", "inside")
+NOT_RECORDED = ("case", "inside")
 
 
 def asked_of(question: Question) -> dict[str, Any]:
     """The options of a run, as plain data for JSON."""
     case = question.case
     options = {one.name: getattr(question, one.name) for one in fields(question)}
-    told = {name: value for name, value in options.items() if name not in NOT_TOLD}
-    told["today"] = None if question.today is None else question.today.isoformat()
+    recorded = {name: value for name, value in options.items() if name not in NOT_RECORDED}
+    recorded["today"] = None if question.today is None else question.today.isoformat()
     levels = [case.limits.fail, case.limits.warn]
-    return told | dict(
+    return recorded | dict(
         zip(OF_THE_CASE, (levels, list(case.accept), _unproven_ok(case)), strict=True)
     )
 
 
 def question_of(case: Case, asked: dict[str, Any]) -> Question:
-    """The question of a case that `asked_of` has told.
+    """The question of a case that `asked_of` has written.
 
     Raises:
         BadInput: it is no such data, or asks for a run without receipts.
@@ -72,16 +72,16 @@ def refuse_uncovered(question: Question) -> None:
     require_covered(question.case)
 
 
-def told_beside(case: Case, question: Question, files: tuple[str, ...]) -> tuple[str, ...]:
+def changed_options(case: Case, question: Question, files: tuple[str, ...]) -> tuple[str, ...]:
     """The options that change the verdict beside the case's own files, in words.
 
     Args:
-        case: as its file has it. files: that were given beside it.
+        case: as its file has it. files: that were given besides.
     """
-    return tuple(_beside(case, question, files))
+    return tuple(_changed_options(case, question, files))
 
 
-def _beside(case: Case, question: Question, files: tuple[str, ...]) -> Iterator[str]:
+def _changed_options(case: Case, question: Question, files: tuple[str, ...]) -> Iterator[str]:
     own, limits = case.limits, question.case.limits
     for level in ("fail", "warn"):
         here, there = getattr(limits, level), getattr(own, level)

@@ -58,8 +58,8 @@ class CaseData:
     def digest(self) -> str:
         """sha256 of all numbers and names."""
         digest = hashlib.sha256()
-        told = (self.name, self.rules, [shape.name for shape in self.shapes])
-        digest.update(repr(told).encode())
+        identity = (self.name, self.rules, [shape.name for shape in self.shapes])
+        digest.update(repr(identity).encode())
         for array in _arrays(self):
             digest.update(repr((array.shape, array.dtype.str)).encode())
             digest.update(np.ascontiguousarray(array).tobytes())
@@ -79,10 +79,10 @@ def case_data(case: Case) -> CaseData:
     stretches: list[Stretch] = []
     phases: list[Phase] = []
     pairs: set[Pair] = set()
-    left_out: dict[Omission, None] = {}
+    omitted: dict[Omission, None] = {}
     for phase in timeline.phases:
         selection = selected_pairs(phase)
-        left_out |= dict.fromkeys(selection.unmeasured)
+        omitted |= dict.fromkeys(selection.unmeasured)
         pairs |= set(selection.pairs)
         if selection.pairs:
             rows = np.array([(number[a], number[b]) for a, b in selection.pairs])
@@ -105,7 +105,7 @@ def case_data(case: Case) -> CaseData:
         timeline.times,
         tuple(stretches),
         len(pairs),
-        tuple(left_out),
+        tuple(omitted),
     )
 
 

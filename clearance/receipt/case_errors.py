@@ -70,8 +70,8 @@ def errors_of(case: Case, bodies: Sequence[BodyIndex]) -> Errors:
         joint,
         np.array([place.xyz for place in places]),
         np.array([place.angle for place in places]),
-        _held(rows),
-        _held(_standing(case, forest, bodies)),
+        _mount_frames(rows),
+        _mount_frames(_standing(case, forest, bodies)),
     )
 
 
@@ -146,14 +146,14 @@ def _standing(case: Case, forest: Forest, bodies: Sequence[BodyIndex]) -> Iterat
             yield from _hands(case, i, obstacle, np.eye(4))
 
 
-def _held(rows: Iterable[Row]) -> MountFrames:
-    kept = [row for row in rows if row.size != EXACT]
+def _mount_frames(rows: Iterable[Row]) -> MountFrames:
+    inexact = [row for row in rows if row.size != EXACT]
     return MountFrames(
-        np.array([row.which for row in kept], dtype=np.int64),
-        np.array([row.origin for row in kept], dtype=np.float64).reshape(-1, 3),
-        np.array([row.size.xyz for row in kept]),
-        np.array([row.size.angle for row in kept]),
-        np.array([row.axis for row in kept], dtype=np.float64).reshape(-1, 3),
+        np.array([row.which for row in inexact], dtype=np.int64),
+        np.array([row.origin for row in inexact], dtype=np.float64).reshape(-1, 3),
+        np.array([row.size.xyz for row in inexact]),
+        np.array([row.size.angle for row in inexact]),
+        np.array([row.axis for row in inexact], dtype=np.float64).reshape(-1, 3),
     )
 
 

@@ -34,12 +34,12 @@ def sampled(data: CaseData) -> np.ndarray:
 
 def with_samples_only(claims: np.ndarray, data: CaseData) -> np.ndarray:
     """The claims of the sampled intervals, and of each rule that of its least."""
-    kept = np.broadcast_to(sampled(data), claims.shape).copy()
+    chosen = np.broadcast_to(sampled(data), claims.shape).copy()
     for rule, row in enumerate(claims):
         claimed = np.flatnonzero(row != NOT_CLAIMED)
         if len(claimed):
-            kept[rule, claimed[np.argmin(row[claimed])]] = True
-    return np.where(kept, claims, NOT_CLAIMED)
+            chosen[rule, claimed[np.argmin(row[claimed])]] = True
+    return np.where(chosen, claims, NOT_CLAIMED)
 
 
 def missing(claims: np.ndarray, data: CaseData, kind: str) -> Iterator[tuple[str, int]]:

@@ -28,7 +28,7 @@ from clearance.receipt.proof.items import (
     first_items,
 )
 from clearance.receipt.proof.motion_data import UNIT
-from clearance.receipt.proof.proving import SIZES, holds_all, one_inside
+from clearance.receipt.proof.proving import SIZES, all_proven, one_inside
 from clearance.receipt.proof.separation import LONG, directions
 from clearance.receipt.proof.stage import Stage, by_balls, by_directions
 
@@ -147,13 +147,13 @@ def _deeds(
     rest = found.try_hints(rest)
     found.u[:, rest], slack = nearest_directions(stage, items.of(rest), found.u[:, rest])
     found.try_all_along(rest[slack > 0.0])
-    left = found.deeds[rest] == CUT_TIME
-    rest, slack = rest[left], slack[left]
+    to_cut = found.deeds[rest] == CUT_TIME
+    rest, slack = rest[to_cut], slack[to_cut]
     if len(rest):
         found.deeds[rest] = _cuts(stage, items.of(rest), slack)
         if claims.lowest is not None:
             found.lower(rest, claims)
-    stage.note_apart(items.of(np.flatnonzero(found.deeds < CUT_TIME)))
+    stage.note_separate(items.of(np.flatnonzero(found.deeds < CUT_TIME)))
     codes = {most: found.codes[found.deeds == deed] for deed, most in SIZES}
     return found.deeds, codes, found.u
 
@@ -169,9 +169,9 @@ class _Deeds:
     def try_balls(self, rows: np.ndarray) -> np.ndarray:
         """Proves what it can of some items, as `holds`; returns the others."""
         own = self.items.of(rows)
-        held = holds_all(own, by_balls(self.stage, own))
-        self.deeds[rows[held]] = BALLS
-        return rows[~held]
+        proven = all_proven(own, by_balls(self.stage, own))
+        self.deeds[rows[proven]] = BALLS
+        return rows[~proven]
 
     def try_along(self, rows: np.ndarray, deed: int) -> np.ndarray:
         """The same along `u`, by directions of a size."""
@@ -179,39 +179,39 @@ class _Deeds:
             return rows
         own, most = self.items.of(rows), dict(SIZES)[deed]
         coded = codes_of(self.u[:, rows], most)
-        held = holds_all(own, by_directions(self.stage, own, directions(coded, most)))
-        self.deeds[rows[held]], self.codes[rows[held]] = deed, coded[held]
-        return rows[~held]
+        proven = all_proven(own, by_directions(self.stage, own, directions(coded, most)))
+        self.deeds[rows[proven]], self.codes[rows[proven]] = deed, coded[proven]
+        return rows[~proven]
 
     def try_all_along(self, rows: np.ndarray) -> None:
         """The same by the shortest directions that do."""
-        rows = rows[_may_hold(self.stage, self.items.of(rows), self.u[:, rows])]
+        rows = rows[_may_prove(self.stage, self.items.of(rows), self.u[:, rows])]
         self.try_along(rows, LONG_DIRECTION)
-        held = rows[self.deeds[rows] == LONG_DIRECTION]
-        self.try_along(self.try_along(held, BYTE_DIRECTION), SHORT_DIRECTION)
+        proven = rows[self.deeds[rows] == LONG_DIRECTION]
+        self.try_along(self.try_along(proven, BYTE_DIRECTION), SHORT_DIRECTION)
 
     def try_hints(self, rows: np.ndarray) -> np.ndarray:
         """The same along what is in `u` from what they were cut out of."""
-        may = _may_hold(self.stage, self.items.of(rows), self.u[:, rows])
+        may = _may_prove(self.stage, self.items.of(rows), self.u[:, rows])
         return np.sort(np.concatenate([rows[~may], self.try_along(rows[may], BYTE_DIRECTION)]))
 
     def lower(self, rows: np.ndarray, claims: LowerableClaims) -> None:
         """Lowers the claims of those items that would be cut in time once more after many times."""
-        held, coded = _lowered(
+        proven, coded = _lowered(
             self.stage, self.items.of(rows), self.u[:, rows], self.deeds[rows], claims
         )
-        self.deeds[rows[held]], self.codes[rows[held]] = LONG_DIRECTION, coded
+        self.deeds[rows[proven]], self.codes[rows[proven]] = LONG_DIRECTION, coded
 
 
-def _may_hold(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
+def _may_prove(stage: Stage, items: Items, u: np.ndarray) -> np.ndarray:
     """(k,) False for items that are not proven along u (3, k) at both ends or in the middle of their time."""
-    held = np.ones(len(items.pair), dtype=bool)
+    proven = np.ones(len(items.pair), dtype=bool)
     for place in (items.span // 2, np.zeros_like(items.span), items.span - 1):
-        many = np.flatnonzero(held & (items.span > MANY))
+        many = np.flatnonzero(proven & (items.span > MANY))
         some = items.of(many)
         one = some._replace(start=some.start + place[many], span=np.ones_like(some.span))
-        held[many] = by_directions(stage, one, u[:, many]) >= 0.0
-    return held
+        proven[many] = by_directions(stage, one, u[:, many]) >= 0.0
+    return proven
 
 
 def _lowered(
@@ -236,9 +236,9 @@ def _lowered(
         pairs = stage.stretch.rules == rule
         claim = claims.claims[rule, stage.stretch.first + step]
         stage.wanted[pairs, step] = claim * UNIT + stage.stretch.padding[pairs]
-    held = np.zeros(len(deep), dtype=bool)
-    held[may] = by_directions(stage, own.of(may), along[:, may]) >= 0.0
-    return deep[held], coded[held]
+    proven = np.zeros(len(deep), dtype=bool)
+    proven[may] = by_directions(stage, own.of(may), along[:, may]) >= 0.0
+    return deep[proven], coded[proven]
 
 
 def _cuts(stage: Stage, items: Items, slack: np.ndarray) -> np.ndarray:
@@ -258,7 +258,7 @@ def _cuts(stage: Stage, items: Items, slack: np.ndarray) -> np.ndarray:
     if len(stuck):
         row = int(stuck[0])
         raise BadInput(
-            f"no receipt: {_pair_text(stage, int(items.pair[row]))} cannot be proven apart in interval "
+            f"no receipt: {_pair_text(stage, int(items.pair[row]))} cannot be proven separate in interval "
             f"{stage.stretch.first + int(items.start[row])}"
         )
     return np.where(in_time, CUT_TIME, np.where(lengths[0] >= lengths[1], CUT_A, CUT_B))

@@ -42,14 +42,14 @@ def nearest_directions(
     first = np.repeat([[1.0], [0.0], [0.0]], n, axis=1) if first is None else first
     found, slack = np.zeros((3, n)), np.zeros(n)
     for rows, at, a, b in stage.middles(items):
-        found[:, rows], apart = _directions(stage, at, a, b, first[:, rows])
+        found[:, rows], gap = _directions(stage, at, a, b, first[:, rows])
         own = items.of(rows)
         wanted = stage.wanted[own.pair, own.start + own.span // 2]
         lost = sum(at.rest[s.place] + stage.halves.radius[s.body] for s in (a, b))
         if at.terms is not None:
             u, back = found[:, rows], -found[:, rows]
-            apart = apart - (_by_errors(stage, at, a, u) + _by_errors(stage, at, b, back))
-        slack[rows] = apart - wanted - np.where(own.span > 1, 0.0, lost)
+            gap = gap - (_by_errors(stage, at, a, u) + _by_errors(stage, at, b, back))
+        slack[rows] = gap - wanted - np.where(own.span > 1, 0.0, lost)
     return found, slack
 
 
@@ -74,10 +74,10 @@ def _directions(
         unit = w / np.where(length > 0.0, length, 1.0)
         own_a, own_b = (Sides(*(column[active] for column in side)) for side in (a, b))
         tip = _support(stage, at, own_a, own_b, unit)
-        apart = dot(tip, unit)
-        better = apart > best[active]
-        best[active[better]], u[:, active[better]] = apart[better], unit[:, better]
-        going = np.flatnonzero((length > 0.0) & (apart < (1.0 - NEAR) * length))
+        gap = dot(tip, unit)
+        better = gap > best[active]
+        best[active[better]], u[:, active[better]] = gap[better], unit[:, better]
+        going = np.flatnonzero((length > 0.0) & (gap < (1.0 - NEAR) * length))
         points, w = nearest_in(points[:, :, going], tip[:, going])
         nearer = dot(w, w) < length[going] ** 2
         active, points, w = active[going[nearer]], points[:, :, nearer], w[:, nearer]
@@ -153,5 +153,5 @@ def _holds_origin(edges: np.ndarray, tip: np.ndarray, squares: list[np.ndarray])
     volume = dot(a, normals[0])
     shares = [-dot(tip, normal) / volume for normal in normals]
     flat = volume * volume <= FLAT * squares[0] * squares[1] * squares[2]
-    held = (shares[0] >= 0.0) & (shares[1] >= 0.0) & (shares[2] >= 0.0)
-    return held & (shares[0] + shares[1] + shares[2] <= 1.0) & ~flat
+    inside = (shares[0] >= 0.0) & (shares[1] >= 0.0) & (shares[2] >= 0.0)
+    return inside & (shares[0] + shares[1] + shares[2] <= 1.0) & ~flat

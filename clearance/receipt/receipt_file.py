@@ -99,9 +99,9 @@ def receipt_of(content: bytes) -> Receipt:
     """
     if not content.startswith(MAGIC):
         if content.startswith(FORMAT):
-            told = content[:40].partition(b"\n")[0].decode("ascii", "replace")
+            first_line = content[:40].partition(b"\n")[0].decode("ascii", "replace")
             raise BadSyntax(
-                f"another version of clearance wrote it: {shown(told)!r:.60}",
+                f"another version of clearance wrote it: {shown(first_line)!r:.60}",
                 valid="that version, or the receipt of a run of this one",
             )
         raise BadSyntax("this is no receipt of this format", valid=REMEDY)

@@ -24,10 +24,10 @@ PAGE = "report.html"
 ABSENT = "not in the folder"
 
 MOST_TOLD, MOST_LETTERS = 3, 80
-"""Differences between two programs, or files, that are told, and letters of each."""
+"""Differences between two programs, or files, that are named, and letters of each."""
 
 SHOWN = 48
-"""Letters of a line that differs which are told."""
+"""Letters of a line that differs, as shown."""
 
 
 def maker() -> dict[str, str]:
@@ -38,11 +38,11 @@ def maker() -> dict[str, str]:
 
 def other_maker(receipt: Receipt) -> str:
     """How the programs and machine that made the report differ from these; empty if they do not."""
-    told, own = receipt.head["maker"], maker()
+    recorded, own = receipt.head["maker"], maker()
     others = [
-        f"{name} {told.get(name, 'unknown')}, here {own.get(name, 'unknown')}"
-        for name in [*own, *sorted({*told} - {*own})]
-        if told.get(name) != own.get(name)
+        f"{name} {recorded.get(name, 'unknown')}, here {own.get(name, 'unknown')}"
+        for name in [*own, *sorted({*recorded} - {*own})]
+        if recorded.get(name) != own.get(name)
     ]
     return listed(others)
 
@@ -65,9 +65,9 @@ def differences(run: Run, place: Path) -> dict[str, str]:
             for name in reversed(CONTENT)
         }
     return {
-        name: ABSENT if told is None else _first_difference(told, own)
-        for name, (told, own) in pairs.items()
-        if told != own
+        name: ABSENT if recorded is None else _first_difference(recorded, own)
+        for name, (recorded, own) in pairs.items()
+        if recorded != own
     }
 
 
@@ -76,11 +76,11 @@ def strangers(place: Path) -> list[str]:
     return sorted({path.name for path in place.iterdir()} - {*CONTENT, FILE_NAME})
 
 
-def _first_difference(told: bytes, own: bytes | None) -> str:
+def _first_difference(recorded: bytes, own: bytes | None) -> str:
     if own is None:
         return "the fresh run has no such file"
-    if b"\0" not in told:
-        rows = zip_longest(told.split(b"\n"), own.split(b"\n"), fillvalue=b"")
+    if b"\0" not in recorded:
+        rows = zip_longest(recorded.split(b"\n"), own.split(b"\n"), fillvalue=b"")
         for number, (there, here) in enumerate(rows, 1):
             if there != here:
                 return f"line {number} is {_part(there, here)}, not {_part(here, there)}"

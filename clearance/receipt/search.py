@@ -77,7 +77,7 @@ class EvidenceSearch:
         """About how many proofs there will be: where many are to be expected, some are followed to their end.
 
         Args:
-            progress: told in thousandths of the time of all pairs.
+            progress: called in thousandths of the time of all pairs.
 
         Raises:
             TooManyProofs: far more than so many. BadInput: it cannot be proven so.
@@ -86,7 +86,7 @@ class EvidenceSearch:
         shares = _Shares([front.stage.stretch for front in self._fronts], progress)
         for front in self._fronts:
             while front.n_open and front.n_open < WIDE:
-                shares.tell(front.advance(self._claims))
+                shares.add(front.advance(self._claims))
             total += front.found.n_items + self._ahead_of(front, most - total)
             if total > most:
                 raise too_many(total, most_items)
@@ -109,7 +109,7 @@ class EvidenceSearch:
         """All that is to be said, in the order in which it will be asked for.
 
         Args:
-            progress: told in thousandths of the proofs that are foreseen.
+            progress: called in thousandths of the proofs that are foreseen.
 
         Raises:
             TooManyProofs: not in so many. BadInput: it cannot be proven so.
@@ -138,7 +138,7 @@ class _Shares:
         self._total = float(sum(len(one.pairs) * one.n_intervals for one in stretches))
         self._done, self._progress = 0.0, progress
 
-    def tell(self, proven: Items) -> None:
+    def add(self, proven: Items) -> None:
         """Adds some items."""
         if self._progress is None:
             return

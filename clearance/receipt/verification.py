@@ -41,7 +41,7 @@ class Verification:
         n_not_ruled_out: in how many intervals tolerances leave nothing, so that nothing is proven of that.
         below: [m] the fail limit of each of those rules whose bound is below it, as the case has it.
         beyond: [m] how much more than is proven the report certifies in some interval, by rule.
-        verdict: of the case, answered again. asked: what it rests on beside the case's own file.
+        verdict: of the case, answered again. asked: what it rests on besides the case's own file.
         not_verified: files of the report that are not as they are made again, and why; empty if all are.
     """
 
@@ -83,31 +83,31 @@ class Verification:
         report = "" if self.not_verified else "; every byte of the report matches a fresh run"
         asked = f" ({'; '.join(self.asked)})" if self.asked else ""
         return (
-            f"{sampled}{nominal}PROVEN{self._left_out}{not_verified}: {bounds} between all {self.n_pairs} pairs "
+            f"{sampled}{nominal}PROVEN{self._exceptions}{not_verified}: {bounds} between all {self.n_pairs} pairs "
             f"over {span} interval{'s' * (span != '1')} of motion; verdict {self.verdict}{asked}{report}; "
             f"{len(self.inputs)} inputs of {shown(self.source or self.name)} unchanged, data {self.data[:16]}"
         )
 
     def _bound_text(self, rule: str) -> str:
         bound = np.floor(self.bounds[rule] * 1e6) / 1e3
-        told = shown(rule)
+        text = shown(rule)
         if rule in self.below:
-            told += f", BELOW ITS LIMIT of {self.below[rule] * 1e3:g} mm"
+            text += f", BELOW ITS LIMIT of {self.below[rule] * 1e3:g} mm"
         if rule in self.beyond:
             beyond = np.ceil(self.beyond[rule] * 1e6) / 1e3
-            told += f"; NOT VERIFIED: the report certifies up to {beyond:.3f} mm more"
-        return f"at least {bound:.3f} mm ({told})"
+            text += f"; NOT VERIFIED: the report certifies up to {beyond:.3f} mm more"
+        return f"at least {bound:.3f} mm ({text})"
 
     @property
-    def _left_out(self) -> str:
+    def _exceptions(self) -> str:
         """In how many intervals there is nothing to prove."""
-        told = ""
+        text = ""
         if self.n_contact:
-            told = f" EXCEPT in {self.n_contact} intervals, in which bodies may touch"
+            text = f" EXCEPT in {self.n_contact} intervals, in which bodies may touch"
         if self.n_not_ruled_out:
-            told += f"{' and' if told else ' EXCEPT'} with tolerances in {self.n_not_ruled_out} intervals"
-            told += ", in which contact is not ruled out"
-        return told
+            text += f"{' and' if text else ' EXCEPT'} with tolerances in {self.n_not_ruled_out} intervals"
+            text += ", in which contact is not ruled out"
+        return text
 
 
 def proven(case: Case, data: CaseData, receipt: Receipt) -> Verification:

@@ -18,7 +18,7 @@ import numpy as np
 from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
 from clearance.files import LAST
 from clearance.findings.verdict import KEPT, Verdict
-from clearance.receipt.asked import question_of, told_beside
+from clearance.receipt.asked import changed_options, question_of
 from clearance.receipt.case_data import CaseData, case_data
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT
 from clearance.receipt.receipt_file import DAMAGED, FILE_NAME, Receipt, read_receipt
@@ -82,13 +82,13 @@ def verify(
         return found
     files = tuple(name for name in (receipt.head["tolerance"], *receipt.head["waivers"]) if name)
     run = answer(question)
-    asked = told_beside(own, question, files)
+    asked = changed_options(own, question, files)
     source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
     found = replace(found, asked=asked, verdict=run.verdict.text(), source=source)
-    return _held_against(found, run, data, receipt, place)
+    return _compared_with_report(found, run, data, receipt, place)
 
 
-def _held_against(
+def _compared_with_report(
     found: Verification, run: Run, data: CaseData, receipt: Receipt, place: Path
 ) -> Verification:
     """The verification, with all that differs between the report and a fresh run."""
@@ -101,7 +101,7 @@ def _held_against(
     if made_by:
         reasons = {f"made by {made_by}: not compared": sorted(different)} | reasons
         failure = _other_verdict(run.verdict, place) or unproven
-        return replace(found, failure=failure, not_verified=_told(reasons))
+        return replace(found, failure=failure, not_verified=_by_reason(reasons))
     if receipt.head["compared"] and different.pop(PAGE, ""):
         reasons = {"it shows a comparison with another run": [PAGE]} | reasons
     for name, what in different.items():
@@ -112,10 +112,10 @@ def _held_against(
             unproven = (
                 f"the report certifies up to {beyond[rule] * 1e3:.6f} mm more ({shown(rule)})"
             )
-    return replace(found, failure=unproven, beyond=beyond, not_verified=_told(reasons))
+    return replace(found, failure=unproven, beyond=beyond, not_verified=_by_reason(reasons))
 
 
-def _told(reasons: dict[str, list[str]]) -> str:
+def _by_reason(reasons: dict[str, list[str]]) -> str:
     """The files that are not verified, grouped by reason."""
     return ", ".join(f"{listed(names)} ({why})" for why, names in reasons.items() if names)
 
@@ -155,12 +155,12 @@ def _beyond(run: Run, data: CaseData, receipt: Receipt) -> dict[str, float]:
 def _other_verdict(verdict: Verdict, place: Path) -> str:
     """That the summary in a folder has another verdict; empty if it has not."""
     try:
-        told = json.loads((place / LAST).read_bytes())["verdict"]
+        reported = json.loads((place / LAST).read_bytes())["verdict"]
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
-        told = "nothing"
-    if told == verdict.status:
+        reported = "nothing"
+    if reported == verdict.status:
         return ""
-    return f"{LAST} says {shown(repr(told))[:60]}, a fresh run says {verdict.status}"
+    return f"{LAST} says {shown(repr(reported))[:60]}, a fresh run says {verdict.status}"
 
 
 def _cases(
@@ -170,7 +170,7 @@ def _cases(
     tolerance: str | PathLike[str] | None,
     waivers: Paths,
 ) -> tuple[Case, Case]:
-    """The case as it is in its own file, and with the files that were given beside it."""
+    """The case as it is in its own file, and with the files that were given besides."""
     from clearance.case.case_file import load_case
 
     head = receipt.head
@@ -180,11 +180,11 @@ def _cases(
         raise BadInput("the receipt is of a case without a file", valid="give the case")
     else:
         own = load_case(_path(place, head["case"], case, "--case CASE.yaml"))
-    beside: list[str | PathLike[str] | None] = [*waivers] or [None] * len(head["waivers"])
-    if len(beside) != len(head["waivers"]):
-        told = f"{len(beside)} files of waivers, and the run had {len(head['waivers'])}"
-        raise BadInput(told, valid="--waivers FILE for each")
-    pairs = zip(head["waivers"], beside, strict=True)
+    moved: list[str | PathLike[str] | None] = [*waivers] or [None] * len(head["waivers"])
+    if len(moved) != len(head["waivers"]):
+        text = f"{len(moved)} files of waivers, and the run had {len(head['waivers'])}"
+        raise BadInput(text, valid="--waivers FILE for each")
+    pairs = zip(head["waivers"], moved, strict=True)
     files = tuple(_path(place, way, one, "--waivers FILE") for way, one in pairs)
     path = None
     if tolerance is not None or head["tolerance"]:
@@ -200,8 +200,8 @@ def _path(place: Path, way: str, given: str | PathLike[str] | None, valid: str) 
     """
     path = place / way if given is None else Path(given)
     if not os.path.isfile(path):
-        told = shown(way if given is None else str(path))
-        raise MissingFile(f"there is no {told}", where=str(place / FILE_NAME), valid=valid)
+        name = shown(way if given is None else str(path))
+        raise MissingFile(f"there is no {name}", where=str(place / FILE_NAME), valid=valid)
     return path
 
 

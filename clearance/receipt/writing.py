@@ -66,8 +66,8 @@ def write_receipt(
         case_file: where the case was read from; without one, `verify` has to be given the case.
         kind: "full" for a proof of all intervals, "sampled" for one in 16 and the least of each rule.
         tolerance_file: of the tolerances that were given in place of the case's.
-        progress: told while evidence is looked for.
-        waiver_files: of the waivers that were given beside the case's.
+        progress: called while evidence is looked for.
+        waiver_files: of the waivers that were given in addition to the case's.
 
     Raises:
         BadInput: a run that no receipt can be written of, or the report of another one. MissingFile: no report in
@@ -120,7 +120,7 @@ def _proven(record: Record, kind: str, progress: Progress | None) -> _Claims:
     with_errors = case_data(record.case)
     data = case_data(replace(record.case, tolerance=None))
     halves = halves_of(data.shapes)
-    claims = _kept(claims_of(record, data), data, kind)
+    claims = _asked_claims(claims_of(record, data), data, kind)
     search = EvidenceSearch(data.stretches, data.shapes, halves, claims)
     search.foresee(MOST_ITEMS, part_of(progress, 0, FORESEEN // 2))
     late = part_of(progress, FORESEEN // 2, FORESEEN)
@@ -168,7 +168,7 @@ def _attempts(
     lowest = _lowered(exact, n_rules, MOST_GIVEN_UP)
     for share in GIVEN_UP if n_nominal < MANY else GIVEN_UP[-1:]:
         lowered = _no_lower_than_least(_lowered(exact, n_rules, share), exact)
-        lowered = _kept(lowered, data, kind)
+        lowered = _asked_claims(lowered, data, kind)
         both = np.concatenate([claims, lowered[n_rules:]])
         search = EvidenceSearch(data.stretches[n_stretches:], data.shapes, halves, both, lowest)
         last = share == GIVEN_UP[-1]
@@ -204,7 +204,7 @@ def part_of(progress: Progress | None, low: int, high: int) -> Progress | None:
     return lambda done, total: progress(low + (high - low) * done // total, 1000)
 
 
-def _kept(claims: np.ndarray, data: CaseData, kind: str) -> np.ndarray:
+def _asked_claims(claims: np.ndarray, data: CaseData, kind: str) -> np.ndarray:
     return with_samples_only(claims, data) if kind == "sampled" else claims
 
 
@@ -213,10 +213,10 @@ def _lowered(claims: np.ndarray, n_rules: int, share: float) -> np.ndarray:
 
     The proof has bounds of its own, and what would take the most evidence is not worth it.
     """
-    nominal, left = claims[:n_rules], claims[n_rules:]
-    taken = np.where(nominal == NOT_CLAIMED, 0, np.maximum(nominal - left, 0))
-    less = left - np.ceil(share * taken).astype(np.int64) - (MICROMETRES if share else 0)
-    return np.concatenate([nominal, np.where(left == NOT_CLAIMED, left, less)])
+    nominal, remaining = claims[:n_rules], claims[n_rules:]
+    lost = np.where(nominal == NOT_CLAIMED, 0, np.maximum(nominal - remaining, 0))
+    lowered = remaining - np.ceil(share * lost).astype(np.int64) - (MICROMETRES if share else 0)
+    return np.concatenate([nominal, np.where(remaining == NOT_CLAIMED, remaining, lowered)])
 
 
 def _no_lower_than_least(lowered: np.ndarray, exact: np.ndarray) -> np.ndarray:
@@ -232,10 +232,10 @@ def claims_of(record: Record, data: CaseData) -> np.ndarray:
     for rule in record.rules:
         assert rule.certificate is not None
         claims[data.rules.index(rule.name)] = _claimed(rule.certificate.lower_bound, data)
-    for left in record.budget or ():
-        name = with_tolerances(left.rule)
-        if name in data.rules and left.between is not None:
-            claims[data.rules.index(name)] = _claimed(left.between, data)
+    for remaining in record.budget or ():
+        name = with_tolerances(remaining.rule)
+        if name in data.rules and remaining.between is not None:
+            claims[data.rules.index(name)] = _claimed(remaining.between, data)
     return claims
 
 

@@ -153,14 +153,14 @@ def along_of(
     across = np.cross(u[None], bars, axis=1)
     offsets = (across * (at[None] - pins)).sum(axis=1)
     own_u = np.stack([(turn[:, k] * u).sum(axis=0) for k in range(3)])
-    apart = centres - at[None]
+    offset = centres - at[None]
     length = np.sqrt((u * u).sum(axis=0))
     constant = np.abs((slides * u[None]).sum(axis=1)).sum(axis=0) + length * terms.shift[place]
     return DirectionTerms(
         _turned_back(turn, across),
         offsets,
         own_u,
-        np.cross(own_u[None], _turned_back(turn, apart), axis=1),
+        np.cross(own_u[None], _turned_back(turn, offset), axis=1),
         terms.angles[:, place],
         constant,
     )

@@ -85,7 +85,7 @@ def _halved(corners: np.ndarray, most: int | None) -> tuple[np.ndarray, ...]:
     while (stops - starts).max() > 1 and (most is None or len(all_starts) <= most):
         order = _ordered(middles, ranks, order, starts, stops)
         half = (starts + stops) // 2
-        starts, stops = _beside(starts, half), _beside(half, stops)
+        starts, stops = _alternating(starts, half), _alternating(half, stops)
         all_starts.append(starts)
         all_stops.append(stops)
     placed = corners[order]
@@ -93,7 +93,7 @@ def _halved(corners: np.ndarray, most: int | None) -> tuple[np.ndarray, ...]:
     return starts, stops, *_boxes(placed, all_starts, all_stops), placed.T
 
 
-def _beside(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+def _alternating(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return np.stack([first, second], axis=1).reshape(-1)
 
 

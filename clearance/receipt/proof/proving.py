@@ -105,8 +105,8 @@ def _first_unproven(
     if len(short):
         item, interval = own.rows()
         row = short[np.argmin(interval[short])]
-        return int(own.pair[item[row]]), int(interval[row]), "not apart by its evidence"
-    stage.note_apart(own)
+        return int(own.pair[item[row]]), int(interval[row]), "not proven separate by its evidence"
+    stage.note_separate(own)
     return None
 
 
@@ -161,7 +161,7 @@ def one_inside(stage: Stage) -> tuple[int, int, str] | None:
     begins = claimed & ~np.pad(claimed, ((0, 0), (1, 0)))[:, :-1]
     for pair, start in np.argwhere(begins).tolist():
         stop = start + int(np.argmin(np.append(claimed[pair, start:], False)))
-        if stage.apart[pair, start:stop].any():
+        if stage.separate[pair, start:stop].any():
             continue
         if not _outside(stage, pair, start):
             return pair, start, "not proven outside each other"
@@ -181,6 +181,6 @@ def _outside(stage: Stage, pair: int, interval: int) -> bool:
     return True
 
 
-def holds_all(items: Items, beyond: np.ndarray) -> np.ndarray:
+def all_proven(items: Items, beyond: np.ndarray) -> np.ndarray:
     """(k,) True for items of which all rows are proven."""
     return all_of_item(items, beyond >= 0.0)

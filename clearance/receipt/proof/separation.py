@@ -72,14 +72,14 @@ def along(
     corners do with errors taken off by balls about the parts.
     """
     length, lost = np.sqrt(dot(u, u)), _lost(halves, placed, a, b, placed.rest)
-    taken = np.zeros(len(length))
+    lost_to_errors = np.zeros(len(length))
     if placed.terms is not None:
-        taken = _most_errors(halves, placed, a, u) + _most_errors(halves, placed, b, -u)
+        lost_to_errors = _most_errors(halves, placed, a, u) + _most_errors(halves, placed, b, -u)
     both = [_swung(placed, a, u), _swung(placed, b, -u)]
-    found = _shown(halves, both, over_boxes, length, taken) - lost
+    found = _shown(halves, both, over_boxes, length, lost_to_errors) - lost
     rows = np.flatnonzero(~(found >= enough))
     both, length, lost = [one.of(rows) for one in both], length[rows], lost[rows]
-    closer = _shown(halves, both, over_corners, length, taken[rows]) - lost
+    closer = _shown(halves, both, over_corners, length, lost_to_errors[rows]) - lost
     found[rows] = np.maximum(found[rows], closer)
     if placed.terms is None:
         return found
@@ -96,11 +96,11 @@ def _shown(
     both: Sequence[Swung],
     over: Callable[[Halves, np.ndarray, np.ndarray, np.ndarray], np.ndarray],
     length: np.ndarray,
-    taken: np.ndarray,
+    lost_to_errors: np.ndarray,
 ) -> np.ndarray:
-    """(k,) [m] how far parts keep apart along directions, over boxes or corners, less what is taken."""
+    """(k,) [m] how far parts keep apart along directions, over boxes or corners, less what errors take."""
     a, b = (over(halves, one.body, one.node, one.along) + one.moved for one in both)
-    return _per_length(-(a + b).max(axis=0) - taken, length)
+    return _per_length(-(a + b).max(axis=0) - lost_to_errors, length)
 
 
 def _with_errors(
@@ -117,10 +117,10 @@ def _with_errors(
     return _per_length(-most.max(axis=0), np.sqrt(dot(u, u)))
 
 
-def _per_length(apart: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """(k,) no more than apart / length; -inf where the length is 0."""
+def _per_length(gap: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """(k,) no more than gap / length; -inf where the length is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        bound = apart / length
+        bound = gap / length
     bound = bound - np.abs(bound) * (OUTWARD - 1.0)
     return np.where(length > 0.0, bound, -np.inf)
 
@@ -151,8 +151,8 @@ def as_balls(halves: Halves, placed: PlacedViews, a: Sides, b: Sides) -> np.ndar
         node = halves.first_node[side.body] + side.node
         half = 0.5 * (halves.high[:, node] - halves.low[:, node])
         radii = radii + np.sqrt(dot(half, half))
-    apart = np.sqrt(dot(between, between)) / OUTWARD - radii * OUTWARD
-    return apart - _lost(halves, placed, a, b, placed.way)
+    gap = np.sqrt(dot(between, between)) / OUTWARD - radii * OUTWARD
+    return gap - _lost(halves, placed, a, b, placed.way)
 
 
 def centre_of(halves: Halves, placed: PlacedViews, side: Sides) -> np.ndarray:

@@ -45,7 +45,7 @@ class Stage:
         n = stretch.n_intervals
         whole = IntervalPieces(np.arange(n), np.zeros(n), np.ones(n))
         self.whole = self._placed(whole, np.ones(len(self.views.frames), dtype=bool))
-        self.apart = np.zeros(self.wanted.shape, dtype=bool)
+        self.separate = np.zeros(self.wanted.shape, dtype=bool)
 
     def bounds(self, items: Items, directed: np.ndarray, u: np.ndarray) -> np.ndarray:
         """(r,) [m] what is proven of each of `items.rows()` beyond what is wanted of it.
@@ -90,11 +90,11 @@ class Stage:
         way = sum(self.whole.way[pairs[:, k] * n + items.start] for k in (0, 1))
         return np.where(items.span > 1, far, way * 0.5**items.depth)
 
-    def note_apart(self, items: Items) -> None:
+    def note_separate(self, items: Items) -> None:
         """Notes the intervals of items that are proven of whole bodies: these are not inside each other there."""
         whole = items.of(np.flatnonzero((items.node_a == 0) & (items.node_b == 0)))
         item, interval = whole.rows()
-        self.apart[whole.pair[item], interval] = True
+        self.separate[whole.pair[item], interval] = True
 
     def _sides(
         self, items: Items, own: np.ndarray, pieces: np.ndarray, at: PlacedViews

@@ -82,9 +82,9 @@ def steps_of(
     if stretch.errors is not None and stretch.carriers[body] == NONE:
         n, zero = len(positions.middle), np.zeros(len(positions.middle))
         pose = np.repeat(views.poses[view][None], n, axis=0)
-        held = _held(stretch.errors.of_bodies, body, pose[:, :3, :3], pose[:, :3, 3])
+        errors = _mount_errors(stretch.errors.of_bodies, body, pose[:, :3, :3], pose[:, :3, 3])
         point = np.zeros((n, 3))
-        found.append(Step(FIXED, point, point, zero, zero, zero, 0.0, held))
+        found.append(Step(FIXED, point, point, zero, zero, zero, 0.0, errors))
     return found
 
 
@@ -104,16 +104,16 @@ def _errors_at(
         found.append(Error(float(errors.joint[link]), axis, None if kind == SLIDING else at))
     origin = at - axis * positions.middle[:, link, None] if kind == SLIDING else at
     found += _place(float(errors.xyz[link]), float(errors.angle[link]), origin)
-    return found + _held(errors.of_links, link, frames.turn[frame], frames.at[frame])
+    return found + _mount_errors(errors.of_links, link, frames.turn[frame], frames.at[frame])
 
 
-def _held(held: MountFrames, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
+def _mount_errors(mounts: MountFrames, which: int, turn: np.ndarray, at: np.ndarray) -> list[Error]:
     """Those of the frames that a link or body stands on."""
     found = []
-    for i in np.flatnonzero(held.which == which).tolist():
-        origin, axis = turn @ held.origins[i] + at, turn @ held.axes[i]
-        xyz, angle = float(held.xyz[i]), float(held.angle[i])
-        if not held.axes[i].any():
+    for i in np.flatnonzero(mounts.which == which).tolist():
+        origin, axis = turn @ mounts.origins[i] + at, turn @ mounts.axes[i]
+        xyz, angle = float(mounts.xyz[i]), float(mounts.angle[i])
+        if not mounts.axes[i].any():
             found += _place(xyz, angle, origin)
         elif angle > 0.0:
             found.append(Error(angle, axis, origin))
