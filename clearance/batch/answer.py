@@ -21,8 +21,8 @@ from clearance.batch.rows import ERROR, TABLE, error_row
 from clearance.batch.shared_waivers import (
     any_of_cells,
     expired_waivers,
-    stale_waivers,
-    stale_waivers_of_cells,
+    failing_waivers,
+    failing_waivers_of_cells,
 )
 from clearance.batch.store import Store
 from clearance.findings.finding import NOT_PROVEN
@@ -149,8 +149,8 @@ class BatchAnswer:
                 by_status[status].append(i)
         order = [status for status in reversed(STATUSES) if status in by_status]
         turns = zip_longest(*(self._worst_first(by_status[status]) for status in order))
-        taken = islice((i for turn in turns for i in turn if i is not None), MOST_WORST)
-        rows = [self.row(i) for i in taken]
+        worst_first = islice((i for turn in turns for i in turn if i is not None), MOST_WORST)
+        rows = [self.row(i) for i in worst_first]
         return sorted(rows, key=lambda row: order.index(row["status"]))
 
     def _worst_first(self, cases: Iterable[int]) -> list[int]:
@@ -200,7 +200,7 @@ def _stale(outcome: Outcome, items: Sequence[Item], rows: pa.Table) -> tuple[str
     if not outcome.waivers and not any_of_cells(items):
         return ()
     needed = [tuple(own or ()) for own in rows["waivers"].to_pylist()]
-    among, told = stale_waivers_of_cells(items, needed)
+    among, complaints = failing_waivers_of_cells(items, needed)
     if not outcome.waivers:
-        return tuple(told)
-    return (*told, *stale_waivers(items, outcome.waivers, among, items[0].options.day))
+        return tuple(complaints)
+    return (*complaints, *failing_waivers(items, outcome.waivers, among, items[0].options.day))

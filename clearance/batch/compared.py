@@ -1,4 +1,4 @@
-"""Two batches held against each other, case by case: what is new, worse, better, gone or not comparable.
+"""Two batches compared, case by case: what is new, worse, better, gone or not comparable.
 
 Each case's findings are compared as those of two runs are (`findings.comparison`); beside them stand cases that
 only one of the batches has, and cases without an answer. Not for: how it is shown (`report.comparison`).
@@ -28,7 +28,7 @@ from clearance.findings.findings_file import FindingList, conditions_in
 
 
 def require_answer(place: Path) -> BatchAnswer:
-    """The answer of a store that can be held against another's.
+    """The answer of a store that can be compared with another's.
 
     Raises:
         BadInput, Unwritable: that is no store, or of another version. Incomplete: it has no answer.
@@ -49,7 +49,7 @@ def require_answer(place: Path) -> BatchAnswer:
 
 
 def compared_batches(before: Path, now: Path) -> BatchComparison:
-    """The answer of a store held against that of another one.
+    """The answer of a store, compared with that of another.
 
     Raises:
         Incomplete: one has no answer. BadInput, Unwritable: one is of another version.
@@ -128,6 +128,6 @@ def _findings(rows: list[dict[str, Any]]) -> Iterator[Finding]:
     for row in rows:
         waived = row.pop("waived")
         of = {key: tuple(row[key]) if row[key] else None for key in ("point_a", "point_b")}
-        told = {key: value for key, value in row.items() if key != "case"} | of
+        values = {key: value for key, value in row.items() if key != "case"} | of
         excuse = None if waived is None else AppliedWaiver(at_least=0.0, reason=waived, by="")
-        yield Finding(**told, waived=excuse)
+        yield Finding(**values, waived=excuse)

@@ -77,7 +77,7 @@ class FileHashes:
         """Takes over what others have read."""
         self._new.update((path, one) for path, one in read if one.is_settled)
 
-    def taken(self) -> list[tuple[str, FileStamp]]:
+    def stamps(self) -> list[tuple[str, FileStamp]]:
         """What was read since this was last asked, and can be believed later on."""
         new, self._new = list(self._new.items()), {}
         return new

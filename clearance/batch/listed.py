@@ -49,7 +49,7 @@ def read_list(store: Store) -> list[Item]:
         )
     try:
         options = [CaseOptions.of_plain(json.loads(one)) for one in asked]
-        return [_item(i, name, told, options[n]) for i, (name, told, n) in enumerate(rows)]
+        return [_item(i, name, stored, options[n]) for i, (name, stored, n) in enumerate(rows)]
     except (ValueError, TypeError, IndexError, BadInput):
         raise BadInput(
             "the list of cases is damaged",
@@ -71,6 +71,6 @@ def item_called(items: Sequence[Item], name: str) -> Item:
     return found
 
 
-def _item(number: int, name: str, told: str, options: CaseOptions) -> Item:
-    file, given = json.loads(told)
+def _item(number: int, name: str, stored: str, options: CaseOptions) -> Item:
+    file, given = json.loads(stored)
     return Item(number, name, file, given and GivenTrajectory(**given), options)

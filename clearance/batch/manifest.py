@@ -214,9 +214,9 @@ def _require_own_names(cases: Sequence[Item]) -> None:
         other = seen.setdefault(item.name, item)
         if other is not item:
             files = dict.fromkeys([_file(other), _file(item)])
-            told = " and ".join(files) if len(files) > 1 else f"{_file(item)}, asked in two ways"
+            where = " and ".join(files) if len(files) > 1 else f"{_file(item)}, asked in two ways"
             raise DuplicateName(
-                f"two cases would be called {item.name!r}: {told}",
+                f"two cases would be called {item.name!r}: {where}",
                 valid="a name: in each manifest, which goes before the names of its cases",
             )
     if not cases:

@@ -102,8 +102,8 @@ def _spelled(name: str, value: object) -> str:
     key = off or ("limits." + name if name in _LEVELS else name)
     if value is None:
         return key
-    told = not value if off else value
-    return f"{key}: {str(told).lower() if isinstance(told, bool) else told}"
+    shown = not value if off else value
+    return f"{key}: {str(shown).lower() if isinstance(shown, bool) else shown}"
 
 
 def is_manifest(data: bytes) -> bool:

@@ -55,10 +55,12 @@ class CaseOptions:
     def key(self) -> str:
         """sha256 of all that it says of a row."""
         asked, names = self.asked, [*options_in(CheckOptions)]
-        told = [(name, getattr(asked, name)) for name in names if name not in _KEYED_BY_CONTENT]
+        asked_values = [
+            (name, getattr(asked, name)) for name in names if name not in _KEYED_BY_CONTENT
+        ]
         given = [one for one in asked.waivers if isinstance(one, Waiver)]
         waivers = [(one, one.is_expired(self.day)) for one in given]
-        return hashlib.sha256(repr((told, self.files_key, waivers)).encode()).hexdigest()
+        return hashlib.sha256(repr((asked_values, self.files_key, waivers)).encode()).hexdigest()
 
     @property
     def day(self) -> date:
@@ -90,18 +92,18 @@ class CaseOptions:
         """The options as plain data, which `of_plain` reads."""
         known = options_in(CheckOptions).items()
         values = {name: getattr(self.asked, name) for name, _ in known}
-        told = {name: values[name] for name, one in known if values[name] != one.default}
-        return told | {"waivers": [asdict(one) for one in values["waivers"]]}
+        plain = {name: values[name] for name, one in known if values[name] != one.default}
+        return plain | {"waivers": [asdict(one) for one in values["waivers"]]}
 
     @classmethod
-    def of_plain(cls, told: Mapping[str, Any]) -> CaseOptions:
-        """The options that `plain` has told, with the key of their files as they are now.
+    def of_plain(cls, plain: Mapping[str, Any]) -> CaseOptions:
+        """The options that `plain` returns, with the key of their files as they are now.
 
         Raises:
             BadInput, ValueError: they are none.
         """
-        waivers = _WAIVERS.validate_python(told.get("waivers", ()))
-        asked = made(CheckOptions, {**told, "waivers": waivers})
+        waivers = _WAIVERS.validate_python(plain.get("waivers", ()))
+        asked = made(CheckOptions, {**plain, "waivers": waivers})
         try:
             return cls.of(asked)
         except BadInput:
@@ -119,5 +121,5 @@ def _digest(name: str, path: Path) -> str:
     if name == "tolerance":
         return tolerance_digest(path)
     files = files_of(path) if path.is_dir() else [path]
-    told = [hashlib.sha256(read_bytes(one, one.name)).hexdigest() for one in files]
-    return hashlib.sha256(repr(told).encode()).hexdigest()
+    digests = [hashlib.sha256(read_bytes(one, one.name)).hexdigest() for one in files]
+    return hashlib.sha256(repr(digests).encode()).hexdigest()

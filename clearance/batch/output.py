@@ -33,14 +33,14 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     from clearance.batch.page import unfinished_page
     from clearance.report.junit import write_unfinished
 
-    told = (
+    unfinished = (
         f"{UNFINISHED}: of {count(n_cases, 'case')} some are not measured; the same command goes on"
     )
     with unwritable(store.place):
         for name in ANSWER:
             (store.place / name).unlink(missing_ok=True)
-    write_unfinished(store.place.name, told, store.place / JUNIT)
-    write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
+    write_unfinished(store.place.name, unfinished, store.place / JUNIT)
+    write_file(store.place / PAGE, unfinished_page(store.place.name, unfinished).encode())
 
 
 def write_answer(answer: BatchAnswer, store: Store) -> None:

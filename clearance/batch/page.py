@@ -52,8 +52,8 @@ def unfinished_page(name: str, text: str) -> str:
 
 
 def _counted(answer: BatchAnswer) -> str:
-    told = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
-    return f"{count(answer.n_cases, 'case')}: {told or 'none'}"
+    counted = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
+    return f"{count(answer.n_cases, 'case')}: {counted or 'none'}"
 
 
 def _basis(answer: BatchAnswer) -> str:
@@ -86,7 +86,7 @@ def page_data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "bodies": bodies.texts,
         "rules": rules.texts,
         "reasons": [lines or [] for lines in column("reasons")],
-        "beside": [*map(_beside, column("warnings"), column("waived"))],
+        "notes": [*map(_notes, column("warnings"), column("waived"))],
         "waived": [int(bool(lines)) for lines in column("waived")],
         "levels": _levels(column("fail"), column("warn")),
         "curves": base64.b64encode(_curves(answer.rows)).decode(),
@@ -113,7 +113,7 @@ def _statuses(answer: BatchAnswer) -> list[str]:
     return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
 
 
-def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
+def _notes(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
     return [f"warning: {line}" for line in warnings or ()] + [
         f"waived: {line}" for line in waived or ()
     ]

@@ -35,9 +35,9 @@ def planned(
     Args:
         fresh: all are to be done.
     """
-    look, todo = _Look(store, hashes), []
+    lookup, todo = _Lookup(store, hashes), []
     for item in outcome.items:
-        key = None if fresh else look.key(item)
+        key = None if fresh else lookup.key(item)
         if key is None:
             todo.append(item)
         else:
@@ -49,9 +49,9 @@ def faults_as_before(store: Store, items: Iterable[Item], hashes: FileHashes) ->
     """The faults of cases when they were last tried, by number, of those whose own files are what they were."""
     found: dict[int, Fault] = {}
     for item in items:
-        told = store.fault(item.name)
-        if told is not None and told[2] == files_text(item, hashes):
-            found[item.number] = Fault(item.number, told[0], told[1])
+        fault = store.fault(item.name)
+        if fault is not None and fault[2] == files_text(item, hashes):
+            found[item.number] = Fault(item.number, fault[0], fault[1])
     return found
 
 
@@ -63,7 +63,7 @@ def files_text(item: Item, hashes: FileHashes) -> str:
 
 
 @dataclass(eq=False)
-class _Look:
+class _Lookup:
     """Finds the keys of items; what cases share is looked at once."""
 
     store: Store
@@ -107,9 +107,9 @@ class _Look:
             self._shared[inputs] = self._checked(json.loads(inputs), today)
         return self._shared[inputs]
 
-    def _checked(self, told: list[list[str]], today: str) -> Files | None:
-        searches = [row for row in told if row[0].startswith(LOOKUP)]
-        rest = [row for row in told if not row[0].startswith(LOOKUP)]
+    def _checked(self, recorded: list[list[str]], today: str) -> Files | None:
+        searches = [row for row in recorded if row[0].startswith(LOOKUP)]
+        rest = [row for row in recorded if not row[0].startswith(LOOKUP)]
         found = self._hashed((shown, path) for shown, path, _ in rest if path)
         files = tuple((shown, sha256) for shown, path, sha256 in rest if path)
         others = tuple((shown, value) for shown, path, value in rest if not path)

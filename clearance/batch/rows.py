@@ -173,14 +173,14 @@ def _needed(run: Run) -> list[str]:
 def _incomplete(run: Run, n_findings: int) -> str:
     """Why something that is not clear may have no finding in the row; empty where each has one."""
     n_left = max(0, n_findings - MOST_FINDINGS)
-    left = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
-    return why_incomplete(run.session) or left
+    unlisted = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
+    return why_incomplete(run.session) or unlisted
 
 
 def _told(finding: Finding) -> dict[str, Any]:
-    told = {name: getattr(finding, name) for name in FINDING.names}
+    values = {name: getattr(finding, name) for name in FINDING.names}
     waived = finding.waived
-    return told | {"waived": None if waived is None else f"{waived.reason} ({waived.by})"}
+    return values | {"waived": None if waived is None else f"{waived.reason} ({waived.by})"}
 
 
 def curve_of(record: Record) -> np.ndarray:

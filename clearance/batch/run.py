@@ -20,12 +20,12 @@ from clearance.batch.store import Store
 
 
 class Watch(Protocol):
-    """Who is told how far a batch is."""
+    """An observer of the progress of a batch."""
 
     def begin(self, items: Sequence[Item], n_cached: int) -> None:
         """Before the first of some cases is measured; so many others need not be."""
 
-    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+    def note(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """After some cases are measured and their rows are kept."""
 
 
@@ -68,8 +68,8 @@ def run_batch(
                 _keep(done, items, store, hashes)
                 outcome.keys.update((one.number, one.key) for one in done.measured)
                 outcome.faults.update((one.number, one) for one in done.faults)
-                watch.tell(done.measured, done.faults)
-    stamps = hashes.taken()
+                watch.note(done.measured, done.faults)
+    stamps = hashes.stamps()
     if stamps:
         store.put(stamps=stamps)
 
@@ -80,7 +80,7 @@ def _keep(done: TaskResult, items: dict[int, Item], store: Store, hashes: FileHa
     store.put(
         rows=((one.key, one.row) for one in done.measured),
         inputs=dict.fromkeys((items[one.number].file, one.inputs) for one in done.measured),
-        stamps=hashes.taken(),
+        stamps=hashes.stamps(),
         faults=faults,
         answered=(items[one.number].name for one in done.measured),
     )

@@ -38,11 +38,11 @@ def _of_cell(items: Iterable[Item], file: str) -> list[Item]:
     return [item for item in items if item.trajectory is not None and item.file == file]
 
 
-def stale_waivers_of_cells(
+def failing_waivers_of_cells(
     items: Sequence[Item], needed: Iterable[Collection[str]]
 ) -> tuple[set[str], list[str]]:
     """The shared waivers that some case needs, as texts, and why those that cells name fail a batch of which all
-    cases are answered, as `stale_waivers` tells.
+    cases are answered, by `failing_waivers`.
 
     Args:
         needed: of each item, the shared waivers that it needs, as texts.
@@ -51,16 +51,16 @@ def stale_waivers_of_cells(
     for item, own in zip(items, needed, strict=True):
         cell = None if item.trajectory is None else item.file
         among.setdefault(cell, set()).update(own)
-    told: list[str] = []
+    complaints: list[str] = []
     for file in _cells(items):
         given = as_shared(waivers_of_cell(file))
         if given:
             own_items = _of_cell(items, file)
-            told += stale_waivers(own_items, given, among[file], own_items[0].options.day)
-    return set().union(*among.values()), list(dict.fromkeys(told))
+            complaints += failing_waivers(own_items, given, among[file], own_items[0].options.day)
+    return set().union(*among.values()), list(dict.fromkeys(complaints))
 
 
-def stale_waivers(
+def failing_waivers(
     items: Sequence[Item], given: Iterable[Waiver], needed: set[str], today: date | None
 ) -> tuple[str, ...]:
     """Why waivers fail a batch of which all cases are answered, one line each: expired, or no case needs them.
@@ -69,27 +69,27 @@ def stale_waivers(
         needed: those that a case needs, as texts.
         today: the day that they are held against; None where none is given.
     """
-    told = []
+    complaints = []
     for waiver in given:
         if expired := _expired(waiver, today):
-            told.append(expired)
+            complaints.append(expired)
         elif str(waiver) not in needed:
-            told.append(f"{waiver} is not needed: {_why_not(items, waiver)}")
-    return tuple(told)
+            complaints.append(f"{waiver} is not needed: {_why_not(items, waiver)}")
+    return tuple(complaints)
 
 
 def expired_waivers(items: Sequence[Item], given: Iterable[Waiver]) -> tuple[str, ...]:
     """Of the waivers that cells name, and of those given beside, why the expired ones fail a batch, one line each;
     a cell that cannot be read fails its cases by itself.
     """
-    told = []
+    complaints = []
     for file in _cells(items):
         with suppress(ClearanceError):
             day = _of_cell(items, file)[0].options.day
-            told += [_expired(waiver, day) for waiver in waivers_of_cell(file)]
+            complaints += [_expired(waiver, day) for waiver in waivers_of_cell(file)]
     last = items[0].options.day if items else None
-    told += [_expired(waiver, last) for waiver in given]
-    return tuple(dict.fromkeys(line for line in told if line))
+    complaints += [_expired(waiver, last) for waiver in given]
+    return tuple(dict.fromkeys(line for line in complaints if line))
 
 
 def _expired(waiver: Waiver, today: date | None) -> str:

@@ -35,7 +35,7 @@ Stored = Sequence[Any]
 
 
 def stored(key: str, row: dict[str, Any]) -> Stored:
-    """A row with the columns of `VERDICT` as it is kept."""
+    """A row with the columns of `VERDICT` as it is stored."""
     return sealed((key, *(_value(field, row[field.name]) for field in VERDICT)))
 
 
@@ -45,17 +45,17 @@ def sealed(values: tuple[Any, ...]) -> Stored:
 
 
 def is_whole(row: Stored) -> bool:
-    """True if values and digest are what was kept."""
+    """True if values and digest are what was stored."""
     return bool(_digest(tuple(row[:-1])) == row[-1])
 
 
 def read_row(row: Stored) -> dict[str, Any]:
-    """The columns of a row that is kept, and its key."""
-    told = {"key": row[0]}
+    """The columns of a stored row, and its key."""
+    values = {"key": row[0]}
     for field, value in zip(VERDICT, row[1:-1], strict=True):
         is_list = value is not None and field.type not in _KINDS
-        told[field.name] = json.loads(value) if is_list else value
-    return told
+        values[field.name] = json.loads(value) if is_list else value
+    return values
 
 
 def _value(field: pa.Field, value: Any) -> Any:
@@ -63,8 +63,8 @@ def _value(field: pa.Field, value: Any) -> Any:
         return None
     if field.type not in _KINDS:
         return json.dumps(value)
-    told = _KINDS[field.type][1](value)
-    return told or 0.0 if isinstance(told, float) else told  # nor a zero below zero
+    read = _KINDS[field.type][1](value)
+    return read or 0.0 if isinstance(read, float) else read  # nor a zero below zero
 
 
 def _digest(values: tuple[Any, ...]) -> bytes:

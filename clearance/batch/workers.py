@@ -84,8 +84,8 @@ class WorkerEngine:
         """
         self._hand_out(queue)
         while len(queue) or any(one.task for one in self._workers):
-            told = wait([one.pipe for one in self._workers])
-            for one in [one for one in self._workers if one.pipe in told]:
+            ready = wait([one.pipe for one in self._workers])
+            for one in [one for one in self._workers if one.pipe in ready]:
                 done = self._taken(one, queue)
                 self._hand_out(queue)
                 if done is not None:
@@ -103,17 +103,17 @@ class WorkerEngine:
     def _taken(self, one: Worker, queue: Queue) -> TaskResult | None:
         """What a worker has sent; None where that it is ready, or where it has died."""
         try:
-            told = one.pipe.recv()
+            message = one.pipe.recv()
         except (EOFError, OSError):
             return self._replaced(one, queue)
-        if told == _READY:
+        if message == _READY:
             one.is_ready, self._starts_lost = True, 0
             return None
         one.task = None
-        if isinstance(told, Incomplete):
-            raise told
-        queue.give_back(told.left)
-        return told
+        if isinstance(message, Incomplete):
+            raise message
+        queue.give_back(message.left)
+        return message
 
     def _replaced(self, one: Worker, queue: Queue) -> TaskResult | None:
         """Puts a new worker in the place of one that has died; the cases of its task wait again, one by one."""

@@ -153,7 +153,7 @@ class SilentWatch:
     def begin(self, items: Sequence[object], n_cached: int) -> None:
         """Tells nothing."""
 
-    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+    def note(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Tells nothing."""
 
 
@@ -226,7 +226,7 @@ class PipeWatch:
         """Begins to count what is to be measured."""
         self._n, self._begun = len(items), time.monotonic()
 
-    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+    def note(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Counts."""
         self._done += len(measured) + len(faults)
         self._n_failing += sum(bool(one.row["exit_code"]) for one in measured) + len(faults)
@@ -275,7 +275,7 @@ class TerminalWatch:
         """Begins to count what is to be measured."""
         self._bar.update(self._task, total=len(items))
 
-    def tell(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
+    def note(self, measured: Sequence[ItemResult], faults: Sequence[Fault]) -> None:
         """Counts, and prints what fails."""
         for fault in faults:
             self._print(f"error     {self._name(fault.number)}: {fault.text}")

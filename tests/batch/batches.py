@@ -59,7 +59,7 @@ class Told:
         self.names = {item.number: item.name for item in items}
         self.todo = list(self.names.values())
 
-    def tell(self, measured, faults) -> None:
+    def note(self, measured, faults) -> None:
         self.measured += [self.names[one.number] for one in (*measured, *faults)]
 
 

@@ -43,16 +43,16 @@ def test_any_mark_that_is_another_makes_it_read_again(file, mark):
 def test_what_was_read_soon_after_its_last_change_is_not_kept(file):
     hashes = FileHashes()
     assert hashes.of(file) is not None
-    assert hashes.taken() == []  # written a moment ago: racy
+    assert hashes.stamps() == []  # written a moment ago: racy
 
 
 def test_what_changed_as_it_was_read_is_not_kept(file):
     hashes = FileHashes()
     early = marks(file)._replace(read=LONG_AGO)
     hashes.learn([(file, early)])
-    assert hashes.taken() == []
+    assert hashes.stamps() == []
     hashes.learn([(file, marks(file))])
-    assert hashes.taken() == [(file, marks(file))] and hashes.taken() == []
+    assert hashes.stamps() == [(file, marks(file))] and hashes.stamps() == []
 
 
 def test_content_changed_with_its_time_set_back_is_seen(file):

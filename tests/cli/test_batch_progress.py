@@ -20,10 +20,10 @@ def test_a_line_says_how_far_it_is_and_names_the_deepest_contact():
     watch = PipeWatch(NAMES.__getitem__)
     watch.begin(NAMES, 3)
     assert watch.line == "0 of 4 cases measured"
-    watch.tell([result(0, "clear", 0, 0.4)], [])
+    watch.note([result(0, "clear", 0, 0.4)], [])
     assert watch.line.endswith("0 failed, worst clear 400.0 mm, a")
-    watch.tell([result(1, "contact", 1, 0.0, 0.01), result(2, "contact", 1, 0.0, 0.03)], [])
-    watch.tell([], [Fault(3, "unreadable")])
+    watch.note([result(1, "contact", 1, 0.0, 0.01), result(2, "contact", 1, 0.0, 0.03)], [])
+    watch.note([], [Fault(3, "unreadable")])
     assert watch.line.startswith("4 of 4 cases measured, ")
     assert watch.line.endswith(" 0 s left, 3 failed, worst contact 30.00 mm deep, c")
 
@@ -44,5 +44,5 @@ def test_quiet_is_silent_and_a_short_batch_too(every, monkeypatch, capsys):
     monkeypatch.setattr(batch_run, "EVERY", every)
     with shown_progress(every < 1, NAMES.__getitem__) as watch:
         watch.begin(NAMES, 0)
-        watch.tell([result(0, "clear", 0, 0.4)], [])
+        watch.note([result(0, "clear", 0, 0.4)], [])
     assert capsys.readouterr().err == ""

@@ -126,7 +126,7 @@
     chosen = i;
     byId("chosen").hidden = false;
     byId("chosen-name").textContent = data.names[i];
-    const lines = [...data.reasons[i], ...data.beside[i]];
+    const lines = [...data.reasons[i], ...data.notes[i]];
     byId("chosen-reasons").replaceChildren(
       ...lines.map((line) => {
         const made = document.createElement("li");
