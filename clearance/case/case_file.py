@@ -26,7 +26,7 @@ from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
-from clearance.case.scene_rows import with_held_parts, with_scene_rows
+from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import BadInput, at
 from clearance.formats.files.input_files import InputFiles
@@ -211,7 +211,7 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     with at(read.path.name):
         for entry, placed in zip(read.entries, case.robots, strict=True):
             require_placed(placed.robot, _placed_joints(placed), f"{entry.field}.joints")
-        case, held_notes = with_held_parts(case, read.scene)
+        case, attached_notes = with_attached_parts(case, read.scene)
         timeline = _run_through(case)
     several = len(case.robots) > 1
     notes = [note for entry, placed in zip(read.entries, case.robots, strict=True)
@@ -219,8 +219,8 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     start, end = timeline.times[[0, -1]].tolist()
     on_motion = notes_on_motion(case, start, end)
     on_robots = [*read.notes, *(note for robot in read.motion_notes for note in robot)]
-    told = (*notes, *dict.fromkeys(on_robots), *held_notes, *read.scene_notes, *on_motion)
-    return case.telling(sources=tuple(sources), notes=told)
+    every_note = (*notes, *dict.fromkeys(on_robots), *attached_notes, *read.scene_notes, *on_motion)
+    return case.with_remarks(sources=tuple(sources), notes=every_note)
 
 
 def _run_through(case: Case) -> Timeline:

@@ -24,14 +24,14 @@ class _Table(NamedTuple):
     """What moves, and when its table is followed: its first and last sample [s] of the run.
 
     Attributes:
-        taken: [s] when it is picked up, which ends its table; infinite for what never is.
+        picked_up: [s] when it is picked up, which ends its table; infinite for what never is.
     """
 
     what: _Actor
     first: float
     last: float
     timing: Timing
-    taken: float = math.inf
+    picked_up: float = math.inf
 
 
 class _Actor(NamedTuple):
@@ -61,13 +61,13 @@ def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
         start, end: [s] of the run.
     """
     moving = [obstacle for obstacle in case.obstacles if obstacle.moves is not None]
-    told = [(_Actor("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
+    said = [(_Actor("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
     for table in _tables(case):
-        told += [(table.what, deed) for deed in _before_and_after(table, start, end)]
-        if table.taken < table.last:
-            told.append((table.what, _until_taken(table.taken)))
+        said += [(table.what, deed) for deed in _before_and_after(table, start, end)]
+        if table.picked_up < table.last:
+            said.append((table.what, _until_picked_up(table.picked_up)))
     alike: dict[tuple[str, _Sentence], list[str]] = {}
-    for thing, deed in told:
+    for thing, deed in said:
         alike.setdefault((thing.kind, deed), []).append(repr(thing.name))
     return tuple(_line(kind, names, deed) for (kind, deed), names in alike.items())
 
@@ -89,7 +89,7 @@ def _tables(case: Case) -> Iterator[_Table]:
                 _Actor("obstacle", obstacle.name), obstacle.moves.times, obstacle.moves.timing
             )
             starts = [c.window.start for c in case.carries if c.part == obstacle.name]
-            yield table._replace(taken=min(starts, default=math.inf))
+            yield table._replace(picked_up=min(starts, default=math.inf))
 
 
 def _table(what: _Actor, times: np.ndarray, timing: Timing) -> _Table:
@@ -97,7 +97,7 @@ def _table(what: _Actor, times: np.ndarray, timing: Timing) -> _Table:
     return _Table(what, first, last, timing)
 
 
-def _until_taken(time: float) -> _Sentence:
+def _until_picked_up(time: float) -> _Sentence:
     return _Sentence(
         f"follows its table until it is picked up at {time:g} s",
         f"follow their tables until they are picked up at {time:g} s",
@@ -105,10 +105,10 @@ def _until_taken(time: float) -> _Sentence:
 
 
 def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Sentence]:
-    _, first, last, timing, taken = table
-    early, late = start < first, last < min(end, taken)
+    _, first, last, timing, picked_up = table
+    early, late = start < first, last < min(end, picked_up)
     if timing.after == "absent":
-        if early and taken < math.inf:
+        if early and picked_up < math.inf:
             when = f"in the cell from {first:g} s (after: absent)"
             yield _Sentence(f"is {when}", f"are {when}")
         elif early or late:
@@ -149,7 +149,9 @@ def note_on_joints_at_zero(robot: Robot, given: Iterable[str], field: str) -> li
         field: where a case file could give them one.
     """
     known = set(given)
-    left = [joint.name for joint in robot.moving_joints if joint.name not in known]
-    if not left:
+    at_zero = [joint.name for joint in robot.moving_joints if joint.name not in known]
+    if not at_zero:
         return []
-    return [f"joints given neither by the trajectory nor by {field} stay at 0: {listed(left, 8)}"]
+    return [
+        f"joints given neither by the trajectory nor by {field} stay at 0: {listed(at_zero, 8)}"
+    ]

@@ -136,9 +136,9 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
                 valid=f"at most {most:g} {units[one.joint]}; is its clock another (--recorded-offset)?",
             )
         joints[one.joint] = replace(joints.get(one.joint, JointTolerance()), tracking=one.greatest)
-    told = f"tracking: the greatest errors of the run {found.path}"
+    source = f"tracking: the greatest errors of the run {found.path}"
     robots = {**budget.robots, name: replace(robot, joints=joints)}
-    return replace(budget, robots=robots, sources=(*budget.sources, told))
+    return replace(budget, robots=robots, sources=(*budget.sources, source))
 
 
 def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
@@ -182,6 +182,6 @@ def _notes(found: Recording) -> list[str]:
     start = float(found.timing.run_times(found.commanded.times)[0])
     short = "" if (found.start, found.end) == (start, end) else f", of {start:.3f} to {end:.3f} s"
     return [
-        f"recorded run {found.path}: held against what was asked {span}{short}; {clock}, no offset is estimated",
+        f"recorded run {found.path}: compared with what was asked {span}{short}; {clock}, no offset is estimated",
         "what is proven holds for every run that stays as near to this one as this one to what was asked",
     ]

@@ -45,9 +45,11 @@ def resting_positions(
         return StatePositions(dict(by_value), ())
     with at(f"{field}.state"):
         shown, (found, notes) = positions_asked(entry, names, robot, folder, files)
-    taken = {name: found[name] for name in found if name not in by_value and name not in moved}
-    others = [name for name in found if name not in taken]
-    return StatePositions({**by_value, **taken}, (*notes, _note(shown, names, taken, others)))
+    of_states = {name: found[name] for name in found if name not in by_value and name not in moved}
+    others = [name for name in found if name not in of_states]
+    return StatePositions(
+        {**by_value, **of_states}, (*notes, _note(shown, names, of_states, others))
+    )
 
 
 def positions_asked(
@@ -66,10 +68,14 @@ def positions_asked(
     return known.shown, positions_in_states(known, names, robot)
 
 
-def _note(shown: str, names: Sequence[str], taken: dict[str, float], others: Sequence[str]) -> str:
-    rest = listed([f"{name} {position:g}" for name, position in taken.items()], 12) or "no joint"
-    told = f"{shown}: by state {listed([*map(repr, names)])} rest {rest}"
-    return told + (
+def _note(
+    shown: str, names: Sequence[str], of_states: dict[str, float], others: Sequence[str]
+) -> str:
+    rest = (
+        listed([f"{name} {position:g}" for name, position in of_states.items()], 12) or "no joint"
+    )
+    text = f"{shown}: by state {listed([*map(repr, names)])} rest {rest}"
+    return text + (
         f"; the case or the trajectory says more of {listed(others, 8)}" if others else ""
     )
 

@@ -132,27 +132,27 @@ def _any(pattern: str, names: Collection[str]) -> bool:
     )
 
 
-def with_held_parts(case: Case, content: SceneContent) -> tuple[Case, list[str]]:
+def with_attached_parts(case: Case, content: SceneContent) -> tuple[Case, list[str]]:
     """The case in which the parts that its scene file attaches to links are carried by them, and notes.
 
     A part that the case says something of is left to it.
     """
     own = {carry.part for carry in case.carries}
-    held = [one for one in content.held if one.part not in own]
-    if not held:
+    attached = [one for one in content.held if one.part not in own]
+    if not attached:
         return case, []
     names = body_names(case)
     known = (*names.links, *names.obstacles)
     motions = [kinematic_motion(placed) for placed in case.robots]
     start = float(timeline_of(case, motions).times[0])
     carries, unknown = [], dict[str, None]()
-    for one in held:
+    for one in attached:
         there = [name for name in one.touch if any(matches(body, name) for body in known)]
         unknown |= dict.fromkeys(name for name in one.touch if name not in there)
         carries.append(Carry(one.part, one.link, Window(start), tuple(there)))
-    told = ", ".join(f"{one.part} by {one.link}" for one in held[:6])
-    more = f" and {len(held) - 6} more" if len(held) > 6 else ""
-    notes = [f"attached objects of the scene's file are carried all the time: {told}{more}"]
+    shown = ", ".join(f"{one.part} by {one.link}" for one in attached[:6])
+    more = f" and {len(attached) - 6} more" if len(attached) > 6 else ""
+    notes = [f"attached objects of the scene's file are carried all the time: {shown}{more}"]
     if unknown:
         notes.append(f"touch_links that are not there are left out: {listed([*unknown], 6)}")
     return replace(case, carries=(*case.carries, *carries)), notes

@@ -29,8 +29,8 @@ def fingerprint(
     """
     digest = hashlib.sha256()
     digest.update(_program().encode())
-    told = (case.limits, case.allow, case.carries, case.clock, tuple(pairs), options)
-    digest.update(repr(told).encode())
+    values = (case.limits, case.allow, case.carries, case.clock, tuple(pairs), options)
+    digest.update(repr(values).encode())
     if case.tolerance is not None:
         digest.update(repr(case.tolerance).encode())
     for motion in motions:

@@ -159,8 +159,8 @@ def not_measured_text(spans: Sequence[tuple[float, float]]) -> str:
     """Which stretches [s] of a run are left out; empty for none."""
     if not spans:
         return ""
-    told = [f"from {start:.6g} to {end:.6g} s" for start, end in spans]
-    return f"not measured {listed(told)}"
+    spelled = [f"from {start:.6g} to {end:.6g} s" for start, end in spans]
+    return f"not measured {listed(spelled)}"
 
 
 def span_text(start: float, end: float) -> str:

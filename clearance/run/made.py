@@ -88,8 +88,8 @@ def _with_both_readings(record: Record, question: Question, other: Case) -> Reco
     """
     asked = replace(question, case=other, cross_check=False, contact="none", body_gaps=False)
     nearest = [one.nearest for one in (record, answered(asked, DEFAULT_RESOURCES).record)]
-    told = ["contact" if one.touches else f"{mm(one.clearance)} mm" for one in nearest]
-    text = f"least clearance as written: {told[0]}, the shortest way: {told[1]}"
+    texts = ["contact" if one.touches else f"{mm(one.clearance)} mm" for one in nearest]
+    text = f"least clearance as written: {texts[0]}, the shortest way: {texts[1]}"
     notices = (
         replace(one, text=f"{one.text}; {text}") if one.kind == WRAP else one
         for one in record.notices
@@ -133,12 +133,12 @@ def _samples(
 ) -> Samples:
     case, motions, pairs = plan.question.case, plan.motions, plan.sections.pairs
     simulated = plan.question.motion == "simulated"
-    left = None
+    remaining = None
     if budget is not None:
         from clearance.budget.columns import columns_of
 
-        left = columns_of([one.left for one in budget])
-    columns = StepColumns(case, motions, pairs, run.answer, simulated, left)
+        remaining = columns_of([one.left for one in budget])
+    columns = StepColumns(case, motions, pairs, run.answer, simulated, remaining)
     on_disk = resources.rows.folder is not None  # which may be gone when somebody reads it
     table = resources.rows.table("steps", columns.batches()) if on_disk else columns
     unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, run.rules))
@@ -188,12 +188,12 @@ def _for_peer(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
     from clearance.crosscheck import is_too_large
 
     section = answer.section
-    kept = [i for i, pair in enumerate(section.pairs) if not is_too_large(case, pair)]
-    if len(kept) == len(section.pairs):
+    measurable = [i for i, pair in enumerate(section.pairs) if not is_too_large(case, pair)]
+    if len(measurable) == len(section.pairs):
         yield answer
-    elif kept:
-        pairs = tuple(section.pairs[i] for i in kept)
-        part = replace(section, pairs=pairs, places=section.places[kept])
+    elif measurable:
+        pairs = tuple(section.pairs[i] for i in measurable)
+        part = replace(section, pairs=pairs, places=section.places[measurable])
         yield SectionAnswer(part, measure(part.in_motion), None)
 
 

@@ -53,7 +53,7 @@ class Question(QuestionOptions):
             object.__setattr__(self, "certify_gap", CERTIFY_GAP)
         today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
         object.__setattr__(self, "today", today)
-        case = self.case.telling()
+        case = self.case.with_remarks()
         object.__setattr__(case, "notices", notices_of(case))
         object.__setattr__(self, "case", case)
 

@@ -89,14 +89,14 @@ class Run:
     def _of_moment(self, moment: Moment) -> dict:
         """The row of a moment's step, with what is so at that moment of its pair."""
         row = self._row(moment.step)
-        told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
+        measured = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
         for sides in (SIDES, LINK_AND_OBSTACLE):
-            told |= _told_of(sides, moment)
+            measured |= _measured_columns(sides, moment)
         if "time_b" in row:
-            told["time_b"] = moment.time_b
+            measured["time_b"] = moment.time_b
         if moment.depth is not None:
-            told["penetration"] = moment.depth.penetration
-        return row | told
+            measured["penetration"] = moment.depth.penetration
+        return row | measured
 
     def _row(self, step: int) -> dict:
         row = self.record.steps.slice(step, 1).to_pylist()[0]
@@ -219,7 +219,7 @@ class Run:
         return Path(folder)
 
 
-def _told_of(sides: tuple[str, str], moment: Moment) -> dict[str, Any]:
+def _measured_columns(sides: tuple[str, str], moment: Moment) -> dict[str, Any]:
     """Names and witness points of a moment, as the columns of a table have them."""
     values = (moment.link, moment.obstacle, *moment.point_link, *moment.point_obstacle)
     return dict(zip(columns_of(sides), values, strict=True))

@@ -344,7 +344,9 @@ class Case:
             values.append(tuple(sorted(placed.padding.items())))
         return cell_of(objects, tuple(values))
 
-    def telling(self, **values: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]) -> Case:
+    def with_remarks(
+        self, **values: tuple[Notice, ...] | tuple[str, ...] | tuple[Source, ...]
+    ) -> Case:
         """The same with other `notices`, `notes` or `sources`, of which nothing is to be checked.
 
         Its cell is found again: somebody may have written into an array since.

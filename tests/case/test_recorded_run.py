@@ -101,7 +101,7 @@ def test_its_errors_become_the_tracking(tmp_path):
     )
     told = " | ".join(found.notes)
     assert (
-        "recorded run run.csv: held against what was asked from 0.000 to 2.000 s; its clock is taken"
+        "recorded run run.csv: compared with what was asked from 0.000 to 2.000 s; its clock is taken"
         in told
     )
     assert "run.csv" in [one.path for one in found.sources]

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from clearance.case.new_case.robot import NewCaseRequest
-from clearance.case.scene_rows import with_held_parts, with_scene_rows
+from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.formats.files.input_files import path_from, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.scene.formats import read_scene
@@ -98,8 +98,8 @@ def _with_rows(
     scene = validated(Scene, content.scene, asked.shown)
     obstacles, _ = make_obstacles(scene.obstacles, asked.path.parent, meshes)
     case, row_notes = with_scene_rows(Case("new", (placed,), obstacles), content)
-    case, held_notes = with_held_parts(case, content)
-    return case, [*row_notes, *held_notes]
+    case, attached_notes = with_attached_parts(case, content)
+    return case, [*row_notes, *attached_notes]
 
 
 def _seen_from(folder: Path, includes: Mapping[str, str]) -> dict[str, str]:

@@ -216,8 +216,8 @@ def tracking_of(
         path = resolved(given.file, folder)
         with at("file"), at(files.shown(path)):
             bounds = _of_file(files.read(path), case)
-            told = f"path tolerances of controllers in {files.shown(path)}"
-            return _joined(numbers, bounds, case, told)
+            source = f"path tolerances of controllers in {files.shown(path)}"
+            return _joined(numbers, bounds, case, source)
 
 
 def _numbers(given: Tracking, case: Case) -> dict[_Key, float]:
@@ -260,7 +260,7 @@ def _of_case(case: Case) -> dict[_Key, PathTolerance]:
 
 
 def _joined(
-    numbers: Mapping[_Key, float], bounds: Mapping[_Key, PathTolerance], case: Case, told: str
+    numbers: Mapping[_Key, float], bounds: Mapping[_Key, PathTolerance], case: Case, source: str
 ) -> TrackingErrors:
     """Numbers before bounds.
 
@@ -288,5 +288,5 @@ def _joined(
         for one in joints_of(case).all
         if (one.owner, one.part) not in errors and one.part in leaders
     ]
-    told += f"; none of joints {listed(free, 8)}" if free else ""
-    return TrackingErrors(errors, (told,))
+    source += f"; none of joints {listed(free, 8)}" if free else ""
+    return TrackingErrors(errors, (source,))

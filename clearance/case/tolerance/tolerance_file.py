@@ -72,8 +72,8 @@ def tolerance_digest(path: Path) -> str:
     if block.tracking is not None and block.tracking.file is not None:
         with at(f"{place}: tracking.file"):
             files.read(path.parent / block.tracking.file)
-    told = [(source.path, source.sha256) for source in files.sources]
-    return hashlib.sha256(repr(told).encode()).hexdigest()
+    hashes = [(source.path, source.sha256) for source in files.sources]
+    return hashlib.sha256(repr(hashes).encode()).hexdigest()
 
 
 def _with_file(case: Case, path: Path) -> Case:

@@ -31,9 +31,9 @@ def own_folder(place: Path) -> Iterator[None]:
     Raises:
         Unwritable: something else is there, another run is writing there, or there is no way or room to write.
     """
-    with ExitStack() as held:
-        while not _is_taken(place, held):
-            held.close()  # the run before has just finished, and taken its folder away
+    with ExitStack() as opened:
+        while not _is_acquired(place, opened):
+            opened.close()  # the run before has just finished, and taken its folder away
         yield
 
 
@@ -81,8 +81,8 @@ def _has_mark(lock: FileIO) -> bool:
     return lock.read(len(MARK)) == MARK[1:]
 
 
-def _is_taken(place: Path, held: ExitStack) -> bool:
-    """Whether `place` is there now, ours and locked; `held` keeps it."""
+def _is_acquired(place: Path, opened: ExitStack) -> bool:
+    """Whether `place` is there now, ours and locked; `opened` keeps it."""
     with unwritable(place):
         place.parent.mkdir(parents=True, exist_ok=True)
         fresh = Path(tempfile.mkdtemp(prefix=f"{place.name}-", suffix=".new", dir=place.parent))
@@ -93,7 +93,7 @@ def _is_taken(place: Path, held: ExitStack) -> bool:
                 return False
         finally:
             shutil.rmtree(fresh, ignore_errors=True)
-        lock = _opened(place, held)
+        lock = _opened(place, opened)
     return lock is not None and _is_locked(lock, place)
 
 
@@ -133,7 +133,7 @@ def _is_like(place: Path, like: os.stat_result) -> bool:
     return True
 
 
-def _opened(place: Path, held: ExitStack) -> FileIO | None:
+def _opened(place: Path, opened: ExitStack) -> FileIO | None:
     """The lock of a folder that we made; None if the folder is gone.
 
     Raises:
@@ -145,7 +145,7 @@ def _opened(place: Path, held: ExitStack) -> FileIO | None:
         if not os.path.lexists(place):
             return None
         raise _foreign(place, "a folder is there that no run of ours has made") from None
-    lock = held.enter_context(FileIO(descriptor, "r+"))
+    lock = opened.enter_context(FileIO(descriptor, "r+"))
     if not _has_mark(lock):
         raise _foreign(place, "a folder is there that no run of ours has made")
     return lock
