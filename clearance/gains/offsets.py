@@ -20,7 +20,6 @@ from clearance.gains.grasp import Grasps
 from clearance.gains.joint_rows import joint_rows
 from clearance.gains.programme import Box, Inequalities, reachable, within_reach
 from clearance.gains.shortfalls import Rows
-from clearance.gains.tool import tool_of
 from clearance.gains.tool_poses import ToolKeep, ToolPoses
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.point_motion import has_joint_between, motion_of_frame
@@ -30,6 +29,7 @@ from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 from clearance.world.phase import Phase
 from clearance.world.timeline import Timeline
+from clearance.world.tool import tool_of
 
 SLIDE = 2.0
 """[rad/m] A slide of half a metre counts as one radian: what a turn moves at the reach of a small arm."""

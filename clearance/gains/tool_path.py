@@ -18,7 +18,6 @@ from clearance.gains.offsets import columns_of, require_path
 from clearance.gains.programme import Box
 from clearance.gains.shift import Shift
 from clearance.gains.shortfalls import Rows
-from clearance.gains.tool import Tool, apart, tool_of
 from clearance.gains.tool_limits import limit_rows
 from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
@@ -28,6 +27,7 @@ from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.timeline import Timeline
+from clearance.world.tool import Tool, apart, tool_of
 from clearance.world.trajectory import Trajectory
 
 STILL = 1e-7

@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.gains.between_samples import values_between
-from clearance.gains.tool import Tool
 from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import extremes_of, joint_courses
 from clearance.world.joint_speeds import greatest_rates
+from clearance.world.tool import Tool
 
 PARTS = 16
 """Of each interval, at whose ends the tool is measured."""

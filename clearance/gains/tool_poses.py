@@ -14,8 +14,8 @@ import numpy as np
 
 from clearance.errors import BadDimension, BadInput
 from clearance.gains.shortfalls import Rows
-from clearance.gains.tool import Tool, apart
 from clearance.gains.turn import ARM
+from clearance.world.tool import Tool, apart
 
 _SIDES = np.array([side for side in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(side)])
 DIRECTIONS = _SIDES / np.linalg.norm(_SIDES, axis=1)[:, None]

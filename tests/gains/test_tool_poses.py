@@ -5,8 +5,8 @@ import pytest
 
 import clearance as cl
 from clearance.errors import UnknownLink
-from clearance.gains.tool import apart, tool_of
 from clearance.world.robot import Joint, JointKind, Mimic
+from clearance.world.tool import apart, tool_of
 from tests.gains.gantries import along_x, gantry, slot, standing
 
 

@@ -1,9 +1,8 @@
-"""The tool of a robot: a link, where it is and how its pose changes with the joints of a table.
+"""A tool of a robot: a pose fixed to a link, where it is and how it changes with given joints.
 
 Poses are seen from the robot's root, so that what the robot stands on is none of it. Not for: what is to be kept
-of them (`tool_poses`, `tool_path`).
+of them (`gains`), joints for a pose (`programs.inverse`).
 """
-
 from __future__ import annotations
 
 from dataclasses import dataclass
