@@ -21,13 +21,14 @@ from clearance.gains.shortfalls import Rows
 from clearance.gains.tool_limits import limit_rows
 from clearance.gains.turn import ARM
 from clearance.geometry.pose import inverse
+from clearance.programs.inverse import MOST_FROM_AFAR, joints_at, least_motion
 from clearance.simulate.answers.approaches import Approach
 from clearance.simulate.answers.transfers import Transfers
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import WORLD, forest_of
 from clearance.world.pairs import BodyIndex, Pair
 from clearance.world.timeline import Timeline
-from clearance.world.tool import Tool, apart, tool_of
+from clearance.world.tool import Tool, tool_of
 from clearance.world.trajectory import Trajectory
 
 STILL = 1e-7
@@ -37,13 +38,8 @@ UNREACHED = 10.0
 """[m] What counts as missing where a pose cannot be reached: more than any clearance makes good."""
 
 
-MOST_STEPS = 60
-
 REACHED = 1e-9
 """[m] and [rad]: a pose that is this near is reached."""
-
-DAMPING = 1e-12
-"""[-] Of what is linear, and the least of any step."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,17 +117,19 @@ class ToolPathKept:
     def _solution(self, base: np.ndarray) -> FollowedPath:
         asked, left, rates_kept = self.placed.given_trajectory, 0.0, None
         if not np.array_equal(base, self.placed.world_from_base):
-            at, left = joints_for(self.tool, inverse(base) @ self.world_from_tool, asked.positions)
+            wanted = inverse(base) @ self.world_from_tool
+            at, missed = joints_at(self.tool, wanted, asked.positions, None, MOST_FROM_AFAR)
+            left = float(missed.max())
             rates_kept = asked.velocities
             asked = replace(asked, positions=at, path_error=0.0, points=None)
         poses, rates = self.tool.poses_and_rates(asked.positions)
         rates = _seen_from_world(rates, base)
         if rates_kept is not None:
             more = self._twists - np.einsum("nij,nj->ni", rates, rates_kept)
-            more = least_squares(rates, more[:, :, None])[:, :, 0]
+            more = least_motion(rates, more[:, :, None])[:, :, 0]
             asked = replace(asked, velocities=rates_kept + more)
         by_base = self._by_base(base @ poses, base)
-        followed = -least_squares(rates, by_base)
+        followed = -least_motion(rates, by_base)
         return FollowedPath(asked, followed, by_base + rates @ followed, left)
 
     @cached_property
@@ -243,34 +241,3 @@ def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept
             valid="a tool path that is moved, or an arm of six joints or more",
         )
     return found
-
-
-def joints_for(tool: Tool, wanted: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, float]:
-    """(n, k) joints that bring the tool to each pose (n, 4, 4), seen from the root, and what is left at worst.
-
-    Args:
-        start: (n, k) [rad or m] where the joints are. Of several solutions the one that steps of least length
-            lead to.
-    """
-    at = start.copy()
-    for _ in range(MOST_STEPS):
-        poses, rates = tool.poses_and_rates(at)
-        off = apart(wanted, poses)
-        left = np.abs(off).max(axis=1)
-        if left.max() <= REACHED:
-            break
-        damping = DAMPING + (off**2).sum(axis=1)
-        at = at + least_squares(rates, off[:, :, None], damping)[:, :, 0]
-    return at, float(left.max())
-
-
-def least_squares(
-    rates: np.ndarray, aims: np.ndarray, damping: np.ndarray | float = DAMPING
-) -> np.ndarray:
-    """(n, k, m) of least length that (n, 6, k) rates make the aims (n, 6, m) of, but for the damping."""
-    turned = np.swapaxes(rates, 1, 2)
-    n_joints = rates.shape[2]
-    level = np.broadcast_to(damping, len(rates))[:, None, None]
-    if n_joints < 6:
-        return np.linalg.solve(turned @ rates + level * np.eye(n_joints), turned @ aims)
-    return np.asarray(turned @ np.linalg.solve(rates @ turned + level * np.eye(6), aims))

@@ -11,8 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from clearance.programs.series import ORDER, matrix_product, product, sine_and_cosine
+from clearance.world.case import PlacedRobot
 from clearance.world.kinematic_chain import ChainJoint, KinematicChain, chain_between
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import Joint, Robot
+from clearance.world.tool import Tool
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +44,6 @@ class Arm:
         """(4, 4) the tool in the frame of the last joint [m]."""
         return np.asarray(self.chain.end @ self.link_from_tool)
 
-    @cached_property
-    def slides(self) -> np.ndarray:
-        """(k,) which joints slide."""
-        return np.array([joint.kind is JointKind.PRISMATIC for joint in self.joints], dtype=bool)
-
     def longest(self, positions: np.ndarray) -> float:
         """[m] no point of the chain is farther from a joint's axis, with slides as far out as in positions (n,
         k)."""
@@ -58,23 +55,16 @@ class Arm:
         )
         return fixed + float(np.linalg.norm(self.end[:3, 3])) + slid
 
+    @cached_property
+    def tool(self) -> Tool:
+        """The tool by the joints of the arm."""
+        names = tuple(joint.name for joint in self.joints)
+        link = self.robot.link_names.index(self.link)
+        return Tool(PlacedRobot(self.robot), link, names, self.link_from_tool)
+
     def poses(self, positions: np.ndarray) -> np.ndarray:
         """(n, 4, 4) `root_from_tool` [m] at positions (n, k) [rad or m]."""
-        return np.asarray(self.chain.frames(positions)[:, -1] @ self.link_from_tool)
-
-    def poses_and_rates(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(n, 4, 4) `root_from_tool` [m], and (n, 6, k) how its origin moves and how it turns by each joint."""
-        frames = self.chain.frames(positions)
-        tool = frames[:, -1] @ self.link_from_tool
-        rates = np.zeros((len(positions), 6, len(self.joints)))
-        for i, joint in enumerate(self.chain.joints):
-            axes = joint.factor * (frames[:, i, :3, :3] @ joint.axis)
-            if not joint.turns:
-                rates[:, :3, joint.column] += axes
-                continue
-            rates[:, :3, joint.column] += np.cross(axes, tool[:, :3, 3] - frames[:, i, :3, 3])
-            rates[:, 3:, joint.column] += axes
-        return tool, rates
+        return self.tool.poses(positions)
 
     def second_rates(self, positions: np.ndarray, seen_from: np.ndarray) -> np.ndarray:
         """(n, 6, k, k) how each column of the Jacobian changes by each joint: turns seen from the tool.

@@ -31,6 +31,7 @@ from clearance.programs.tool_path import Stretch
 from clearance.world.corner_zone import CornerZone, Deviation
 from clearance.world.kinematics import links_of_robot, poses_by_link
 from clearance.world.robot import JointKind, Robot
+from clearance.world.tool import rates_of
 
 PATH_ERROR = 1e-6
 """[rad or m] How far a joint may be off its cubic on lines and arcs; a robot of 1 m loses some 6 um of
@@ -133,7 +134,7 @@ def _grid(follower: Follower, samples: PathSamples, n_cells: int) -> _Grid:
     poses = stretch.poses(
         middle[i] + shifts[:, :1] * np.array([1.0, -1.0]), middle[i] + shifts[:, 1:]
     )
-    solved = joints_at(follower.arm, poses, near[i], follower.free)
+    solved = joints_at(follower.arm.tool, poses, near[i], follower.free)
     return _Grid(shape, Spread(solved.positions - near[i], shifts, halves))
 
 
@@ -172,7 +173,7 @@ def _links(arm: Arm, found: Enclosed, spread: Spread) -> dict[str, Deviation]:
         above = _Above.of(links, i, columns)
         if not above.driven:
             continue
-        carrier = robot.link_names[above.driven[0]]
+        carrier = robot.link_names[above.driven[0][0]]
         if above.others == 0:
             told[name] = _off(links, nominal, shifted, above, lengths[name], found, spread)
         elif carrier in told and above.others == above.others_below:
@@ -189,14 +190,15 @@ class _Above(NamedTuple):
     """The joints between a link and the root.
 
     Attributes:
-        link: whose they are. driven: links whose joint the arm drives, from it to the root.
+        link: whose they are. driven: those that the arm drives, from the link to the root: the link below each and
+            its place among the arm's.
         columns, factors, slides: (m,) of those joints: their place among the arm's, and how they follow it.
         others: how many joints are not the arm's, wherever they are. others_below: how many of them are below the
             driven.
     """
 
     link: int
-    driven: tuple[int, ...]
+    driven: tuple[tuple[int, int], ...]
     columns: np.ndarray
     factors: np.ndarray
     slides: np.ndarray
@@ -209,21 +211,14 @@ class _Above(NamedTuple):
         driven, others, others_below, above = [], 0, 0, link
         while above != NO_PARENT:
             if int(links.columns[above]) in columns:
-                driven.append(above)
+                driven.append((above, columns.index(int(links.columns[above]))))
             elif links.columns[above] != NO_COLUMN:
                 others += 1
                 others_below += not driven
             above = int(links.parents[above])
-        own = [columns.index(int(links.columns[one])) for one in driven]
-        return cls(
-            link,
-            tuple(driven),
-            np.array(own, dtype=np.int64),
-            links.factors[driven],
-            links.kinds[driven] == SLIDING,
-            others,
-            others_below,
-        )
+        own, at = np.array(driven, dtype=np.int64).reshape(-1, 2).T
+        slides = links.kinds[own] == SLIDING
+        return cls(link, tuple(driven), at, links.factors[own], slides, others, others_below)
 
     def sums(self, ways: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n,) [rad] what those that turn, and (n,) [m] what those that slide, move by with the arm's ways (n,
@@ -264,7 +259,8 @@ def _off(
     box, within, i = found.box, found.variation.within, above.link
     by_shift = above.change(length, np.abs(spread.joints), within)
     by_box = above.change(length, within + box, box)
-    rest = (np.abs(_rates(links, shifted, above, box.shape[1])) @ box[..., None])[..., 0]
+    rates = rates_of(links, shifted, shifted[:, i, :3, 3], above.driven, box.shape[1])
+    rest = (np.abs(rates) @ box[..., None])[..., 0]
     ways = np.linalg.norm(shifted[:, i, :3, 3] - nominal[:, i, :3, 3], axis=1)
     ways += np.linalg.norm(rest[:, :3], axis=1) + by_shift[0] + by_box[0]
     turns = _angles(nominal[:, i, :3, :3], shifted[:, i, :3, :3])
@@ -292,18 +288,3 @@ def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     between = np.swapaxes(a, 1, 2) @ b
     cosines = 0.5 * (np.trace(between, axis1=1, axis2=2) - 1.0)
     return np.arctan2(np.linalg.norm(half_skew(between), axis=1), cosines)
-
-
-def _rates(links: Links, poses: np.ndarray, above: _Above, k: int) -> np.ndarray:
-    """(n, 6, k) how the origin of a link's frame moves and how it turns by each joint of the arm."""
-    found, at = np.zeros((len(poses), 6, k)), poses[:, above.link, :3, 3]
-    for one, i, factor, slides in zip(
-        above.driven, above.columns, above.factors, above.slides, strict=True
-    ):
-        axes = factor * (poses[:, one, :3, :3] @ links.axes[one])
-        if slides:
-            found[:, :3, i] += axes
-        else:
-            found[:, :3, i] += np.cross(axes, at - poses[:, one, :3, 3])
-            found[:, 3:, i] += axes
-    return found

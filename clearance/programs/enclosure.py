@@ -109,7 +109,7 @@ def enclosed(
     path_turn, path_origin = stretch.series(*_shifted(strokes, spread))
     between = matrix_product(np.swapaxes(path_turn, 2, 3), turn)
     off = np.concatenate([origin - path_origin, half_skew(between)], axis=2)
-    _, rates = arm.poses_and_rates(joints[0])
+    _, rates = arm.tool.poses_and_rates(joints[0])
     inverse, is_regular = _inverses(rates, path_turn[0], free)
     longest = arm.longest(np.concatenate([given.before, given.after])) + _slid(arm, joints)
     longest += float(arm.sums(np.abs(spread.joints))[1].max(initial=0.0))

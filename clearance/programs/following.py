@@ -48,7 +48,7 @@ class Follower:
         Args:
             strokes: (3, n, 2) of the stretch. share_rates: (n,) [1/s] of the way through it.
         """
-        _, rates = self.arm.poses_and_rates(positions)
+        _, rates = self.arm.tool.poses_and_rates(positions)
         found = share_rates[:, None] * np.where(self.free, 0.0, self.held)
         wanted = self.stretch.rates(strokes[0], strokes[1]) - (rates @ found[..., None])[..., 0]
         found[:, self.free] = least_motion(rates[:, :, self.free], wanted[:, :, None])[:, :, 0]
@@ -68,7 +68,7 @@ class Follower:
             ((shares - at[i]) / np.diff(at)[i])[:, None],
         )
         poses = self.stretch.poses(self._strokes(shares)[0])
-        solved = joints_at(self.arm, poses, near, self.free)
+        solved = joints_at(self.arm.tool, poses, near, self.free)
         bad = int(np.argmax(solved.left))
         if solved.left[bad] > REACHED:
             raise _stuck(poses[bad], near[bad])
@@ -90,7 +90,7 @@ class Follower:
             near = found[-1] + step * rates[-1]
             share = 1.0 if shares[-1] + step > 1.0 - 1e-12 else shares[-1] + step
             pose = self.stretch.poses(self._strokes(np.array([share]))[0])
-            solved = joints_at(self.arm, pose, near[None], self.free)
+            solved = joints_at(self.arm.tool, pose, near[None], self.free)
             if solved.left[0] <= REACHED and np.abs(solved.positions[0] - near).max() <= FORESEEN:
                 shares.append(share)
                 found.append(solved.positions[0])

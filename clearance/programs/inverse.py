@@ -1,6 +1,6 @@
-"""The joints that bring a tool to poses near ones whose joints are known: Newton's method, of least joint motion.
+"""The joints that bring a tool to poses: Newton's method, damped, of least joint motion.
 
-Not for: poses far away (`following`), and what is proven of the answer (`enclosure`).
+Not for: going along a path (`following`), and what is proven of the answer (`enclosure`).
 """
 
 from __future__ import annotations
@@ -12,11 +12,13 @@ import numpy as np
 from clearance.errors import BadInput
 from clearance.programs.arm import Arm
 from clearance.programs.series import half_skew
+from clearance.world.tool import Tool
 
 REACHED = 1e-12
 """[m] and [rad]: a pose that is this near is reached, where rounding allows."""
 
-MOST_STEPS = 12
+MOST_STEPS, MOST_FROM_AFAR = 12, 60
+"""Steps to poses near those of known joints, and to any."""
 
 
 class Solved(NamedTuple):
@@ -30,23 +32,34 @@ class Solved(NamedTuple):
     left: np.ndarray
 
 
-def joints_at(arm: Arm, wanted: np.ndarray, start: np.ndarray, free: np.ndarray) -> Solved:
-    """The joints for poses (n, 4, 4) seen from the root, from joints (n, k) near them.
+def joints_at(
+    tool: Tool,
+    wanted: np.ndarray,
+    start: np.ndarray,
+    free: np.ndarray | None = None,
+    most_steps: int = MOST_STEPS,
+) -> Solved:
+    """The joints for poses (n, 4, 4) seen from the root, from joints (n, k) where they are.
+
+    Steps are of least joint motion, damped by the square of what is left (Sugihara 2011): far from the poses they
+    keep from singularities, near them they are Newton's.
 
     Args:
-        free: (k,) the joints that may move; the others stay as in `start`.
+        free: (k,) the joints that may move, all if not given; the others stay as in `start`.
     """
+    own = np.ones(start.shape[1], dtype=bool) if free is None else free
     at, least = start.copy(), np.full(len(start), np.inf)
-    for _ in range(MOST_STEPS):
-        poses, rates = arm.poses_and_rates(at)
+    for _ in range(most_steps):
+        poses, rates = tool.poses_and_rates(at)
         off = off_pose(wanted, poses)
         left = np.abs(off).max(axis=1)
         if (left <= REACHED).all() or ((left >= least).all() and (left <= 1e-9).all()):
             break
         least = np.minimum(least, left)
-        at[:, free] += least_motion(rates[:, :, free], off[:, :, None])[:, :, 0]
+        damping = (off**2).sum(axis=1)
+        at[:, own] += least_motion(rates[:, :, own], off[:, :, None], damping)[:, :, 0]
     cosines = np.einsum("nij,nij->n", wanted[:, :3, :3], poses[:, :3, :3])
-    return Solved(at, np.where(cosines > 1.0, left, np.inf))  # the sine of half a turn is 0 too
+    return Solved(at, np.where(cosines > 1.0, left, np.pi))  # the sine of half a turn is 0 too
 
 
 def off_pose(wanted: np.ndarray, poses: np.ndarray) -> np.ndarray:
@@ -55,16 +68,22 @@ def off_pose(wanted: np.ndarray, poses: np.ndarray) -> np.ndarray:
     return np.hstack([wanted[:, :3, 3] - poses[:, :3, 3], half_skew(turned)])
 
 
-def least_motion(rates: np.ndarray, aims: np.ndarray) -> np.ndarray:
-    """(n, k, m) the joints' motion of least length whose rates (n, 6, k) make the aims (n, 6, m).
+def least_motion(
+    rates: np.ndarray, aims: np.ndarray, damping: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """(n, k, m) the joints' motion of least length whose rates (n, 6, k) are nearest to the aims (n, 6, m).
 
-    The damping, `DAMPING` of the greatest rate squared, leaves the answer to rounding but where the arm is
-    singular.
+    Args:
+        damping: (n,) by which it is shorter. `DAMPING` of the greatest rate squared is added; it leaves the answer
+            to rounding but where the arm is singular.
     """
-    turned = np.swapaxes(rates, 1, 2)
-    square = rates @ turned
-    damping = DAMPING * np.trace(square, axis1=1, axis2=2)[:, None, None] + 1e-300
-    return np.asarray(turned @ np.linalg.solve(square + damping * np.eye(6), aims))
+    turned, n_joints = np.swapaxes(rates, 1, 2), rates.shape[2]
+    square = turned @ rates if n_joints < 6 else rates @ turned
+    level = damping + DAMPING * np.trace(square, axis1=1, axis2=2) + 1e-300
+    damped = square + level[:, None, None] * np.eye(square.shape[1])
+    if n_joints < 6:
+        return np.linalg.solve(damped, turned @ aims)
+    return np.asarray(turned @ np.linalg.solve(damped, aims))
 
 
 DAMPING = 1e-14
@@ -87,8 +106,7 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray) -> np.ndarray:
     spread = np.linspace(0.0, 1.0, SEEDS)[:, None] ** 2
     starts = np.clip(now + spread * (low + drawn * (high - low) - now), low, high)
     all_wanted = np.tile(wanted, (SEEDS, 1, 1))
-    near = _damped(arm, all_wanted, starts)
-    found = joints_at(arm, all_wanted, near, np.ones(len(now), dtype=bool))
+    found = joints_at(arm.tool, all_wanted, starts, most_steps=MOST_FROM_AFAR)
     low, high = arm.chain.ranges.T
     within = (found.positions >= low) & (found.positions <= high)
     fits = (found.left <= 1e-9) & within.all(axis=1)
@@ -100,15 +118,3 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray) -> np.ndarray:
         )
     ways = np.where(fits, np.abs(found.positions - now).max(axis=1), np.inf)
     return np.asarray(found.positions[int(np.argmin(ways))])
-
-
-def _damped(arm: Arm, wanted: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(n, k) joints nearer to poses, by damped least squares (Sugihara 2011)."""
-    at = start.copy()
-    for _ in range(40):
-        poses, rates = arm.poses_and_rates(at)
-        off = off_pose(wanted, poses)
-        damping = 1e-12 + (off**2).sum(axis=1)
-        square = rates @ np.swapaxes(rates, 1, 2) + damping[:, None, None] * np.eye(6)
-        at += (np.swapaxes(rates, 1, 2) @ np.linalg.solve(square, off[..., None]))[..., 0]
-    return at

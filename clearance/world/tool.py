@@ -3,9 +3,11 @@
 Poses are seen from the robot's root, so that what the robot stands on is none of it. Not for: what is to be kept
 of them (`gains`), joints for a pose (`programs.inverse`).
 """
+
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -18,14 +20,17 @@ from clearance.world.kinematics import links_of_robot, moving_positions, poses_b
 
 @dataclass(frozen=True, eq=False)
 class Tool:
-    """A link of a robot that joints of its table move.
+    """A pose on a link, and the joints that may move it.
 
     Attributes:
-        placed: the robot. link: its place among the links.
+        placed: the robot; joints that are not named are where it has them fixed. link: its place among the links.
+        joint_names: (k,) of the columns of positions. link_from_tool: (4, 4) [m].
     """
 
     placed: PlacedRobot
     link: int
+    joint_names: tuple[str, ...]
+    link_from_tool: np.ndarray = field(default_factory=lambda: np.eye(4))
 
     @property
     def name(self) -> str:
@@ -39,31 +44,57 @@ class Tool:
 
     @cached_property
     def movers(self) -> tuple[tuple[int, int], ...]:
-        """(link, column of the table) of each joint that moves the tool and that the table names."""
-        return _movers(self.placed, self.link)
+        """(link, column of positions) of each joint that moves the tool and is named."""
+        moving = [joint.name for joint in self.placed.robot.moving_joints]
+        return movers(self.links, self.link, [moving.index(name) for name in self.joint_names])
 
     def all_poses(self, positions: np.ndarray) -> np.ndarray:
-        """(n, links, 4, 4) `root_from_link` [m] with the table's joints at (n, k) [rad or m]."""
-        named = self.placed.given_trajectory.joint_names
-        return poses_by_link(self.links, moving_positions(self.placed, named, positions))
+        """(n, links, 4, 4) `root_from_link` [m] with the named joints at (n, k) [rad or m]."""
+        return poses_by_link(self.links, moving_positions(self.placed, self.joint_names, positions))
 
     def poses(self, positions: np.ndarray) -> np.ndarray:
         """(n, 4, 4) `root_from_tool` [m]."""
-        return self.all_poses(positions)[:, self.link]
+        return np.asarray(self.all_poses(positions)[:, self.link] @ self.link_from_tool)
 
     def poses_and_rates(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(n, 4, 4) `root_from_tool` [m], and (n, 6, k) how its origin moves and how it turns by each joint."""
         poses = self.all_poses(positions)
-        at = poses[:, self.link, :3, 3]
-        rates = np.zeros((len(poses), 6, positions.shape[1]))
-        for link, column in self.movers:
-            axes = self.links.factors[link] * (poses[:, link, :3, :3] @ self.links.axes[link])
-            if self.links.kinds[link] == SLIDING:
-                rates[:, :3, column] += axes
-                continue
-            rates[:, :3, column] += np.cross(axes, at - poses[:, link, :3, 3])
-            rates[:, 3:, column] += axes
-        return poses[:, self.link], rates
+        tool = poses[:, self.link] @ self.link_from_tool
+        return tool, rates_of(self.links, poses, tool[:, :3, 3], self.movers, positions.shape[1])
+
+
+def movers(links: Links, link: int, columns: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    """(link, place among the columns) of each joint of some columns (k,) that moves a link, from it to the
+    root."""
+    found = []
+    while link != NO_PARENT:
+        if links.kinds[link] in (TURNING, SLIDING) and links.columns[link] in columns:
+            found.append((link, columns.index(links.columns[link])))
+        link = int(links.parents[link])
+    return tuple(found)
+
+
+def rates_of(
+    links: Links,
+    poses: np.ndarray,
+    at: np.ndarray,
+    moved_by: Sequence[tuple[int, int]],
+    n_columns: int,
+) -> np.ndarray:
+    """(n, 6, n_columns) how points at (n, 3) [m] of a link move, and how it turns, by each column of positions.
+
+    Args:
+        poses: (n, links, 4, 4). moved_by: the `movers` of the link.
+    """
+    found = np.zeros((len(poses), 6, n_columns))
+    for link, column in moved_by:
+        axes = links.factors[link] * (poses[:, link, :3, :3] @ links.axes[link])
+        if links.kinds[link] == SLIDING:
+            found[:, :3, column] += axes
+            continue
+        found[:, :3, column] += np.cross(axes, at - poses[:, link, :3, 3])
+        found[:, 3:, column] += axes
+    return found
 
 
 def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
@@ -76,34 +107,22 @@ def tool_of(placed: PlacedRobot, name: str | None) -> Tool:
     names = placed.robot.link_names
     if name is not None and name not in names:
         raise UnknownLink(f"there is no link {name!r}", valid=nearest_name(name, names))
+    given = placed.given_trajectory.joint_names
     if name is not None:
-        link = names.index(name)
-        if not _movers(placed, link):
+        found = Tool(placed, names.index(name), given)
+        if not found.movers:
             raise BadInput(
                 f"no joint of the path moves link {name!r}", valid="a link that the path moves"
             )
-        return Tool(placed, link)
-    n_joints = len(placed.given_trajectory.joint_names)
+        return found
     for link in range(len(names)):
-        if len({column for _, column in _movers(placed, link)}) == n_joints:
-            return Tool(placed, link)
+        found = Tool(placed, link, given)
+        if len({column for _, column in found.movers}) == len(given):
+            return found
     raise BadInput(
         f"which link of robot {placed.robot.name!r} is its tool is not said, and none is moved by all joints",
         valid=f"one of {', '.join(names[-4:])}",
     )
-
-
-def _movers(placed: PlacedRobot, link: int) -> tuple[tuple[int, int], ...]:
-    links = links_of_robot(placed.robot)
-    moving = [joint.name for joint in placed.robot.moving_joints]
-    columns = {moving.index(name): i for i, name in enumerate(placed.given_trajectory.joint_names)}
-    found = []
-    while link != NO_PARENT:
-        column = columns.get(int(links.columns[link]))
-        if links.kinds[link] in (TURNING, SLIDING) and column is not None:
-            found.append((link, column))
-        link = int(links.parents[link])
-    return tuple(found)
 
 
 def apart(poses: np.ndarray, others: np.ndarray) -> np.ndarray:

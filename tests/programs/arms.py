@@ -38,7 +38,7 @@ def posture(one: Arm, draw: np.random.Generator) -> np.ndarray:
     low, high = np.clip(one.chain.ranges, -2.0, 2.0).T
     while True:
         found = low + (high - low) * draw.uniform(0.25, 0.75, len(low))
-        _, rates = one.poses_and_rates(found[None])
+        _, rates = one.tool.poses_and_rates(found[None])
         if np.linalg.svd(rates[0], compute_uv=False)[-1] > 0.12:
             return np.asarray(found)
 

@@ -80,7 +80,7 @@ def test_no_admissible_path_takes_a_link_farther_than_is_proven(name, seed):
     nominal = positions_along(trajectory, corner.start + u * (corner.end - corner.start))[
         :, columns
     ]
-    solved = joints_at(one, wanted, nominal, np.ones(len(columns), dtype=bool))
+    solved = joints_at(one.tool, wanted, nominal)
     assert solved.left.max() < 1e-9
     links = links_of_robot(one.robot)
     moving = [joint.name for joint in one.robot.moving_joints]

@@ -24,7 +24,7 @@ def test_no_joint_is_farther_off_than_is_proven(name, seed):
         near = position_on(cubics, np.array(at))
         passed = (at * samples.intervals.lengths)[:, None]
         strokes = share + passed * (rate + 0.5 * passed * change)
-        solved = joints_at(one, on.poses(strokes), near, follower.free)
+        solved = joints_at(one.tool, on.poses(strokes), near, follower.free)
         found = np.maximum(found, np.abs(solved.positions - near))
     assert (found[proven] <= samples.deviations[proven]).all()
     worst = found[proven].max()
