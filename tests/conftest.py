@@ -1,10 +1,9 @@
-"""Marks by what a test uses, a guard that holds it to them, and the profiles of its random examples."""
+"""A guard that holds a test to its marks, and the profiles of its random examples."""
 
 from __future__ import annotations
 
-import functools
 import gc
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 
@@ -13,7 +12,6 @@ from clearance.compile.decorators import KERNELS
 from clearance.errors import Unavailable
 from tests import examples
 from tests.guards import guarded, refused
-from tests.marks import marks_of
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
 LONG = {"cold", "browser", "slow"}
@@ -44,8 +42,7 @@ def pytest_collection() -> Iterator[None]:
 def pytest_collection_modifyitems(
     config: pytest.Config, items: list[pytest.Item]
 ) -> Iterator[None]:
-    """Adds marks; of the listed examples that `-m` and `-k` leave of a test, keeps the profile's share."""
-    _mark(items)
+    """Of the listed examples that `-m` and `-k` leave of a test, keeps the profile's share."""
     _put_long_files_first(items)
     result = yield
     kept = examples.listed(items, key=lambda item: item.nodeid.partition("[")[0])
@@ -54,19 +51,6 @@ def pytest_collection_modifyitems(
         config.hook.pytest_deselected(items=list(left_out))
         items[:] = kept
     return result
-
-
-def _mark(items: list[pytest.Item]) -> None:
-    """Adds the marks that follow from what each test and its fixtures use."""
-    for item in items:
-        fixtures = item._fixtureinfo.name2fixturedefs.values()
-        for mark in _marks_of(item.function, *(f.func for last in fixtures for f in last)):
-            item.add_marker(mark)
-
-
-@functools.cache
-def _marks_of(*functions: Callable) -> list[str]:
-    return sorted(marks_of(functions))
 
 
 def _put_long_files_first(items: list[pytest.Item]) -> None:

@@ -64,6 +64,7 @@ assert run.summary["profiles"][0]["passed"]
 """
 
 
+@pytest.mark.cold
 def test_distance_and_check_need_no_optional_library():
     done = subprocess.run(
         [sys.executable, "-c", LIBRARY_ALONE], cwd=ROOT, capture_output=True, text=True

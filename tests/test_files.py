@@ -137,6 +137,7 @@ def test_a_file_that_only_the_older_report_had_goes(tmp_path):
         )
 
 
+@pytest.mark.cold
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills a process of its own")
 @pytest.mark.parametrize("exchanges", [True, False])
 @pytest.mark.parametrize("i_move", range(3))

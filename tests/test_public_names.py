@@ -42,6 +42,7 @@ def test_an_unknown_name_is_an_attribute_error_that_names_it():
         cl.distanse  # noqa: B018
 
 
+@pytest.mark.cold
 def test_importing_the_package_imports_no_large_library():
     heavy = ("numpy", "numba", "scipy", "pyarrow", "pydantic", "lxml", "click", "clearance.formats")
     script = f"import sys, clearance; print([name for name in {heavy!r} if name in sys.modules])"

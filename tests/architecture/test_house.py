@@ -18,20 +18,24 @@ MODULES = sorted((ROOT / "clearance").rglob("*.py"))
 BARRED = {"utils", "util", "helpers", "helper", "common", "misc", "manager", "base"}
 
 
+@pytest.mark.cold
 def test_imports_keep_to_the_layers_and_doors():
     lint = Path(sys.executable).with_name("lint-imports")
     done = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.cold
 def test_ruff_finds_nothing():
     passes("ruff", "check", "--output-format", "concise", ".")
 
 
+@pytest.mark.cold
 def test_every_file_has_the_form_that_ruff_gives_it():
     passes("ruff", "format", "--check", ".")
 
 
+@pytest.mark.cold
 @pytest.mark.slow
 def test_mypy_finds_nothing_in_the_package():
     """Half a minute on a new checkout, seconds from `.mypy_cache` after that."""

@@ -45,6 +45,7 @@ def shown(page, column=0):
     return page.run(cells)
 
 
+@pytest.mark.browser
 def test_what_fails_stands_first(page):
     assert set(shown(page, 1)) == {"error"}
     page.run("document.getElementById('view').scrollTop = 32 * 1700")
@@ -54,6 +55,7 @@ def test_what_fails_stands_first(page):
     page.settle()
 
 
+@pytest.mark.browser
 def test_lengths_are_not_rounded_up(page):
     """4.9999 mm shown as 5.0 would be taken for kept."""
     page.run("document.querySelector('[data-key=bound]').click()")
@@ -66,6 +68,7 @@ def test_lengths_are_not_rounded_up(page):
     assert {len(text.partition(".")[2]) for _, text in known} == {3}
 
 
+@pytest.mark.browser
 def test_only_what_is_in_view_is_drawn(page):
     assert page.run("document.getElementById('shown').value") == "10,000 of 10,000 cases"
     assert 10 < page.run("document.querySelectorAll('.row').length") < 60
@@ -77,6 +80,7 @@ def test_only_what_is_in_view_is_drawn(page):
     page.settle()
 
 
+@pytest.mark.browser
 def test_it_sorts_by_a_column(page):
     page.run("document.querySelector('[data-key=clearance]').click()")
     page.settle()
@@ -88,6 +92,7 @@ def test_it_sorts_by_a_column(page):
     assert set(shown(page, 1)) == {"clear"}
 
 
+@pytest.mark.browser
 def test_it_filters_by_verdict_body_and_name(page):
     choose = "document.getElementById('{}').value = '{}';"
     changed = "document.getElementById('filters').dispatchEvent(new Event('input'))"
@@ -101,6 +106,7 @@ def test_it_filters_by_verdict_body_and_name(page):
     assert shown(page) == ["it's 00017"]
 
 
+@pytest.mark.browser
 def test_a_row_says_why_and_how_to_see_its_case(page):
     page.run("document.querySelector('.row').click()")
     told = page.run("document.getElementById('chosen').innerText")

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.cold
+
 BENCH = Path(__file__).parents[2] / "scripts" / "bench"
 NAMES = sorted(path.stem for path in BENCH.glob("*.py") if "\nSMALLEST = " in path.read_text())
 LONG = {"first_run"}

@@ -119,6 +119,7 @@ def test_report_and_junit_are_where_they_were_asked_for(folder, capsys):
     assert (folder / "junit.xml").read_bytes().startswith(b"<?xml")
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("limit", ["50", "150"])
 def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, capsys, monkeypatch, limit):
     ask = crosscheck.cross_check
@@ -148,6 +149,7 @@ cli.main()
 """
 
 
+@pytest.mark.cold
 @pytest.mark.slow
 def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder, capsys):
     """The same command again, one line on stderr, the bytes of a whole run."""

@@ -71,6 +71,7 @@ def ends_of(folder: Path, faults: list[str], times: int, **environment: str) -> 
     return json.loads(done.stdout)
 
 
+@pytest.mark.cold
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
 def test_every_bad_input_ends_ten_times_in_the_same_way(tmp_path: Path) -> None:
     ends = ends_of(tmp_path, [*BAD], TIMES, CLEARANCE_COMPILES_AHEAD="1")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pytest
 
 from clearance.record.every_pair import EveryPair
 from tests.cli.test_check_command import ROOT, files
@@ -17,6 +18,7 @@ FILL = ("17", "99")
 """What glibc fills memory with that it hands out; pyarrow is told to ask it. Elsewhere chance has to do."""
 
 
+@pytest.mark.cold
 def test_every_file_of_a_report(tmp_path: Path) -> None:
     """Seconds each: two whole runs, with report and page, in processes of their own."""
     case = ROOT / "scenes" / "iiwa_pipe_rack" / "case.yaml"

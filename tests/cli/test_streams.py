@@ -11,7 +11,10 @@ import pytest
 
 from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
 
-pytestmark = pytest.mark.skipif(not Path("/dev/full").exists(), reason="other shells and devices")
+pytestmark = [
+    pytest.mark.cold,
+    pytest.mark.skipif(not Path("/dev/full").exists(), reason="other shells and devices"),
+]
 
 LONG = "n" * 300
 JUST_LEGAL = "n" * 250

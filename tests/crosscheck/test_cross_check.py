@@ -11,6 +11,8 @@ from clearance.tolerance import CROSS_CHECK
 from clearance.world.case import Omission
 from tests.crosscheck.sliding import box, rail_record
 
+pytestmark = pytest.mark.peer
+
 NEAR_AND_FAR = {"near": (box(0.2, 0.2, 0.2), (1, 0, 0)), "far": (box(0.2, 0.2, 0.2), (-3, 0, 0))}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.spatial.transform import Rotation
 
 from clearance.crosscheck.containment import is_inside, winding_number
@@ -18,6 +19,8 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from tests.crosscheck.sliding import box, rail_record
 from tests.made_cases import ball, faces_of
+
+pytestmark = pytest.mark.peer
 
 
 def random_poses(rng: np.random.Generator, n: int) -> np.ndarray:

@@ -16,6 +16,8 @@ from tests import oracle
 from tests.made_cases import at, ball, dented, flying
 from tests.strategies import FAMILIES, rotations
 
+pytestmark = pytest.mark.peer
+
 
 @pytest.mark.parametrize("name", sorted(FAMILIES))
 def test_triangles_are_as_far_apart_as_the_oracle_says(name: str) -> None:

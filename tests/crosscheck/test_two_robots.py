@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 import clearance as cl
 from clearance.world.case import PlacedRobot
 from tests.made_cases import at, flying
+
+pytestmark = pytest.mark.peer
 
 
 def two_robots(**changes) -> cl.Case:

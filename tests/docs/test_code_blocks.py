@@ -52,6 +52,7 @@ def test_every_block_says_what_it_is(page):
     assert {block.language for block in blocks_of(page)} <= LANGUAGES
 
 
+@pytest.mark.cold
 @pytest.mark.slow
 @pytest.mark.peer
 @pytest.mark.parametrize("page", with_blocks("python", "bash"))

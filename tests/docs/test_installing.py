@@ -7,6 +7,8 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
+
 from clearance.geometry import surface_cache
 from clearance.geometry.shapes import box
 from tests.docs.code_blocks import GUIDE, ROOT
@@ -79,6 +81,7 @@ def test_only_the_viewer_and_workers_of_a_cluster_open_a_connection():
     assert found == DOORS
 
 
+@pytest.mark.cold
 def test_the_cache_lies_where_the_page_says(monkeypatch, tmp_path):
     assert "`~/.cache/clearance`" in PAGE and "`XDG_CACHE_HOME`" in PAGE
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)

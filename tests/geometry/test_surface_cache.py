@@ -13,6 +13,8 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import cylinder
 from clearance.kernels.mesh.surface import Surface
 
+pytestmark = pytest.mark.cold
+
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):

@@ -8,6 +8,8 @@ import pytest
 import clearance as cl
 from tests.shared_cases import SHARED_NAMES, shared_case
 
+pytestmark = pytest.mark.shared
+
 ROUNDING = 1e-12  # [m] a faceted round shape may never be reported farther away than this
 
 

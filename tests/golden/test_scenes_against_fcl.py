@@ -6,6 +6,8 @@ import pytest
 
 import clearance as cl
 
+pytestmark = pytest.mark.peer
+
 SCENES = Path(__file__).parents[2] / "scenes"
 VERDICTS = {  # the statuses that occur, as scenes/README.md promises
     "box_box": {"clear"},

@@ -74,6 +74,7 @@ def assert_contains(profile, points, rng):
 LINKS = [f"{robot}/{link}" for robot in ("left", "right", "track") for link in ("boom", "tool")]
 
 
+@pytest.mark.peer
 @examples(3)
 @given(st.integers(0, 2**32 - 1))
 def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
@@ -96,6 +97,7 @@ def within_intervals(case, start, end, n):
     return times[:-1, None] + np.diff(times)[:, None] * share
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("seed", [0, 5])
 def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
     """Hulls from each of many instants to the next are all that is swept, and little more."""
@@ -221,6 +223,7 @@ def carrying(**changes):
     )
 
 
+@pytest.mark.peer
 def test_a_part_is_swept_only_while_it_is_carried():
     found = cl.swept_profile(carrying(end=1.5))
     boxes = [shapely.box(-0.1, -0.1, 1.1, 0.1), shapely.box(-0.1, 0.9, 0.35, 1.1)]

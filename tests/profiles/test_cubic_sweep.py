@@ -26,6 +26,7 @@ from tests.profiles.finely import (
 from tests.profiles.moving import Z, joint, moved, rows, slab
 
 
+@pytest.mark.peer
 @examples(4)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
 def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):

@@ -22,6 +22,7 @@ def drawn(tmp_path_factory):
     return profile, folder
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_an_svg_of_metres_is_seen_whole(drawn):
     _, folder = drawn

@@ -40,6 +40,7 @@ def test_our_yaml_keeps_every_bit(profile, tmp_path):
     assert list(again.parts) == list(profile.parts)
 
 
+@pytest.mark.peer
 def test_dxf_keeps_the_curve_and_opens_elsewhere(profile, tmp_path):
     import trimesh
 
@@ -56,6 +57,7 @@ def test_dxf_keeps_the_curve_and_opens_elsewhere(profile, tmp_path):
     assert path.read_bytes() == (tmp_path / "q.dxf").read_bytes()
 
 
+@pytest.mark.peer
 def test_geojson_is_a_valid_polygon_with_its_hole(profile, tmp_path):
     from shapely.geometry import shape
 

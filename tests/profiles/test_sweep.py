@@ -89,6 +89,7 @@ def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
     assert abs(-hole.area - math.pi * 0.3**2) <= found.bound * hole.length
 
 
+@pytest.mark.peer
 @examples(6)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
 def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
@@ -102,6 +103,7 @@ def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
     assert all(inside(point, chosen) for point in corners[rng.integers(len(corners), size=15)])
 
 
+@pytest.mark.peer
 def test_a_long_bar_spinning_about_its_middle_is_a_double_wedge_not_its_hull():
     case = turning(cl.box((2.0, 0.004, 0.1)), [0.0, 0.04])
     found = cl.swept_profile(case)

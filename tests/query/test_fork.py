@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.cold
+
 PROGRAM = """
 import os, sys, threading
 import numpy as np

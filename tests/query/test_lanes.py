@@ -17,6 +17,8 @@ import pytest
 
 from tests.query import lane_of_domains
 
+pytestmark = pytest.mark.cold
+
 ROOT = Path(__file__).parents[2]
 DOMAINS = tuple(lane_of_domains.DOMAINS)
 

@@ -12,7 +12,10 @@ from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
 from tests.report.cells import box, cell, sliding
 
-pytestmark = pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(executable() is None, reason="no Chromium is installed"),
+]
 
 
 @pytest.fixture(scope="module")

@@ -46,6 +46,7 @@ def test_the_summary_tells_of_balls():
     assert "points" not in summary["obstacles"][0]
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_points(tmp_path):
     cl.check(scanned()).save(tmp_path / "out")

@@ -18,7 +18,10 @@ from tests.report.browser import Page, chromium, executable
 from tests.report.made import replay_of, run_of, write
 from tests.report.records import record
 
-pytestmark = pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(executable() is None, reason="no Chromium is installed"),
+]
 
 RUN = record(limits=Limits(fail=0.01, warn=0.06))
 

@@ -93,6 +93,7 @@ def red(pixels):
     return (r > 170) & (g < 90) & (b < 90)
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
     write(run(), tmp_path / "out")

@@ -117,11 +117,13 @@ def test_meshes_are_small_closed_and_outward(mesh: Path) -> None:
     assert solid.area_faces.min() > 0
 
 
+@pytest.mark.cold
 @pytest.mark.parametrize("mesh", MESHES, ids=lambda path: path.stem)
 def test_meshes_are_remade_byte_for_byte(mesh: Path, remade: Path) -> None:
     assert (remade / mesh.relative_to(ROOT)).read_bytes() == mesh.read_bytes()
 
 
+@pytest.mark.cold
 def test_urdf_is_remade_byte_for_byte(remade: Path) -> None:
     path = "robots/heron6/heron6.urdf"
     assert (remade / path).read_bytes() == (ROOT / path).read_bytes()
@@ -130,6 +132,7 @@ def test_urdf_is_remade_byte_for_byte(remade: Path) -> None:
 TABLES = sorted({path for path, _ in joint_tables()} | set(pose_tables()))
 
 
+@pytest.mark.cold
 @pytest.mark.parametrize("path", TABLES, ids=name_of)
 def test_tables_are_remade_to_their_last_digit(path: Path, remade: Path) -> None:
     """One unit of the sixth decimal is left for another machine's rounding."""

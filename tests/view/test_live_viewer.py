@@ -24,6 +24,7 @@ from tests.report.records import record, with_contacts
 RUN = with_contacts(record())
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 def test_it_plays_the_replay_and_its_links_lead_to_moments():
     replay = replay_of(RUN)
@@ -93,6 +94,7 @@ HEARD = (signal.SIGINT, signal.SIGHUP)
 """What a program that runs the tests in the background may have them ignore."""
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="other signals")
 @pytest.mark.parametrize("how", ENDS)
 def test_the_server_ends_with_the_program(tmp_path, how):

@@ -106,12 +106,14 @@ def viewing(tmp_path):
     program.communicate()
 
 
+@pytest.mark.cold
 def test_nothing_in_the_folder_is_run(viewing, tmp_path):
     told = viewing.stdout.readline()
     assert re.search(r"http://127\.0\.0\.1:\d+/", told), viewing.stderr.read()
     assert [path.name for path in tmp_path.glob("*.trapped")] == []
 
 
+@pytest.mark.cold
 @pytest.mark.skipif(not Path("/proc/net/tcp").exists(), reason="another way to list sockets")
 def test_the_program_itself_listens_and_at_one_address_only(viewing):
     port = int(re.search(r":(\d+)/", viewing.stdout.readline())[1])

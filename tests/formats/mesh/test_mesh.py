@@ -146,6 +146,7 @@ def test_a_scale_that_leaves_no_solid_is_refused(scale):
         mesh_from_bytes(far, "m.stl", scale)
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("suffix", ["ply", "off", "glb", "stl", "obj"])
 def test_formats_that_trimesh_writes_come_back_whole(suffix):
     import trimesh

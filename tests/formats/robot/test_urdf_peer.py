@@ -10,6 +10,8 @@ from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.robot.urdf.elements import numbers, parse_document, pose_of
 from clearance.formats.robot.urdf.joints import joints_of
 
+pytestmark = pytest.mark.peer
+
 ROOT = Path(__file__).parents[3]
 OURS = sorted((ROOT / "robots").rglob("*.urdf"))
 BROUGHT = ["pybullet_data:kuka_iiwa/model.urdf", "pybullet_data:franka_panda/panda.urdf",

@@ -150,6 +150,7 @@ def pushed(tmp_path_factory):
     return cl.check(cl.load_case(path)), int(nearest["step"]), nearest["link"], nearest["obstacle"]
 
 
+@pytest.mark.shared
 def test_a_real_case_pushed_into_an_obstacle(pushed):
     run, step, link, obstacle = pushed
     assert not run.passed

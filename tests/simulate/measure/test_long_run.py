@@ -210,6 +210,7 @@ with open_resumable_rows(pathlib.Path(sys.argv[2]), print) as kept:
 """
 
 
+@pytest.mark.cold
 def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
     case = cl.load_case(ROOT / "scenes" / "box_pipe" / "case.yaml")
     asked = [str(ROOT / "scenes" / "box_pipe" / "case.yaml"), str(tmp_path / "kept")]

@@ -24,6 +24,7 @@ def test_nothing_is_worked_on_any_more_when_no_more_is_wanted() -> None:
     assert len(done) < 10
 
 
+@pytest.mark.cold
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks here")
 def test_a_process_forked_after_a_run_on_threads_runs_on_threads_of_its_own() -> None:
     spans = [slice(i, i + 1) for i in range(4)]

@@ -43,6 +43,7 @@ def corners_in_world(bodies, wanted):
     return triangle_soup(shape).corners @ pose[:3, :3].T + pose[:3, 3]
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("step", SOME_STEPS)
 def test_fcl_in_millimetres_says_the_same_of_every_pair(run, step):
     fcl = pytest.importorskip("fcl")

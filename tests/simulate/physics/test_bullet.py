@@ -92,6 +92,7 @@ def test_our_kinematics_are_the_engines_on_robots_it_brings(name):
     assert_same_kinematics(placed_robot(packaged_urdf(name), packages=(packaged_urdf(""),)))
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("name", SHARED_NAMES)  # one finger of the panda mimics the other
 def test_our_kinematics_are_the_engines_on_the_shared_robots(name):
     assert_same_kinematics(load_case(shared_case(name)).robots[0])
