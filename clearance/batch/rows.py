@@ -56,6 +56,8 @@ FINDING = pa.schema(
         ("text", pa.string()),
         ("waived", pa.string()),
         ("accepted", pa.bool_()),
+        ("move", pa.string()),
+        ("moves", pa.string()),
     ]
 )
 """What is kept of a `findings.finding.Finding`; of what waives it, the reason and by whom."""

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from clearance.record.status import Status
+from clearance.world.made_moves import MadeMoves
 
 CLEARANCE = "clearance"
 """Two bodies and the limits of a rule."""
@@ -79,6 +80,7 @@ class Finding:
         start, end: [s] the stretch, proven from outside; of samples from its first step to its last.
             first_step, last_step: inside it.
         point_a, point_b: [m] witness points in the world. joints: [rad] or [m] by name, at that moment.
+        move: of a program at that moment. moves: the first and the last of the stretch. Empty without a program.
         text: what else is to say, one line.
         waived: by what, if it is. accepted: not proven with the tolerances, which the case lets pass.
     """
@@ -105,9 +107,17 @@ class Finding:
     point_a: Point | None = None
     point_b: Point | None = None
     joints: dict[str, float] | None = None
+    move: str = ""
+    moves: str = ""
     text: str = ""
     waived: AppliedWaiver | None = None
     accepted: bool = False
+
+    def with_moves(self, made: MadeMoves) -> Finding:
+        """The same with the names of the moves that programs make then."""
+        move = "" if self.time is None else made.at(self.time)
+        stretch = "" if self.start is None or self.end is None else made.over(self.start, self.end)
+        return replace(self, move=move, moves=stretch)
 
     @property
     def broken(self) -> bool:

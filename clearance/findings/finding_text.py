@@ -99,14 +99,14 @@ def when_text(finding: Finding) -> str:
     where = f"step {finding.step}"
     if finding.between:
         where = f"between the steps {finding.step} and {finding.step + 1}"
-    return f"{seconds(finding.time)}, {where}{other_time(finding.body_b, finding.time_b)}"
+    return f"{seconds(finding.time, finding.move)}, {where}{other_time(finding.body_b, finding.time_b)}"
 
 
 def stretch_text(finding: Finding) -> str:
     """From when until when."""
     if finding.start is None or finding.end is None:
         return ""
-    return span_text(finding.start, finding.end)
+    return span_text(finding.start, finding.end, finding.moves)
 
 
 def waived_text(finding: Finding) -> str:

@@ -72,14 +72,15 @@ def finding_list_of(
 
 
 def findings_text(found: FindingList) -> str:
-    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances nothing where
-    there are none."""
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances and moves
+    nothing where there are none."""
     told = asdict(found)
     if not found.measured.tolerances:
         del told["measured"]["tolerances"]
     for finding in told["findings"]:
-        if not finding["accepted"]:
-            del finding["accepted"]
+        for key in ("accepted", "move", "moves"):
+            if not finding[key]:
+                del finding[key]
     return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 

@@ -109,7 +109,7 @@ def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:
     if not worst:
         return named
     moment = worst[0].moment
-    return replace(
+    found = replace(
         named,
         body_a=named.body_a or moment.link,
         body_b=named.body_b or moment.obstacle,
@@ -122,6 +122,7 @@ def _not_kept(session: Session, named: Finding, budget: RuleBudget) -> Finding:
         point_b=_point(moment.point_obstacle),
         joints=joints_of(session.record, moment),
     )
+    return found.with_moves(session.record.moves)
 
 
 def _point(point: tuple[float, float, float]) -> tuple[float, float, float]:

@@ -65,7 +65,7 @@ def _of_profile(record: Record, answer: ProfileAnswer) -> Finding:
         time=float(record.motions[0].times[answer.step]),
         step=int(answer.step),
         text=f"{answer.mode}, {answer.plane}{at}",
-    )
+    ).with_moves(record.moves)
 
 
 def _of_joints(record: Record) -> Iterator[Finding]:

@@ -232,7 +232,7 @@ class RuleFindings:
             fail=limits.fail,
             warn=limits.warn,
             **(told | known),
-        )
+        ).with_moves(self.session.record.moves)
 
 
 def joints_of(record: Record, moment: Moment) -> dict[str, float]:

@@ -240,8 +240,8 @@ def moment_line(record: Record, moment: Moment) -> str:
     """How near what comes to what and when, and the limit that it is below, if it is: with its rule."""
     limits = record.rule(moment.rule).limits
     if moment.touches:
-        return f"contact {contact_line(moment)}"
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+        return f"contact {contact_line(record, moment)}"
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if limits.below(moment.clearance, limit):
             below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
@@ -251,9 +251,9 @@ def moment_line(record: Record, moment: Moment) -> str:
     return f"{mm(moment.clearance)} mm{_judged_by(moment)}: {where}"
 
 
-def contact_line(moment: Moment) -> str:
+def contact_line(record: Record, moment: Moment) -> str:
     """The depth of a contact, the two bodies and the moment, and the rule that judges them, if there is one."""
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
     near = depth_text(moment.depth) if moment.depth else f"({depth_text(None)})"
     return f"{near}{_judged_by(moment)}: {where}"
 
@@ -296,11 +296,12 @@ def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
     is_open = rule.limits.below(least, limit) or (limit <= 0.0 and _contact_is_open(rule))
     if not is_open or rule.limits.below(seen, limit):
         return None
-    times = record.motions[0].times[step : step + 2]
+    start, end = map(float, record.motions[0].times[[step, step + 1]])
+    when = span_text(start, end, record.moves.over(start, end))
     above = f"above the {name} limit of {limit_mm(limit)} mm" if limit > 0.0 else "out of contact"
     return (
         f"not proven to stay {above}{of_rule(rule.name)}: at least "
-        f"{mm(least)} mm, {span_text(float(times[0]), float(times[-1]))}; {why_undecided(record.case)}"
+        f"{mm(least)} mm, {when}; {why_undecided(record.case)}"
     )
 
 

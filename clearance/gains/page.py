@@ -157,7 +157,7 @@ def _worst(name: str, run: Run, proven: float | None) -> Row:
         number(mm(worst.clearance)),
         number(limit_mm(fail)),
         Cell(f"{worst.link} and {worst.obstacle}", "wide"),
-        Cell(moment_text(worst), "wide"),
+        Cell(moment_text(run.record, worst), "wide"),
         Inline(run.status, f"tag {run.status}"),
         number("" if proven is None else mm(proven)),
     ]

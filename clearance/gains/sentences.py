@@ -233,7 +233,7 @@ def _worst(run: Run) -> str:
     far = "touch" if worst.touches else f"{mm(worst.clearance)} mm"
     if not worst.touches and worst.clearance < 0.0:
         far = f"{depth_mm(-worst.clearance)} mm too near for their padding"
-    told = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(worst)}"
+    told = f"{worst.link} and {worst.obstacle}: {far} at {moment_text(run.record, worst)}"
     return f"{told}; fail below {limit_mm(fail)} mm: {run.verdict.text()}"
 
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from clearance.errors import BadInput, UnknownLink, nearest_name
 from clearance.findings.of_rule import why_undecided
 from clearance.record.budget import RuleBudget
+from clearance.record.record import Record
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.session import PairTest
 from clearance.record.wording import limit_mm, mm, moment_text, of_rule
 from clearance.run import Run
-from clearance.world.case import Case
 from clearance.world.rules import PairPattern, checked_level, matches
 
 CONTACT = "contact is not ruled out"
@@ -32,7 +32,7 @@ def faults_of(run: Run, between: tuple[str, str], at_least: float | None) -> lis
     answers = run.session.of_pairs(is_meant, "steps", () if level is None else (level,))
     if not answers:
         raise _no_such_pair(run, between)
-    found = {one.name: [*_faults(run.record.case, one, level)] for one in answers}
+    found = {one.name: [*_faults(run.record, one, level)] for one in answers}
     for left in _budgets(run, is_meant):
         if not found[left.rule]:
             found[left.rule] += _with_tolerances(left, between, level)
@@ -64,17 +64,17 @@ def _wanted(answer: RuleAnswer | RuleBudget, level: float, at_least: float | Non
     return f"the fail limit{of_rule(name)} is {limit_mm(level)} mm"
 
 
-def _faults(case: Case, answer: RuleAnswer, at_least: float | None) -> Iterator[str]:
+def _faults(record: Record, answer: RuleAnswer, at_least: float | None) -> Iterator[str]:
     level = answer.limits.fail if at_least is None else at_least
     wanted = _wanted(answer, level, at_least)
     worst, certificate = answer.worst, answer.certificate
     if worst is not None and (answer.limits.below(worst.clearance, level) or worst.touches):
         near = "contact" if worst.touches else f"{mm(worst.clearance)} mm"
-        yield f"{worst.link} - {worst.obstacle}: {near} at {moment_text(worst)}; {wanted}"
+        yield f"{worst.link} - {worst.obstacle}: {near} at {moment_text(record, worst)}; {wanted}"
     elif certificate is not None and answer.limits.below(certificate.lower_bound.min(), level):
         proven = mm(float(certificate.lower_bound.min()))
         told = f"only {proven} mm is proven, though nothing nearer is seen"
-        yield f"{told}; {wanted}; {why_undecided(case)}"
+        yield f"{told}; {wanted}; {why_undecided(record.case)}"
 
 
 def _no_such_pair(run: Run, between: tuple[str, str]) -> BadInput:

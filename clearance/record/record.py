@@ -20,6 +20,7 @@ from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import status_of
 from clearance.record.steps import StepColumns
 from clearance.world.case import Case, Omission
+from clearance.world.made_moves import MadeMoves
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice
 from clearance.world.pairs import Pair
@@ -261,6 +262,11 @@ class Record(Samples):
             return self.worst
         known = [rule.worst for rule in self.rules if rule.worst is not None]
         return min(known, key=lambda moment: (not moment.touches, moment.clearance))
+
+    @cached_property
+    def moves(self) -> MadeMoves:
+        """The moves of its programs, by which times are named."""
+        return MadeMoves.of(self.case)
 
     def rule(self, name: str) -> RuleAnswer:
         """What a rule that judges something comes to."""

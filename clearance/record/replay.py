@@ -17,7 +17,7 @@ from clearance.errors import BadSyntax, MissingFile
 from clearance.world.pairs import OBSTACLE
 
 FILE_NAME = "replay.npz"
-_FORMAT = 4
+_FORMAT = 5
 
 
 LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
@@ -115,6 +115,7 @@ class Replay:
         status: (frames,) uint8 indices into `STATUSES`.
         lines: (frames, 6) [m] witness points on the two bodies in the world frame.
         nearest: (frames, 2) int32 indices into `bodies` of the two; -1: there is none.
+        move: (frames,) int32 indices into `moves`, the names of a program's moves; -1: none is made.
         contacts: the overlaps that are drawn, frames first.
         regions: of each contact the common region's vertices (n, 3) float32 [m] in the world frame and
             triangles (m, 3) int32.
@@ -139,6 +140,8 @@ class Replay:
     rule: np.ndarray
     lines: np.ndarray
     nearest: np.ndarray
+    move: np.ndarray
+    moves: tuple[str, ...] = ()
     contacts: tuple[DrawnContact, ...] = ()
     regions: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 
@@ -161,6 +164,7 @@ class Replay:
             "n_shapes": len(self.shapes),
             "bodies": [asdict(body) for body in self.bodies],
             "contacts": [asdict(contact) for contact in self.contacts],
+            "moves": self.moves,
         }
         text = json.dumps(head, sort_keys=True).encode()
         np.savez_compressed(path, head=np.frombuffer(text, dtype=np.uint8), **arrays)
@@ -168,6 +172,7 @@ class Replay:
 
 _FRAME_ARRAYS = (
     "steps", "times", "times_b", "clearances", "between", "known", "status", "rule", "lines", "nearest",
+    "move",
 )  # fmt: skip
 
 
@@ -203,6 +208,7 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
         rules=tuple(DrawnRule(**rule) for rule in head["rules"]),
         carries=tuple(DrawnCarry(**carry) for carry in head["carries"]),
         n_steps=head["n_steps"],
+        moves=tuple(head["moves"]),
         bodies=tuple(DrawnBody(**body) for body in head["bodies"]),
         shapes=tuple((arrays[f"vertices_{i}"], arrays[f"triangles_{i}"]) for i in range(n_shapes)),
         poses=tuple(arrays[f"poses_{i}"] for i in range(n_bodies)),

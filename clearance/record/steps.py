@@ -17,6 +17,7 @@ from clearance.record.rows.blocks import blocks
 from clearance.record.rule_answer import RuleAnswer
 from clearance.record.status import STATUSES, sample_codes
 from clearance.world.case import Case
+from clearance.world.made_moves import MadeMoves
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -102,6 +103,7 @@ def step_table(
     """
     names, found, certificate = BodyNames.of(case, pairs), judged.found, judged.certificate
     n_steps = len(found.clearance)
+    moves = MadeMoves.of(case)
     bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
     for block in blocks(n_steps):
         columns = _measured_columns(names, found, motions[0].times, block)
@@ -118,6 +120,7 @@ def step_table(
         if with_error:
             errors = [motion.tracking_error[block] for motion in motions]
             columns["tracking_error"] = pa.array(np.max(errors, axis=0))
+        columns |= _move_columns(moves, motions[0].times[block])
         columns |= no_contact_columns(block.stop - block.start)
         yield pa.table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
@@ -167,6 +170,11 @@ def _proven_columns(
         "lower_bound": pa.array(certificate.lower_bound[steps]),
         "upper_bound": pa.array(certificate.upper_bound[steps], mask=unseen),
     }
+
+
+def _move_columns(moves: MadeMoves, times: np.ndarray) -> dict[str, pa.Array]:
+    """The move that is made at each time [s]; nothing without a program."""
+    return {"move": names_of(*moves.codes(times))} if moves.robots else {}
 
 
 def _left_columns(proven: np.ndarray, expected: np.ndarray, steps: slice) -> dict[str, pa.Array]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from clearance.record.moment import Depth, Moment
-from clearance.record.record import PairMinimum
+from clearance.record.record import PairMinimum, Record
 from clearance.world.notice import listed
 from clearance.world.rules import DEFAULT
 
@@ -109,9 +109,9 @@ def joint_value(kind: str, position: float) -> str:
     return f"{math.degrees(position):.2f}°"
 
 
-def seconds(value: float) -> str:
-    """A time with its unit, to the millisecond."""
-    return f"{value:.3f} s"
+def seconds(value: float, move: str = "") -> str:
+    """A time with its unit, to the millisecond, and the move of a program that is made then."""
+    return f"{value:.3f} s{f' in {move}' if move else ''}"
 
 
 def count(number: int, noun: str) -> str:
@@ -124,13 +124,14 @@ def gap_text(gap: float) -> str:
     return mm(gap) if gap >= 0.0 else f"-{-gap * 1000:.3f}"
 
 
-def moment_text(moment: Moment) -> str:
+def moment_text(record: Record, moment: Moment) -> str:
     """When a moment is: `1.220 s, step 61`, or which steps it is between; and when its second body is there, if
     that has a clock of its own."""
     where = f"step {moment.step}"
     if moment.between:
         where = f"between the steps {moment.step} and {moment.step + 1}"
-    return f"{seconds(moment.time)}, {where}{other_time(moment.obstacle, moment.time_b)}"
+    at = seconds(moment.time, record.moves.at(moment.time))
+    return f"{at}, {where}{other_time(moment.obstacle, moment.time_b)}"
 
 
 def other_time(name: str, time: float | None) -> str:
@@ -163,11 +164,11 @@ def not_measured_text(spans: Sequence[tuple[float, float]]) -> str:
     return f"not measured {listed(spelled)}"
 
 
-def span_text(start: float, end: float) -> str:
-    """A stretch of time: `0.500-1.220 s`, or `at 1.220 s` where it is no longer than shown."""
+def span_text(start: float, end: float, moves: str = "") -> str:
+    """A stretch of time: `0.500-1.220 s`, or `at 1.220 s` where it is no longer than shown; and its moves."""
     if f"{start:.3f}" == f"{end:.3f}":
-        return f"at {seconds(start)}"
-    return f"{start:.3f}-{seconds(end)}"
+        return f"at {seconds(start, moves)}"
+    return f"{start:.3f}-{seconds(end, moves)}"
 
 
 def least_proven(certified: dict) -> str:
@@ -191,7 +192,8 @@ def certified_text(certified: dict) -> str:
     proven = f"{least_proven(certified)}, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven
-    moment = f"from {seconds(certified['start'])} to {seconds(certified['end'])}"
+    end = seconds(certified["end"], certified.get("moves", ""))
+    moment = f"from {seconds(certified['start'])} to {end}"
     return f"{proven}; least {moment}, where {mm(certified['upper_bound'])} mm occurs"
 
 

@@ -90,7 +90,7 @@ def results_of(model: ReportModel) -> Iterator[TestResult]:
 
 def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
     worst = record.worst
-    text = f"{verdict.text()}: {least_text(worst)} at {moment_text(worst)}"
+    text = f"{verdict.text()}: {least_text(worst)} at {moment_text(record, worst)}"
     waived = [f"waived: {line}" for line in verdict.waived]
     nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
     at_level = [verdict.at_level] if verdict.at_level else []
@@ -135,7 +135,7 @@ def _of_pairs(model: ReportModel) -> Iterator[TestResult]:
     judge = PairJudge.of(model.record)
     for minimum in model.details.minima:
         if (minimum.link, minimum.obstacle, minimum.rule) not in told:
-            yield _of_minimum(judge, minimum)
+            yield _of_minimum(model.record, judge, minimum)
 
 
 def _of_finding(finding: Finding) -> TestResult:
@@ -173,12 +173,13 @@ def _of_tolerances(finding: Finding, text: str) -> TestResult:
     return TestResult(group, name, text, "NotProven")
 
 
-def _of_minimum(judge: PairJudge, minimum: PairMinimum) -> TestResult:
+def _of_minimum(record: Record, judge: PairJudge, minimum: PairMinimum) -> TestResult:
     by = "" if minimum.rule == DEFAULT else f" [{minimum.rule}]"
     name = f"{minimum.link} - {minimum.obstacle}{by}"
     status = Status(judge.status_of(minimum))
     over = "at the samples " if minimum.proven is None else ""
-    at = f"{over}{mm(minimum.clearance)} mm at {seconds(minimum.time)}, step {step_text(minimum)}"
+    when = seconds(minimum.time, record.moves.at(minimum.time))
+    at = f"{over}{mm(minimum.clearance)} mm at {when}, step {step_text(minimum)}"
     if status in (Status.VIOLATED, Status.CONTACT):
         fail = judge.limits[minimum.rule].fail
         limit = f"the fail limit{of_rule(minimum.rule)} is {limit_mm(fail)} mm"

@@ -64,7 +64,12 @@ def when_of(moment: dict[str, Any]) -> str:
     step = f"step {moment['step']:,}"
     if moment["between"]:
         step = f"between the steps {moment['step']:,} and {moment['step'] + 1:,}"
-    return f"{seconds(moment['time'])}, {step}{other_time(moment['obstacle'], moment['time_b'])}"
+    return f"{time_of(moment)}, {step}{other_time(moment['obstacle'], moment['time_b'])}"
+
+
+def time_of(row: dict[str, Any]) -> str:
+    """The time of a row that is told, and its move where there is a program."""
+    return seconds(row["time"], row.get("move", ""))
 
 
 def name_shown(rule: str) -> str:

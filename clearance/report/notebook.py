@@ -48,4 +48,4 @@ def _worst(record: Record) -> str:
     worst = record.worst
     by = f" (rule {worst.rule!r})" if record.case.limits.rules else ""
     near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
-    return f"{near}{by}, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
+    return f"{near}{by}, {worst.link} - {worst.obstacle} at {moment_text(record, worst)}"

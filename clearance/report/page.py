@@ -140,6 +140,8 @@ def _data(replay: Replay) -> dict[str, Any]:
         "lines": _floats(replay.lines, "<f8"),
         "status": replay.status.tolist(),
         "nearest": replay.nearest.tolist(),
+        "move": replay.move.tolist(),
+        "moves": replay.moves,
         "contacts": [
             {
                 "frame": contact.frame,

@@ -22,7 +22,8 @@ def summary_of(model: ReportModel) -> dict[str, Any]:
     told: dict[str, Any] = {"format": FORMAT, "name": model.record.case.name}
     for topic in EVERY:
         if topic.data is not None:
-            told |= topic.data(model)
+            named = model.record.moves.named
+            told |= {key: named(value) for key, value in topic.data(model).items()}
     return told
 
 

@@ -58,7 +58,7 @@ def _headline(model: ReportModel) -> Text:
     text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.status, "bold red"))
     name, worst = record.case.name, record.worst
     if worst.touches:
-        told = f"{', ' if ' ' in text.plain else ' '}{contact_line(worst)} ({name})"
+        told = f"{', ' if ' ' in text.plain else ' '}{contact_line(record, worst)} ({name})"
     elif limits.rules:
         told = f": {moment_line(record, worst)} ({name})"
     else:

@@ -94,6 +94,8 @@ class Run:
             measured |= _measured_columns(sides, moment)
         if "time_b" in row:
             measured["time_b"] = moment.time_b
+        if "move" in row:
+            measured["move"] = self.record.moves.at(moment.time) or None
         if moment.depth is not None:
             measured["penetration"] = moment.depth.penetration
         return row | measured

@@ -9,10 +9,13 @@ import pytest
 import yaml
 
 import clearance as cl
+from clearance.findings.finding_text import finding_line
 from clearance.record.wording import certified_text
+from clearance.report.summary import summary_of
 from clearance.report.topics.certainty import certified_of
 from clearance.report.topics.pairs import PairJudge
 from clearance.simulate.measure.sections import section_plan
+from clearance.simulate.replay.replay import replay_of
 from clearance.world.motion import kinematic_motion
 from clearance.world.timeline import timeline_of
 from tests.programs.arms import FILES, arm
@@ -144,6 +147,36 @@ def test_moves_have_names_and_times(tmp_path):
     assert np.array_equal(
         trajectory.positions[-1], [START[name] for name in trajectory.joint_names]
     )
+
+
+def test_the_verdict_names_the_move(tmp_path):
+    move, middle, _ = line_and_arc_of_joints()
+    move["lin"]["to"]["name"] = "P1"
+    back = {"lin": {"to": place(tool_at(START)[:3, 3])}}
+    path = case(tmp_path, [move, {"wait": 0.5}, back], [ball(middle)])
+    run = cl.check(path)
+    summary = summary_of(run.report)
+    assert run.worst["move"] == summary["worst"]["move"] == "LIN 1 → P1"
+    middle_of_wait = summary["moves"][1]["from"] + 0.25
+    passed = [one["time"] > middle_of_wait for one in summary["events"]]
+    named = [one["move"] for one in summary["events"]]
+    assert named == [("LIN 1 → P1", "LIN 3")[late] for late in passed] and len({*named}) == 2
+    assert [one["moves"] for one in summary["intervals"]["contact"]] == ["LIN 1 → P1", "LIN 3"]
+    assert [(one["name"], one["until"]) for one in summary["moves"]][-1] == (
+        "LIN 3",
+        summary["end"],
+    )
+    assert {(one.move, one.moves) for one in run.findings if one.broken} >= {
+        ("LIN 1 → P1", "LIN 1 → P1"),
+        ("LIN 3", "LIN 3"),
+    }
+    texts = [*run.verdict.reasons, *map(finding_line, run.findings)]
+    assert all(" s in LIN 1 → P1, " in one or " s in LIN 3, " in one for one in texts)
+    steps = run.steps.to_pydict()
+    waits = [t for t, name in zip(steps["time"], steps["move"], strict=True) if name == "WAIT 2"]
+    assert waits == [summary["moves"][1]["until"]]
+    replay = replay_of(run.session)
+    assert [replay.moves[code] for code in replay.move[replay.between == 0]] == steps["move"]
 
 
 FAULTS = {

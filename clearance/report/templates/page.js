@@ -34,6 +34,7 @@
 
   const shown = (k) => k.toLocaleString("en");
   const betweenSteps = (step) => `between the steps ${shown(step)} and ${shown(step + 1)}`;
+  const seconds = (time, i) => `${time.toFixed(3)} s${data.move[i] < 0 ? "" : ` in ${data.moves[data.move[i]]}`}`;
   const stepText = (i) => data.between[i] ? betweenSteps(data.steps[i]) : `step ${shown(data.steps[i])}`;
 
   // The rules: with one, nothing is said of it; with several, each frame names its own.
@@ -55,14 +56,14 @@
   function showFrame(i) {
     frame = Math.max(0, Math.min(n - 1, i));
     byId("scrub").value = frame;
-    byId("scrub").setAttribute("aria-valuetext", `${times[frame].toFixed(3)} s, ${measured(frame)}`);
+    byId("scrub").setAttribute("aria-valuetext", `${seconds(times[frame], frame)}, ${measured(frame)}`);
     byId("readout").textContent = "";
     const pair = told(), strong = document.createElement("strong");
     strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
     strong.style.color = colours[pair ? pair.status : data.status[frame]];
     byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
-      pair ? nameOf(pair) : between(frame), document.createElement("br"), pair && pair.between ? `${pair.time.toFixed(3)} s, ${betweenSteps(pair.step)}`
-        : `${times[frame].toFixed(3)} s, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
+      pair ? nameOf(pair) : between(frame), document.createElement("br"), pair && pair.between ? `${seconds(pair.time, frame)}, ${betweenSteps(pair.step)}`
+        : `${seconds(times[frame], frame)}, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
     if (several) byId("readout").append(document.createElement("br"), ruleText(pair ? pair.rule : ruleOf(frame).name));
     for (const one of inHand(frame)) byId("readout").append(document.createElement("br"), `${one.by} holds ${one.part}`);
     for (const contact of data.contacts) if (contact.frame === frame) {
@@ -108,7 +109,7 @@
 
   function tip(i) {
     const {name, fail, warn} = ruleOf(i), rule = several ? [`${ruleText(name)}: ${limitText("fail", fail)}, ${limitText("warn", warn)}`] : [];
-    return [`${measured(i)} ${word(i)}`, between(i), `${times[i].toFixed(3)} s, ${stepText(i)}${otherTime(i)}`, ...rule];
+    return [`${measured(i)} ${word(i)}`, between(i), `${seconds(times[i], i)}, ${stepText(i)}${otherTime(i)}`, ...rule];
   }
 
   function choose(place) {

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from clearance.record.record import PairMinimum
-from clearance.record.wording import count, limit_mm, mm, seconds
+from clearance.record.wording import count, limit_mm, mm
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import step_link
+from clearance.report.moment import step_link, time_of
 from clearance.report.topic import Line, Topic, labelled
 
 WIDTHS = {
@@ -105,7 +105,7 @@ def sections(content: PageContent) -> Iterator[Section]:
 
 
 def _row(gap: dict[str, Any]) -> Row:
-    when = (f"{seconds(gap['time'])}, ", step_link(gap["step"]))
+    when = (f"{time_of(gap)}, ", step_link(gap["step"]))
     between = f"{gap['body_a']} - {gap['body_b']}"
     return Row([between, number(mm(gap["gap"])), when, _parts(gap)], At(gap["step"]))
 

@@ -32,7 +32,9 @@ N_COLOURS = 4
 def data(model: ReportModel) -> dict[str, Any]:
     """All that moves, and how clocks hang together."""
     record = model.record
-    return {
+    moves = moves_of(record)
+    told = {"moves": moves} if moves else {}
+    return told | {
         "actors": actors_of(record),
         "carries": carried_of(record),
         "clock": clock_of(record),
@@ -127,6 +129,15 @@ def carried_of(record: Record) -> list[dict[str, Any]]:
     return sorted(found, key=lambda row: (row["from"], row["part"]))
 
 
+def moves_of(record: Record) -> list[dict[str, Any]]:
+    """The moves of programs that take time, from when until when [s], a robot after another."""
+    return [
+        {"robot": one.robot, "name": name, "from": float(start), "until": float(end)}
+        for one in record.moves.robots
+        for name, start, end in zip(one.names, one.starts, one.ends, strict=True)
+    ]
+
+
 def paddings_of(record: Record) -> dict[str, float]:
     """[m] By how much clearances of a body are lessened; bodies without padding are left out."""
     return paddings_in(record.case)
@@ -193,11 +204,16 @@ class Lanes:
 
 
 def sections(content: PageContent) -> Iterator[Section]:
-    """Who holds what from when to when; nothing where nothing changes hands, comes or goes and no rule has a
-    window."""
+    """The moves of programs, and who holds what from when to when; nothing where no program is followed, nothing
+    changes hands, comes or goes and no rule has a window."""
     summary = content.summary
+    moves = summary.get("moves", [])
+    lanes = [
+        Lane(name, _made(summary, name)) for name in dict.fromkeys(one["robot"] for one in moves)
+    ]
+    title = "Moves, and who holds what when" if lanes else "Who holds what, and when"
     parts = dict.fromkeys(carry["part"] for carry in summary["carries"])
-    lanes = [Lane(part, _hands(summary, part)) for part in parts]
+    lanes += [Lane(part, _hands(summary, part)) for part in parts]
     lanes += [
         Lane(actor["name"], _absences(summary, actor))
         for actor in summary["actors"]
@@ -211,7 +227,16 @@ def sections(content: PageContent) -> Iterator[Section]:
     if lanes:
         drawn = Lanes(lanes, seconds(summary["start"]), seconds(summary["end"]))
         note = faint("A click moves the replay to where a bar begins.")
-        yield Section("Who holds what, and when", [drawn, note])
+        yield Section(title, [drawn, note])
+
+
+def _made(summary: dict[str, Any], robot: str) -> list[Bar]:
+    """The bars of a robot's moves."""
+    return [
+        _bar(summary, one["from"], one["until"], "window", one["name"])
+        for one in summary["moves"]
+        if one["robot"] == robot
+    ]
 
 
 def _hands(summary: dict[str, Any], part: str) -> list[Bar]:

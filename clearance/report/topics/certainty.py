@@ -140,11 +140,13 @@ def _certified_lines(record: Record) -> Iterator[Line]:
     if record.certificate is None:
         yield "certified", "no: nothing is said about the motion between the samples"
         return
-    yield "certified", certified_text(certified_of(record, record.certificate))
+    told = certified_of(record, record.certificate)
+    yield "certified", certified_text(record.moves.named(told))
     sample = record.worst_sample
     if record.worst is not sample:
-        told = f"{mm(sample.clearance)} mm at step {sample.step}, {seconds(sample.time)}"
-        yield "samples", f"{told}: {sample.link} - {sample.obstacle}"
+        at = seconds(sample.time, record.moves.at(sample.time))
+        near = f"{mm(sample.clearance)} mm at step {sample.step}, {at}"
+        yield "samples", f"{near}: {sample.link} - {sample.obstacle}"
 
 
 def _check_lines(check: CrossCheck) -> Iterator[str]:

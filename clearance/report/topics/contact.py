@@ -12,10 +12,10 @@ from typing import Any
 from clearance.record.contact import StepContact
 from clearance.record.names import LINK_AND_OBSTACLE
 from clearance.record.record import Record
-from clearance.record.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
+from clearance.record.wording import contact_text, depth_mm, least_cm3, mm, volume_cm3
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import BODIES, step_link
+from clearance.report.moment import BODIES, step_link, time_of
 from clearance.report.topic import Line, Topic
 
 
@@ -88,7 +88,7 @@ def sections(content: PageContent) -> Iterator[Section]:
         f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest way out "
         f"found moves {moved} by {depth_mm(deepest['penetration'])} mm along ({_way(deepest)})."
     )
-    at = f"Deepest at {seconds(deepest['time'])}, "
+    at = f"Deepest at {time_of(deepest)}, "
     first = Paragraph([at, step_link(deepest["step"]), told])
     heads = (
         *BODIES[summary["sides"][0]], ">Steps", ">Deep, mm", ">At least", ">Shared, cm³", ">At least", ">Time",
@@ -113,7 +113,7 @@ def _row(pair: dict[str, Any]) -> Row:
         "exact" if pair["exact"] else mm(depth),
         volume_cm3(pair["volume"]),
         "exact" if pair["volume_exact"] else least_cm3(volume),
-        seconds(pair["time"]),
+        time_of(pair),
     )
     return Row([pair["link"], pair["obstacle"], *map(number, figures)], At(pair["step"]))
 

@@ -7,10 +7,10 @@ from dataclasses import asdict
 from typing import Any
 
 from clearance.record.row_status import status_counts
-from clearance.record.wording import count, mm, seconds, span_text
+from clearance.record.wording import count, mm, span_text
 from clearance.report.blocks import Cell, Content, Paragraph, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import at_moment, name_shown
+from clearance.report.moment import at_moment, name_shown, time_of
 from clearance.report.topic import Line, Topic
 
 MOST_ROWS, MOST_INTERVALS = 200, 4
@@ -41,11 +41,14 @@ def lines(model: ReportModel) -> Iterator[Line]:
 
 
 def _intervals(model: ReportModel, level: str) -> str:
-    found = model.session.intervals[level]
+    found, moves = model.session.intervals[level], model.record.moves
     if not found:
         return "never"
     n_intervals, n_steps = model.session.extent(level)
-    times = [span_text(part.start, part.end) for part in found[:MOST_INTERVALS]]
+    times = [
+        span_text(part.start, part.end, moves.over(part.start, part.end))
+        for part in found[:MOST_INTERVALS]
+    ]
     more = n_intervals - len(times)
     what = count(n_steps, "step") if n_steps else "between the steps"
     return f"{what}: {', '.join(times)}{f' and {more} more' if more else ''}"
@@ -77,7 +80,7 @@ def _notes(summary: dict[str, Any], more: int) -> Iterator[str]:
 
 
 def _cells(event: dict[str, Any], *, several: bool) -> Iterator[Content | Cell]:
-    yield number(seconds(event["time"]))
+    yield number(time_of(event))
     yield number(f"{event['step']:,}{'+' if event['between'] else ''}")
     yield event["what"]
     unknown = event["clearance"] is None

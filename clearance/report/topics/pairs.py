@@ -13,10 +13,10 @@ from typing import Any, ClassVar, NamedTuple
 from clearance.findings.self_clearance import self_clearance_of
 from clearance.record.record import PairMinimum, Record
 from clearance.record.status import STATUSES, Status, status_of
-from clearance.record.wording import mm, seconds, step_text
+from clearance.record.wording import mm, step_text
 from clearance.report.blocks import At, Paragraph, Row, Section, Table, faint
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import BODIES, at_moment
+from clearance.report.moment import BODIES, at_moment, time_of
 from clearance.report.topic import TerminalTable, Topic
 from clearance.report.topics.cell import paddings_in, paddings_of
 from clearance.world.case import Limits
@@ -93,9 +93,13 @@ def lines(model: ReportModel) -> Iterator[TerminalTable]:
     at_samples = "" if all(pair.proven is not None for pair in nearest) else " at the samples"
     several = bool(record.case.limits.rules)
     heads = [f"closest{at_samples}: {first.lower()}", second.lower()]
-    heads += [">clearance mm", ">step", ">time s", *(["rule"] * several)]
+    made = record.moves
+    heads += [">clearance mm", ">step", ">time s", *(["move"] * bool(made.robots))]
+    heads += ["rule"] * several
     rows = [
-        [pair.link, pair.obstacle, *pair_figures(pair), *([pair.rule] * several)]
+        [pair.link, pair.obstacle, *pair_figures(pair)]
+        + [made.at(pair.time)] * bool(made.robots)
+        + [pair.rule] * several
         for pair in nearest
     ]
     yield TerminalTable(heads, rows)
@@ -205,7 +209,7 @@ def _title(pair: dict[str, Any]) -> str:
     by = "" if pair["rule"] == DEFAULT else f", rule {pair['rule']}: {pair['status']}"
     return (
         f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, "
-        f"step {pair['step']}{'+' * pair['between']}, {seconds(pair['time'])}{by}"
+        f"step {pair['step']}{'+' * pair['between']}, {time_of(pair)}{by}"
     )
 
 

@@ -19,11 +19,10 @@ from clearance.record.wording import (
     mm,
     moment_text,
     other_time,
-    seconds,
 )
 from clearance.report.blocks import Cell, Content, Inline, Row, Section, Table, faint, number
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import at_moment, moment_link, name_shown, told_moment
+from clearance.report.moment import at_moment, moment_link, name_shown, time_of, told_moment
 from clearance.report.topic import Line, Topic
 from clearance.world.rules import Rule
 
@@ -95,7 +94,7 @@ def _standing(model: ReportModel, answer: RuleAnswer | None) -> str:
         return f"{answer.status}, nothing nearer was asked for"
     worst = model.session.worst_among([answer]) or answer.worst
     near = depth_text(worst.depth) if worst.touches else f"{mm(worst.clearance)} mm"
-    return f"{answer.status}, {near}, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
+    return f"{answer.status}, {near}, {worst.link} - {worst.obstacle} at {moment_text(model.record, worst)}"
 
 
 def sections(content: PageContent) -> Iterator[Section]:
@@ -126,7 +125,7 @@ def _row(rule: dict[str, Any], worst_of_all: str) -> Row:
     if worst is None:
         told = "judges nothing" if rule["status"] is None else "nothing nearer was asked for"
         return Row([*cells, Cell(told, "faint", colspan=5)])
-    at = f"{seconds(worst['time'])}{other_time(worst['obstacle'], worst['time_b'])}"
+    at = f"{time_of(worst)}{other_time(worst['obstacle'], worst['time_b'])}"
     found: list[Content | Cell] = [
         Inline(rule["status"], f"tag {rule['status']}"),
         number(mm(worst["clearance"])),

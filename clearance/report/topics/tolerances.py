@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 from clearance.findings.of_budget import NOT_WORKED_OUT, least_expected, tolerance_lines
 from clearance.record.budget import BudgetMoment, ErrorSource, RuleBudget, most_looked_for
 from clearance.record.record import Record
-from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule, seconds
+from clearance.record.wording import depth_mm, limit_mm, mm, moment_text, of_rule
 from clearance.report.blocks import (
     Cell,
     Content,
@@ -28,7 +28,7 @@ from clearance.report.blocks import (
     number,
 )
 from clearance.report.model import PageContent, ReportModel
-from clearance.report.moment import moment_link, name_shown
+from clearance.report.moment import moment_link, name_shown, time_of
 from clearance.report.topic import Line, Topic, labelled
 
 MOST_SOURCES = 3
@@ -118,7 +118,7 @@ def _lines(model: ReportModel) -> Iterator[str]:
 def source_lines(record: Record, one: RuleBudget, worst: BudgetMoment) -> Iterator[str]:
     """What takes most at a moment of a rule, and what of it may be how great at most."""
     moment = worst.moment
-    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(record, moment)}"
     yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
     taken = [
         f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
@@ -258,7 +258,7 @@ def _worst(rule: dict[str, Any], moment: dict[str, Any]) -> Iterator[object]:
         f"between the steps {step:,} and {step + 1:,}" if moment["between"] else f"step {step:,}"
     )
     told = f"Where the errors leave least: {moment['body_a']} and {moment['body_b']} at "
-    at = moment_link(moment, f"{seconds(moment['time'])}, {where}")
+    at = moment_link(moment, f"{time_of(moment)}, {where}")
     yield Paragraph([told, at, f", {mm(moment['clearance'])} mm nominal."])
     yield _bar(moment, rule["fail"])
     heads = ("Error", "Given", ">Takes, mm", ">Std. deviation, mm", "At most, others as given")

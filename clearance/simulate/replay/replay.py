@@ -53,6 +53,7 @@ def replay_of(
     indices = bodies_of(record.case)
     drawn = placed_bodies(record, indices, frames.places)
     bodies, shapes = _drawn_bodies(record.case, indices)
+    move, moves = record.moves.codes(frames.arrays["times"])
     place_of = {
         int(step): i
         for i, step in enumerate(frames.arrays["steps"])
@@ -69,6 +70,8 @@ def replay_of(
         carries=carries_of(record, indices),
         i_worst=_frame_of(record.worst, frames),
         nearest=_nearest(bodies, frames),
+        move=move.astype(np.int32),
+        moves=tuple(moves),
         contacts=tuple(replace(one, frame=place_of[int(steps[one.frame])]) for one in contacts),
         regions=regions,
         **frames.arrays,

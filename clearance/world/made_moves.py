@@ -1,0 +1,99 @@
+"""The moves that the programs of a case make, and when: what is told beside a time. Not for: making them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from clearance.world.case import Case, PlacedRobot
+
+
+@dataclass(frozen=True, eq=False)
+class RobotMoves:
+    """The moves of one robot's program that take time.
+
+    Attributes:
+        robot: its name. prefix: of its moves in tables; empty where there is one robot.
+        names: (m,) of the moves. starts, ends: (m,) [s] of the run. repeats: whether it begins again at its end.
+    """
+
+    robot: str
+    prefix: str
+    names: Sequence[str]
+    starts: np.ndarray
+    ends: np.ndarray
+    repeats: bool
+
+    @classmethod
+    def of(cls, placed: PlacedRobot, prefix: str) -> RobotMoves | None:
+        """Those of a robot; None without a program."""
+        moves = () if placed.trajectory is None else placed.trajectory.moves
+        taken = [one for one in moves if one.end > one.start]
+        if not taken:
+            return None
+        edges = placed.timing.run_times(np.array([*(one.start for one in taken), taken[-1].end]))
+        names = [prefix + one.name for one in taken]
+        repeats = placed.timing.after == "loop"
+        return cls(placed.robot.name, prefix, names, edges[:-1], edges[1:], repeats)
+
+    def places(self, times: np.ndarray) -> np.ndarray:
+        """(n,) which move is made at times (n,) [s]; -1 for none. The end of a move is its own, not the next's."""
+        first, last = self.starts[0], self.ends[-1]
+        if self.repeats:
+            times = np.where(times > last, first + (times - first) % (last - first), times)
+        found = np.minimum(np.searchsorted(self.ends, times), len(self.ends) - 1)
+        return np.where((times >= first) & (times <= last), found, -1)
+
+
+@dataclass(frozen=True)
+class MadeMoves:
+    """The moves of all programs of a case, a robot each; none where no robot has a program."""
+
+    robots: tuple[RobotMoves, ...] = ()
+
+    @classmethod
+    def of(cls, case: Case) -> MadeMoves:
+        """Those of a case."""
+        every = (RobotMoves.of(placed, case.prefix_of(placed)) for placed in case.robots)
+        return cls(tuple(one for one in every if one is not None))
+
+    def codes(self, times: np.ndarray) -> tuple[np.ndarray, list[str]]:
+        """(n,) which of some names is of times (n,) [s], -1 where no program goes on; and the names."""
+        if not self.robots:
+            return np.full(len(times), -1), []
+        rows = np.stack([one.places(times) for one in self.robots], axis=1)
+        each, codes = np.unique(rows, axis=0, return_inverse=True)
+        names = [self._name(row) for row in each.tolist()]
+        found = codes.reshape(-1)
+        return np.where(np.array([not name for name in names])[found], -1, found), names
+
+    def _name(self, places: Sequence[int]) -> str:
+        told = zip(self.robots, places, strict=True)
+        return ", ".join(one.names[i] for one, i in told if i >= 0)
+
+    def at(self, time: float) -> str:
+        """The move at a time [s], of each robot that makes one; empty where none does."""
+        return self._name([int(one.places(np.array([time]))[0]) for one in self.robots])
+
+    def over(self, start: float, end: float) -> str:
+        """The first and the last move of a stretch [s]: `LIN 3 to LIN 5`."""
+        return " to ".join(dict.fromkeys(filter(None, (self.at(start), self.at(end)))))
+
+    def named(self, told: Any) -> Any:
+        """Plain data, in which a row with a time has its `move`, and one with a start and an end its `moves`."""
+        if not self.robots:
+            return told
+        if isinstance(told, list):
+            return [self.named(one) for one in told]
+        if not isinstance(told, dict):
+            return told
+        found = {key: self.named(value) for key, value in told.items()}
+        if isinstance(time := told.get("time"), float):
+            found["move"] = self.at(time)
+        start, end = told.get("start"), told.get("end")
+        if isinstance(start, float) and isinstance(end, float):
+            found["moves"] = self.over(start, end)
+        return found
