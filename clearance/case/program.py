@@ -5,7 +5,7 @@ Not for: how joints follow (room `programs`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,14 +13,18 @@ import numpy as np
 
 from clearance.errors import BadInput, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
-from clearance.formats.known_formats import Kind, format_of, function_at
+from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.formats.motion.trajectory_file import ReadTrajectory
+from clearance.formats.program.controller_program import ProgramRequest
+from clearance.formats.program.conversion import ConvertedProgram, converted
 from clearance.formats.schema import program as schema
+from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.timed import TrajectoryFile
 from clearance.geometry.pose import inverse
 from clearance.programs.motion import motion_of
 from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
 from clearance.world.case import PlacedRobot
+from clearance.world.robot import Robot
 
 
 def program_motion(
@@ -40,29 +44,62 @@ def program_motion(
     Raises:
         BadInput: with the place in the file.
     """
-    assert asked.program is not None
-    if isinstance(asked.program, schema.Program):
-        given, shown = asked.program, "program"
+    if asked.program_file is None:
+        assert isinstance(asked.program, schema.Program)
+        shown, read = "program", _of_schema(asked.program)
     else:
-        path = resolved(asked.program, folder)
-        shown = files.shown(path)
-        data = files.read(path)
-        row = format_of(Kind.PROGRAM, shown, data)
-        assert row is not None
-        given = function_at(row.read)(data, shown)
+        shown, read = _read(asked.program_file, placed.robot, start, folder, files)
+    given = read.program
     with at(shown):
         frames = _Frames(given, placed, standing)
         own = {**given.start, **start}
-        program = Program(
-            given.tool.link,
-            given.tool.matrix(),
-            tuple(_moves(given, frames, shown)),
-            own,
-            given.step,
-        )
+        moves = tuple(_moves(read, frames))
+        program = Program(given.tool.link, given.tool.matrix(), moves, own, given.step)
         found = motion_of(placed.robot, program)
-    trajectory = replace(found.trajectory, frames=tuple(sorted(frames.used)))
-    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in found.notes))
+    trajectory = replace(
+        found.trajectory, frames=tuple(sorted(frames.used)), has_way_in=read.starts_anywhere
+    )
+    notes = (*read.notes, *found.notes)
+    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
+
+
+def _read(
+    asked: ProgramFile,
+    robot: Robot,
+    start: Mapping[str, float],
+    folder: Path,
+    files: InputFiles,
+) -> tuple[str, ConvertedProgram]:
+    """The program in a file, and how the file is called in messages.
+
+    Raises:
+        BadInput: as its reader says; a file that is called like no program.
+    """
+    path = resolved(asked.file, folder)
+    shown, data = files.shown(path), files.read(path)
+    row = format_of(Kind.PROGRAM, shown, data)
+    if row is None:
+        valid = f"one of {', '.join(suffixes_read(Kind.PROGRAM))}"
+        raise BadInput(f"{shown!r} has no suffix of a robot program", valid=valid)
+    others = [resolved(one, folder) for one in asked.beside]
+    beside = {files.shown(one): files.read(one) for one in others}
+    read = function_at(row.read)(ProgramRequest(data, shown, asked, beside))
+    if isinstance(read, schema.Program):
+        return shown, _of_schema(read)
+    with at(shown):
+        return shown, converted(read, asked, robot, start)
+
+
+def _of_schema(program: schema.Program) -> ConvertedProgram:
+    """A program of ours, its moves by their number."""
+    places, names = [], []
+    for i, move in enumerate(program.moves):
+        (key,) = (key for key in move.keys() if getattr(move, key) is not None)
+        places.append(f"moves[{i}]" if key == "wait" else f"moves[{i}].{key}")
+        path = move.ptp or move.lin or move.circ
+        to = None if path is None or path.to is None else path.to.name
+        names.append(f"{key.upper()} {i + 1}" + (f" → {to}" if to else ""))
+    return ConvertedProgram(program, tuple(places), tuple(names))
 
 
 class _Frames:
@@ -114,32 +151,27 @@ class _Frames:
         return np.asarray(self.root_from(place.frame) @ np.array([*place.xyz, 1.0]))[:3]
 
 
-def _moves(given: schema.Program, frames: _Frames, shown: str) -> Sequence[Move]:
+def _moves(read: ConvertedProgram, frames: _Frames) -> Iterator[Move]:
     """The moves of a program, each under a name: "LIN 14 → P23"."""
-    found: list[Move] = []
-    for i, move in enumerate(given.moves):
-        where = f"moves[{i}]"
+    for move, where, name in zip(read.program.moves, read.places, read.names, strict=True):
         with at(where):
-            found.append(_move(move, frames, i + 1, where))
-    return found
+            yield _move(move, frames, where, name)
 
 
-def _move(move: schema.Move, frames: _Frames, number: int, where: str) -> Move:
+def _move(move: schema.Move, frames: _Frames, where: str, name: str) -> Move:
     if move.wait is not None:
-        return Wait(f"WAIT {number}", where, move.wait)
+        return Wait(name, where, move.wait)
     if move.ptp is not None:
         to = move.ptp.to
         pose = None if to is None else frames.pose(to)
-        name = _name("PTP", number, to)
-        return JointMove(name, f"{where}.ptp", move.ptp.joints, pose, move.ptp.speed, move.ptp.zone)
-    key = "lin" if move.circ is None else "circ"
+        return JointMove(name, where, move.ptp.joints, pose, move.ptp.speed, move.ptp.zone)
     path = move.circ or move.lin
     assert path is not None
     turns = path.to.turns and not (move.circ is not None and move.circ.orientation == "constant")
     pose = frames.pose(path.to)
     return PathMove(
-        name=_name(key.upper(), number, path.to),
-        where=f"{where}.{key}",
+        name=name,
+        where=where,
         pose=pose,
         keeps_orientation=not turns,
         via=None if move.circ is None else frames.point(move.circ.via),
@@ -150,7 +182,3 @@ def _move(move: schema.Move, frames: _Frames, number: int, where: str) -> Move:
         zone=path.zone,
         hold=dict(path.hold),
     )
-
-
-def _name(kind: str, number: int, to: schema.Target | None) -> str:
-    return f"{kind} {number} → {to.name}" if to is not None and to.name else f"{kind} {number}"

@@ -132,3 +132,6 @@ def _texts(node: Node, *keys: str) -> Iterator[tuple[Any, Any]]:
             yield from (
                 (value, name) for name in ("file", "program") if isinstance(value.get(name), str)
             )
+            if isinstance(program := value.get("program"), dict) and "file" in program:
+                yield program, "file"
+                yield from ((program["beside"], i) for i in range(len(program.get("beside", ()))))

@@ -164,9 +164,8 @@ def in_motion(
         field = entry.trajectory_field
         if asked.program is not None:
             trajectory, notes = _programmed(entry, placed, folder, files, standing)
-            path = (
-                "" if not isinstance(asked.program, str) else str(resolved(asked.program, folder))
-            )
+            file = asked.program_file
+            path = "" if file is None else str(resolved(file.file, folder))
         else:
             trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
             trajectory, on_start = with_start(entry, trajectory, placed.robot, folder, files)

@@ -69,6 +69,9 @@ def test_our_cases_follow_it(errors, path):
         ("warn: 0.02", "warn: 0.02, joints: fail"),
         ("urdf: arm.urdf", "urdf: arm.urdf, geometry: collision_or_visual, collada_up_axis: file"),
         ("limits:", "accept: [units, axis]\nlimits:"),
+        ("{file: path.csv}", "{program: weld.mod, start_state: home}"),
+        ("{file: path.csv}", "{program: {file: weld.mod, axes: {upper: {offset: -90deg}}}}"),
+        ("{file: path.csv}", "{program: {tool: {link: upper}, moves: [{wait: 1.0}]}}"),
     ],
 )
 def test_what_it_takes_is_taken(errors, old, new):
@@ -97,6 +100,8 @@ def test_what_it_takes_is_taken(errors, old, new):
         ("limits:", "tolerance: {tracking: controlers}\nlimits:"),
         ("limits:", "tolerance: {presets: [none]}\nlimits:"),
         ("urdf: arm.urdf", "urdf: arm.urdf, geometry: hull"),
+        ("file: path.csv", "program: {file: weld.mod, axes: {upper: {sign: 2}}}"),
+        ("file: path.csv", "program: {file: weld.mod, axes: {upper: {offset: 90mm}}}"),
     ],
 )
 def test_what_it_marks_is_refused(errors, old, new):

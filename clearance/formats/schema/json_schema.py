@@ -12,6 +12,7 @@ from clearance.formats.known_formats import Kind, names_of
 from clearance.formats.schema import case as schema
 from clearance.formats.schema.joints import STATE
 from clearance.formats.schema.obstacle import SHAPES
+from clearance.formats.schema.program_file import DEGREES
 from clearance.formats.schema.strict_model import StrictModel
 from clearance.formats.schema.tolerance import CONTROLLERS, ERRORS, preset_names
 from clearance.world.notice import KINDS
@@ -46,8 +47,12 @@ def case_schema() -> dict[str, Any]:
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
     parts["PoseFile"] = _or_path(parts["PoseFile"], f"a file with poses ({names_of(Kind.POSES)})")
     names = {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1}
-    motion = parts["TrajectoryFile"]["properties"]
-    motion["columns"] = {"anyOf": [motion["columns"], names]}
+    motion = parts["TrajectoryFile"]
+    motion["properties"]["columns"] = {"anyOf": [motion["properties"]["columns"], names]}
+    del motion["required"]
+    motion["oneOf"] = [{"required": ["file"]}, {"required": ["program"]}]
+    offset = parts["Axis"]["properties"]["offset"]
+    parts["Axis"]["properties"]["offset"] = {"anyOf": [offset, DEGREES]}
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], f"a file with the motion ({names_of(Kind.TRAJECTORY)})"
     )
@@ -89,7 +94,7 @@ def _without_nothing(made: dict[str, Any], parts: dict[str, Any]) -> None:
             given = named[model.__name__]["properties"][key]
             kinds = [kind for kind in given.pop("anyOf") if kind != {"type": "null"}]
             given.pop("default", None)
-            given.update(kinds[0])
+            given.update(kinds[0] if len(kinds) == 1 else {"anyOf": kinds})
     for key in ("robot", "robots"):
         made["properties"][key] = made["properties"][key]["anyOf"][0]
 

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from clearance.errors import BadInput
 from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.schema.program import Program
+from clearance.formats.schema.program_file import ProgramFile
 from clearance.formats.schema.strict_model import Name, StrictModel, validated
 from clearance.world.timing import Timing
 
@@ -77,8 +78,8 @@ class TrajectoryFile(TimedFile):
     `columns` names the columns of a table to read, and no others; `{joint: column}` if names differ. `topic` is
     a topic of a bag. `gaps` says how joints move in holes of a recording: they hold, go straight (linear), or are
     not measured. `wrap` says which way a continuous joint goes in a step of more than half a turn. `start_state`
-    is the start at 0 s if the first sample is later: positions, or names of states. `program` names, or holds, a
-    robot program instead of a file; it starts in `start_state`.
+    is the start at 0 s if the first sample is later: positions, or names of states. `program` is a robot
+    program instead of a file, or the path of one; it starts in `start_state`.
     """
 
     FILLED = frozenset(
@@ -99,7 +100,7 @@ class TrajectoryFile(TimedFile):
         Annotated[dict[Name, Name], BeforeValidator(_by_itself), Field(min_length=1)] | None
     ) = None
     start_state: dict[Name, float] | Name | list[Name] | None = None
-    program: Name | Program | None = None
+    program: Name | ProgramFile | Program | None = None
 
     @model_validator(mode="before")
     @classmethod
@@ -113,8 +114,18 @@ class TrajectoryFile(TimedFile):
             raise BadInput(f"{others[0]} is of a file, not of a program", valid="no such key")
         program = data["program"]
         if isinstance(program, dict):
-            program = validated(Program, program, "program")
+            model = ProgramFile if "file" in program else Program
+            program = validated(model, program, "program")
         return {"file": "-", **data, "program": program}
+
+    @property
+    def program_file(self) -> ProgramFile | None:
+        """The file of the program, if it is in one."""
+        return (
+            ProgramFile(file=self.program)
+            if isinstance(self.program, str)
+            else (self.program if isinstance(self.program, ProgramFile) else None)
+        )
 
     @property
     def choice(self) -> Choice:

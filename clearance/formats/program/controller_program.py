@@ -1,0 +1,114 @@
+"""A program as a controller has it: moves of axes and tool, as numbers, each with its line.
+
+Readers of all controllers' languages make this one; `conversion` makes it moves of a robot. Metres, radians and
+seconds. Not for: names, loops and calls, which a language's reader resolves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from clearance.formats.schema.program_file import ProgramFile
+
+
+@dataclass(frozen=True)
+class AxisTarget:
+    """Positions of axes.
+
+    Attributes:
+        axes: with the controller's sign and zero [rad or m]. external: by name (`E1`), in degrees or mm, as the
+            joint turns or slides. name: of the point.
+    """
+
+    axes: tuple[float, ...]
+    external: Mapping[str, float] = field(default_factory=dict)
+    name: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class PoseTarget:
+    """A pose of the tool.
+
+    Attributes:
+        pose: (4, 4) `base_from_tool`: work frame times target [m]. external, name: as of an `AxisTarget`.
+        ranges: from where to where axes are in the configuration that is asked for [rad], by number from 1.
+        unchecked: flags of the configuration that are no range of one axis, as text.
+    """
+
+    pose: np.ndarray
+    external: Mapping[str, float] = field(default_factory=dict)
+    ranges: Mapping[int, tuple[float, float]] = field(default_factory=dict)
+    unchecked: str = ""
+    name: str = ""
+
+
+Target = AxisTarget | PoseTarget
+
+
+@dataclass(frozen=True, eq=False)
+class ControllerMove:
+    """One move of a controller.
+
+    Attributes:
+        line: where it stands, from 1. kind: of the way. to: its end. tool: (4, 4) `flange_from_tool` [m].
+        via: a point of the arc, for `circ`.
+        orientation: on an arc, as in `schema.program.ArcMove`.
+        speed: of the tool's point [m/s]; acceleration [m/s^2]; turn_speed [rad/s]; None for the default.
+        share: for `ptp`, of the joints' greatest speeds. axis_speed: for `ptp`, of the axis that leads [rad/s].
+        zone: radius of the corner at the end [m]; 0 stops there. file: where it stands, if beside the program's.
+    """
+
+    line: int
+    kind: Literal["ptp", "lin", "circ"]
+    to: Target
+    tool: np.ndarray
+    via: Target | None = None
+    orientation: Literal["to", "constant", "tangent"] = "to"
+    speed: float | None = None
+    acceleration: float | None = None
+    turn_speed: float | None = None
+    share: float | None = None
+    axis_speed: float | None = None
+    zone: float = 0.0
+    file: str = ""
+
+
+@dataclass(frozen=True)
+class ControllerWait:
+    """Nothing moves for some time [s]."""
+
+    line: int
+    seconds: float
+    file: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class ControllerProgram:
+    """A whole program.
+
+    Attributes:
+        moves: in the order in which they are made: loops and calls are resolved. notes: a line each on what was
+            assumed or passed over.
+    """
+
+    moves: tuple[ControllerMove | ControllerWait, ...]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramRequest:
+    """What a reader of programs gets.
+
+    Attributes:
+        data: the file's content. shown: its name in messages. asked: as the case says.
+        beside: content of the further files, by their names in messages.
+    """
+
+    data: bytes
+    shown: str
+    asked: ProgramFile
+    beside: Mapping[str, bytes] = field(default_factory=dict)

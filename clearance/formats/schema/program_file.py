@@ -1,0 +1,64 @@
+"""The schema of a robot program in a file: the file, and what a controller knows that its file does not say.
+
+Not for: reading the languages of controllers (`formats.program`).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field
+
+from clearance.errors import BadInput
+from clearance.formats.schema.pose import Pose
+from clearance.formats.schema.program import Frame
+from clearance.formats.schema.strict_model import Name, StrictModel
+
+DEGREES = {"type": "string", "pattern": r"^([+-]?[0-9]+(?:\.[0-9]*)?) ?deg$"}
+"""An angle as text, as JSON Schema has it."""
+
+
+def _radians(given: Any) -> Any:
+    """`-90deg` in radians; all else as it is.
+
+    Raises:
+        BadInput: another text.
+    """
+    if not isinstance(given, str):
+        return given
+    found = re.fullmatch(DEGREES["pattern"], given)
+    if not found:
+        raise BadInput(f"{given!r:.60} is given", valid="radians, metres, or degrees as in -90deg")
+    return math.radians(float(found[1]))
+
+
+class Axis(StrictModel):
+    """How a joint follows an axis of the controller: `joint = sign * axis + offset` [rad or m], and multiples of
+    other axes by `plus`. Without `axis` (1, 2, … or E1, E2, …) joints have the axes in their order.
+    """
+
+    axis: int | Name | None = None
+    offset: Annotated[float, BeforeValidator(_radians)] = 0.0
+    sign: Literal[-1, 1] = 1
+    plus: dict[int, float] = {}
+
+
+class ProgramFile(StrictModel):
+    """A program's file. All else is for languages of controllers: `entry` is the procedure that runs, `beside` are
+    further files, `skip` are instructions to leave out, `link` is the flange, `base` is where the controller's
+    base stands, `axes` says how joints follow axes. `tools` (on the flange) and `frames` (on the base) are those
+    that the file names and does not hold. `step` is the most that the tool moves between samples [m].
+    """
+
+    file: Name
+    entry: Name | None = None
+    beside: list[Name] = []
+    skip: list[Name] = []
+    link: Name | None = None
+    base: Frame | None = None
+    axes: dict[Name, Axis] = {}
+    tools: dict[Name, Pose] = {}
+    frames: dict[Name, Pose] = {}
+    step: Annotated[float, Field(gt=0)] = 0.002

@@ -1,0 +1,132 @@
+"""From axes of a controller to joints, and from its base to the robot's root: values by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.formats.program.controller_program import (
+    AxisTarget,
+    ControllerMove,
+    ControllerProgram,
+    ControllerWait,
+    PoseTarget,
+)
+from clearance.formats.program.conversion import converted
+from clearance.formats.schema.program_file import ProgramFile
+from clearance.formats.schema.strict_model import validated
+from clearance.world.robot import Joint, JointKind
+from tests.programs.arms import FILES
+
+QUARTER = math.pi / 2
+AXES = AxisTarget((0.1, 0.2, 0.3, 0.4, 0.5, 0.6), name="home")
+HOME = ControllerMove(3, "ptp", AXES, np.eye(4), share=0.5)
+
+
+def at(x: float, y: float, z: float) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def made(*moves, start=(), robot=None, **asked):
+    asked = validated(ProgramFile, {"file": "weld.mod", "link": "tool_tip", **asked}, "program")
+    robot = robot or cl.load_urdf(FILES["heron6"])
+    return converted(ControllerProgram(moves), asked, robot, dict(start))
+
+
+def test_joints_follow_axes_by_sign_offset_and_other_axes():
+    axes = {
+        "joint_2": {"offset": "-90deg", "sign": -1},
+        "joint_3": {"plus": {2: 1.0}},
+        "joint_6": {"axis": 5},
+        "joint_5": {"axis": 6},
+    }
+    (move,) = made(HOME, axes=axes).program.moves
+    joints = [0.1, -0.2 - QUARTER, 0.3 + 0.2, 0.4, 0.6, 0.5]
+    assert list(move.ptp.joints.values()) == pytest.approx(joints, abs=1e-15)
+    assert list(move.ptp.joints) == [f"joint_{i}" for i in range(1, 7)] and move.ptp.speed == 0.5
+
+
+def test_a_pose_is_seen_from_the_controllers_base():
+    target = PoseTarget(at(0.5, 0.0, 0.3), name="P1")
+    line = ControllerMove(7, "lin", target, at(0.0, 0.0, 0.1), speed=0.2, zone=0.01)
+    base = {"on": "world", "xyz": [1.0, 2.0, 0.0]}
+    found = made(HOME, line, line, ControllerWait(8, 0.5), line, base=base)
+    assert found.program.frames["controller"].model_dump(exclude_unset=True) == base
+    assert found.program.tool.xyz == [0.0, 0.0, 0.1] and found.program.tool.link == "tool_tip"
+    lin = found.program.moves[1].lin
+    assert (lin.to.frame, lin.to.xyz, lin.zone, lin.speed) == (
+        "controller",
+        [0.5, 0.0, 0.3],
+        0.01,
+        0.2,
+    )
+    assert found.program.moves[4].lin.zone == 0.0
+    assert sum("no move follows" in note for note in found.notes) == 2
+    assert found.names == (
+        "PTP 3 → home",
+        "LIN 7 → P1",
+        "LIN 7 (2) → P1",
+        "WAIT 8",
+        "LIN 7 (3) → P1",
+    )
+    assert found.places == ("line 3", "line 7", "line 7", "line 8", "line 7")
+
+
+def test_a_link_called_base_is_the_controllers():
+    robot = cl.load_urdf(FILES["heron6"])
+    turned = np.diag([-1.0, -1.0, 1.0, 1.0])
+    joint = Joint("b", JointKind.FIXED, "base_link", "base", turned)
+    robot = replace(robot, link_names=(*robot.link_names, "base"), joints=(*robot.joints, joint))
+    found = made(HOME, robot=robot)
+    assert found.program.frames["controller"].quat_xyzw == [0.0, 0.0, 1.0, 0.0]
+    assert any("'base'" in note for note in found.notes)
+
+
+def test_a_line_to_axes_ends_where_they_have_the_tool():
+    line = replace(HOME, kind="lin", to=AxisTarget((0.0,) * 6), tool=at(0.0, 0.0, 0.1))
+    to = made(HOME, line).program.moves[1].lin.to
+    x = 0.3 + 0.22 + 0.088 + 0.15
+    assert to.frame == "base" and to.xyz == pytest.approx([x, 0.0, 0.245 + 0.2 + 0.44 + 0.1])
+
+
+def test_the_start_is_the_first_target_of_axes_and_its_way_in_is_unknown():
+    found = made(HOME)
+    assert list(found.program.start.values()) == list(AXES.axes) and found.starts_anywhere
+    start = {f"joint_{i}": 0.0 for i in range(1, 7)}
+    assert not made(HOME, start=start).starts_anywhere
+
+
+def test_a_speed_of_axes_is_a_share_of_the_slowest_joints():
+    (move,) = made(replace(HOME, share=None, axis_speed=0.8)).program.moves
+    assert move.ptp.speed == 0.5
+
+
+POSE = replace(HOME, to=PoseTarget(at(0.5, 0.0, 0.3)))
+
+
+@pytest.mark.parametrize(
+    ("moves", "asked", "told"),
+    [
+        ([replace(HOME, to=AxisTarget((0.0,) * 7))], {}, "line 3: 7 axes are given"),
+        ([replace(HOME, share=0.0)], {}, "line 3: ptp.speed: 0.0 is given"),
+        ([POSE], {}, "line 3: the first move ends at a pose"),
+        ([HOME], {"link": "tool"}, "link: there is no link 'tool'"),
+        ([HOME], {"link": None}, "link: there is no link 'tool0'"),
+        ([HOME], {"axes": {"joint_9": {}}}, "axes: unknown joint 'joint_9'"),
+        ([HOME], {"axes": {"joint_1": {"axis": 2}, "joint_2": {"axis": 2}}}, "each of 1 to 6 once"),
+        ([HOME], {"axes": {"joint_1": {"axis": "E1"}}}, "6 axes are given, and the arm has 5"),
+        ([HOME], {"axes": {"joint_2": {"offset": "90 mm"}}}, "'90 mm' is given; radians, metres"),
+        ([HOME, POSE, replace(POSE, tool=at(0, 0, 1), line=9)], {}, "line 9: another tool"),
+        ([ControllerWait(3, 1.0)], {}, "nothing moves"),
+    ],
+)
+def test_what_has_no_meaning_for_the_robot_is_refused_with_its_line(moves, asked, told):
+    with pytest.raises(cl.ClearanceError) as caught:
+        made(*moves, **asked)
+    assert told in str(caught.value)
