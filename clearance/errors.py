@@ -127,6 +127,54 @@ class BadTime(BadInput):
     """Times that do not increase."""
 
 
+class Contradiction(BadInput):
+    """Two things that are said and cannot both hold, or one that says nothing without another."""
+
+
+class BadRobot(BadInput):
+    """A robot file whose links, joints or arguments do not fit together, or that asks for what is not read."""
+
+
+class BadScene(BadInput):
+    """A scene file whose objects do not fit together, or that asks for what is not read."""
+
+
+class BadMotion(BadInput):
+    """A motion, recording or bag that cannot be followed as it is, or is not the only one in its file."""
+
+
+class BadProgram(BadInput):
+    """A robot program that the arm cannot follow, or not as far as a proof needs."""
+
+
+class BadTolerance(BadInput):
+    """Tolerances that do not fit the case, or that no proof covers."""
+
+
+class BadWaiver(BadInput):
+    """A waiver without what makes it one."""
+
+
+class BadChange(BadInput):
+    """A change that cannot be looked for in this case, or that its request leaves open."""
+
+
+class BadBatch(BadInput):
+    """A manifest, a list of cases, or a store of answers that cannot be used."""
+
+
+class BadReport(BadInput):
+    """A report that is damaged or of another version."""
+
+
+class NoReceipt(BadInput):
+    """A run for which no receipt can be written or verified."""
+
+
+class NotSimulated(BadInput):
+    """A case whose motion the physics engine cannot simulate."""
+
+
 class NothingToMeasure(BadInput):
     """A case in which no pair of bodies is left to measure."""
 

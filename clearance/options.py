@@ -17,7 +17,15 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
-from clearance.errors import BadDimension, BadInput, ClearanceError, UnknownKey, at, nearest_name
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    ClearanceError,
+    Contradiction,
+    UnknownKey,
+    at,
+    nearest_name,
+)
 
 List = TypeVar("List")
 
@@ -183,7 +191,7 @@ def require_needs(kind: type, said: Mapping[str, Any], spelled: Spelling = in_py
             continue
         needed = "with " if known[other].off else "without "
         needed += spelled(other, False if known[other].off else value)
-        raise BadInput(f"{spelled(name, None)} says nothing {needed}")
+        raise Contradiction(f"{spelled(name, None)} says nothing {needed}")
 
 
 def made(

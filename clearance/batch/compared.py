@@ -20,7 +20,7 @@ from clearance.batch.answer import BatchAnswer
 from clearance.batch.rows import ERROR
 from clearance.batch.store_files import FINDINGS, is_store, require_no_older
 from clearance.batch.tables import written_answer
-from clearance.errors import BadInput, Incomplete
+from clearance.errors import BadBatch, Incomplete
 from clearance.findings.comparison import BatchComparison, ComparedCase, compared
 from clearance.findings.doubts import Doubt
 from clearance.findings.finding import AppliedWaiver, Finding
@@ -34,7 +34,7 @@ def require_answer(place: Path) -> BatchAnswer:
         BadInput, Unwritable: that is no store, or of another version. Incomplete: it has no answer.
     """
     if not is_store(place):
-        raise BadInput(
+        raise BadBatch(
             "not a store", where=str(place), valid="the folder that a `clearance batch --out` wrote"
         )
     require_no_older(place)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from clearance.batch.engine import Queue
 from clearance.batch.measuring import Fault, Task, TaskResult, measure
-from clearance.errors import BadInput, Incomplete
+from clearance.errors import BadBatch, Incomplete
 from clearance.extras import importing
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def cluster_at(address: str) -> Iterator[DaskEngine]:
         try:
             client = distributed.Client(address, timeout=CONNECTING)
         except (OSError, ValueError) as error:
-            raise BadInput(
+            raise BadBatch(
                 f"no scheduler answers ({type(error).__name__})",
                 where=f"--scheduler {address}",
                 valid="an address such as tcp://host:8786 of a dask scheduler of the same version",

@@ -12,7 +12,7 @@ from dataclasses import asdict
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import CaseOptions
 from clearance.batch.store import Store
-from clearance.errors import BadInput, MissingFile, nearest_name
+from clearance.errors import BadBatch, BadInput, MissingFile, nearest_name
 
 
 def write_list(store: Store, items: Sequence[Item]) -> None:
@@ -51,7 +51,7 @@ def read_list(store: Store) -> list[Item]:
         options = [CaseOptions.of_plain(json.loads(one)) for one in asked]
         return [_item(i, name, stored, options[n]) for i, (name, stored, n) in enumerate(rows)]
     except (ValueError, TypeError, IndexError, BadInput):
-        raise BadInput(
+        raise BadBatch(
             "the list of cases is damaged",
             where=str(store.path),
             valid="`clearance batch` once more",
@@ -67,7 +67,7 @@ def item_called(items: Sequence[Item], name: str) -> Item:
     found = next((item for item in items if item.name == name), None)
     if found is None:
         names = [item.name for item in items]
-        raise BadInput(f"there is no case {name!r:.80}", valid=nearest_name(name, names))
+        raise BadBatch(f"there is no case {name!r:.80}", valid=nearest_name(name, names))
     return found
 
 

@@ -20,7 +20,7 @@ from clearance.batch.manifest_file import TrajectoryOptions, is_manifest, load_m
 from clearance.batch.options import USUAL, CaseOptions
 from clearance.batch.shared_waivers import as_shared
 from clearance.case.waiver_file import load_waivers
-from clearance.errors import BadInput, DuplicateName, MissingFile, at
+from clearance.errors import BadBatch, DuplicateName, MissingFile, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.options import made
 from clearance.run import CheckOptions
@@ -220,7 +220,7 @@ def _require_own_names(cases: Sequence[Item]) -> None:
                 valid="a name: in each manifest, which goes before the names of its cases",
             )
     if not cases:
-        raise BadInput("no case is given", valid="a manifest, case files, or a pattern of them")
+        raise BadBatch("no case is given", valid="a manifest, case files, or a pattern of them")
 
 
 def _file(item: Item) -> str:

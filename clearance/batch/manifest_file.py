@@ -11,7 +11,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from clearance.errors import BadInput, MissingKey, at
+from clearance.errors import BadBatch, MissingKey, at
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.schema.strict_model import Name, StrictModel, validated
 from clearance.formats.schema.timed import TrajectoryFile
@@ -43,7 +43,7 @@ class TrajectoryOptions(TrajectoryFile):
         if not isinstance(data, dict):
             return data
         if "file" in data:
-            raise BadInput("a file is given", where="file", valid="the files under trajectories")
+            raise BadBatch("a file is given", where="file", valid="the files under trajectories")
         return {"file": "-", **data}
 
 
@@ -76,7 +76,7 @@ class Manifest(StrictModel):
             raise MissingKey("nothing to check", valid="cases, or cell and trajectories")
         for key in ("robot", "read_as"):
             if self.cell is None and getattr(self, key) is not None:
-                raise BadInput("there is no cell", where=key, valid="cell and trajectories")
+                raise BadBatch("there is no cell", where=key, valid="cell and trajectories")
         return self
 
 
@@ -140,7 +140,7 @@ def manifest_of(raw: object, path: Path) -> tuple[Manifest, dict[str, Any]]:
 def _said(key: str, value: Any) -> dict[str, Any]:
     """The options that a key says."""
     if value is None:
-        raise BadInput("nothing is given", where=key, valid="a value, or no such key")
+        raise BadBatch("nothing is given", where=key, valid="a value, or no such key")
     if key == "limits":
         levels = validated(_Levels, value, key)
         return {name: getattr(levels, name) for name in levels.model_fields_set}

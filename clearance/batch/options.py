@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from clearance.case.tolerance.tolerance_file import tolerance_digest
-from clearance.errors import BadInput
+from clearance.errors import BadBatch, BadInput
 from clearance.formats.files.input_files import read_bytes
 from clearance.formats.motion.trajectory_file import files_of
 from clearance.options import made, options_in
@@ -77,7 +77,7 @@ class CaseOptions:
         if _files_key(self.asked) != self.files_key:
             names = [path.name for paths in self.asked.files.values() for path in paths]
             where = " or ".join(names)
-            raise BadInput("it was changed during the batch", where=where, valid="once more")
+            raise BadBatch("it was changed during the batch", where=where, valid="once more")
         return Question.of(case, self.asked)
 
     def waived_by(self, waivers: tuple[Waiver, ...]) -> CaseOptions:

@@ -21,7 +21,7 @@ from filelock import FileLock, Timeout
 from clearance.batch.file_hashes import FileStamp, Marks
 from clearance.batch.store_files import FILE, parts_in, require_place
 from clearance.batch.stored_row import COLUMNS, N_VALUES, is_whole, read_row, sealed, stored
-from clearance.errors import BadInput, ClearanceError, Incomplete, Unwritable, unwritable
+from clearance.errors import BadBatch, BadInput, ClearanceError, Incomplete, Unwritable, unwritable
 
 FORMAT = 2
 """Of the tables; the parquet segments of older versions were 1."""
@@ -290,7 +290,7 @@ def _files_of(place: Path) -> list[Path]:
         return [place]
     found = [path for path in (place / FILE, *parts_in(place)) if path.is_file()]
     if not found:
-        raise BadInput("no store and no part is here", where=str(place), valid="such a folder")
+        raise BadBatch("no store and no part is here", where=str(place), valid="such a folder")
     return found
 
 
@@ -303,7 +303,7 @@ def _require_format(
     (application,) = db.execute(f"PRAGMA {schema}.application_id").fetchone()
     (found,) = db.execute(f"PRAGMA {schema}.user_version").fetchone()
     if application != APPLICATION:
-        raise BadInput("this is no store", where=str(path), valid="a file that a batch has written")
+        raise BadBatch("this is no store", where=str(path), valid="a file that a batch has written")
     if found != FORMAT:
         raise Unwritable(
             f"a store of format {found}",
@@ -345,7 +345,7 @@ def _in_words(error: sqlite3.DatabaseError, path: Path) -> ClearanceError:
 
 
 def _damaged(path: Path, why: str) -> BadInput:
-    return BadInput(
+    return BadBatch(
         f"the store is damaged, or is none ({why})",
         where=str(path),
         valid="a new folder: the same command measures all once more",

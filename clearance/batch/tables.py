@@ -15,7 +15,7 @@ from clearance.batch.answer import CASE, PART, BatchAnswer
 from clearance.batch.rows import FINDING
 from clearance.batch.store import Store
 from clearance.batch.store_files import CASES, FINDINGS
-from clearance.errors import BadInput
+from clearance.errors import BadBatch
 from clearance.files import written_file
 
 _STALE = b"stale waivers"
@@ -48,7 +48,7 @@ def written_answer(place: Path) -> BatchAnswer | None:
         return None
     rows = pq.read_table(place / CASES)
     if rows.column_names != CASE.names:
-        raise BadInput(
+        raise BadBatch(
             "an answer of another version",
             where=str(place),
             valid="the same `clearance batch` writes it anew",

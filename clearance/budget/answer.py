@@ -11,7 +11,7 @@ from clearance.budget.expected import expected_between, expected_of_steps
 from clearance.budget.proven import PairsWithErrors, proven_between, proven_of_steps
 from clearance.budget.section_budget import SectionBudget
 from clearance.budget.worst import WorstMoments
-from clearance.errors import BadInput
+from clearance.errors import BadTolerance
 from clearance.kernels.budget.sweep_state import SearchMemory
 from clearance.record.budget import RuleBudget
 from clearance.simulate.measure.resources import Resources
@@ -60,7 +60,7 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
         BadInput: clocks that are not tied, or errors of clocks in a run in which something changes hands.
     """
     if case.clock.slack > 0.0:
-        raise BadInput(
+        raise BadTolerance(
             "a tolerance budget is given, and the case's clocks are not tied",
             where="tolerance",
             valid="`clock: common`, and how far clocks may be off in tolerance.timing",
@@ -74,7 +74,7 @@ def require_budget(case: Case, budget: Budget, plan: SectionPlan) -> None:
         gripping = {one.owner for part in parts for one in part.past}
         late = [name for name in late if name in gripping]
     if late:
-        raise BadInput(
+        raise BadTolerance(
             f"the clock of {late[0]!r} may be off, and parts change hands, come or go during the run",
             where="tolerance.timing",
             valid="no timing, or a case for each part of the run",
@@ -87,7 +87,7 @@ def _require_no_loops(case: Case, late: Sequence[str]) -> None:
     timings |= {one.name: one.moves.timing for one in case.obstacles if one.moves is not None}
     for name in late:
         if name in timings and timings[name].after == "loop":
-            raise BadInput(
+            raise BadTolerance(
                 f"the clock of {name!r} may be off, and it loops: beyond the ends of the run it would go on",
                 where="tolerance.timing",
                 valid="a table of its own for the whole run and what is before and after (after: hold)",

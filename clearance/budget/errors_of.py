@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadTolerance
 from clearance.geometry.pose import inverse
 from clearance.kernels.budget.errors import Errors, Extras
 from clearance.kernels.motion.kinematics import NO_PARENT
@@ -166,7 +166,7 @@ class _ForestErrors:
             return
         for one, _ in self._sized(errors_below(self.case, obstacle.mount)):
             on = obstacle.mount.on if obstacle.mount is not None else one.owner
-            raise BadInput(
+            raise BadTolerance(
                 f"obstacle {obstacle.name!r} moves by its own table on {on!r}, which moves too",
                 where="tolerance.obstacles",
                 valid=f"no place tolerance of {one.owner!r}; give it to {obstacle.name!r}",

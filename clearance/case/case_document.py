@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from clearance.errors import BadInput, at
+from clearance.errors import Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.formats import read_scene, with_own_words
@@ -52,7 +52,7 @@ def read_schema(
         return validated(model, raw, path.name), scene_at
     case = validated(model, raw, path.name)
     if case.includes:
-        raise BadInput(
+        raise Contradiction(
             "the scene stands in the case itself, and includes nothing",
             where=f"{path.name}: includes",
             valid="includes of a scene in an SDF file",

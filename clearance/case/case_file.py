@@ -28,7 +28,7 @@ from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
-from clearance.errors import BadInput, at
+from clearance.errors import Contradiction, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import (
@@ -118,7 +118,7 @@ def with_trajectory_file(
     entry, files = cell.entries[i_robot], cell.files.of_more()
     with at(cell.path.name):
         if entry.trajectory is not None:
-            raise BadInput(
+            raise Contradiction(
                 "the cell gives a trajectory to the robot itself",
                 where=entry.trajectory_field,
                 valid="no trajectory there, or another robot",

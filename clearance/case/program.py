@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, at, nearest_name
+from clearance.errors import BadProgram, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, format_of, function_at, suffixes_read
 from clearance.formats.motion.trajectory_file import ReadTrajectory
@@ -121,7 +121,7 @@ class _Frames:
             return np.eye(4)
         if name in self._given.frames:
             if name in within:
-                raise BadInput(
+                raise BadProgram(
                     f"{' on '.join((*within, name))}: a ring",
                     where="frames",
                     valid="a frame on the world",
@@ -130,7 +130,7 @@ class _Frames:
             with at(f"frames.{name}"):
                 return np.asarray(self.root_from(frame.on, (*within, name)) @ frame.matrix())
         if self._placed.mount is not None:
-            raise BadInput(
+            raise BadProgram(
                 f"the robot stands on {self._placed.mount.on!r}, so that where {name!r} is for it may change",
                 valid="frames on base",
             )
@@ -140,7 +140,7 @@ class _Frames:
             self.used.add(name)
             return inverse(self._placed.world_from_base) @ self._standing[name]
         known = (*self._given.frames, schema.WORLD, schema.BASE, *self._standing)
-        raise BadInput(f"{name!r} is not there, or moves", valid=nearest_name(name, known))
+        raise BadProgram(f"{name!r} is not there, or moves", valid=nearest_name(name, known))
 
     def pose(self, target: schema.Target) -> np.ndarray:
         """(4, 4) `root_from_tool` [m]."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime, UnknownRobot, at
+from clearance.errors import BadMotion, BadTime, UnknownRobot, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.strict_model import validated
 from clearance.formats.schema.timed import TrajectoryFile
@@ -58,7 +58,7 @@ def with_recorded(
     files = InputFiles(path.parent)
     shown = files.shown(path)
     if gaps is not None and gaps not in GAPS:
-        raise BadInput(f"gaps is {gaps!r:.60}", valid=f"one of {', '.join(GAPS)}")
+        raise BadMotion(f"gaps is {gaps!r:.60}", valid=f"one of {', '.join(GAPS)}")
     said = {} if columns is None else {"columns": columns}
     given = validated(TrajectoryFile, {"file": path.name, **said}, "recorded")
     given = given.model_copy(update={"gaps": gaps})
@@ -131,7 +131,7 @@ def _with_tracking(budget: Budget, placed: PlacedRobot, found: Recording) -> Bud
     for one in found.joints:
         most = MOST[units[one.joint]]
         if one.greatest > most:
-            raise BadInput(
+            raise BadMotion(
                 f"joint {one.joint!r} is {one.greatest:.3g} {units[one.joint]} off its course at {one.time:.3f} s",
                 valid=f"at most {most:g} {units[one.joint]}; is its clock another (--recorded-offset)?",
             )
@@ -154,7 +154,7 @@ def _of_motion_left_out(placed: PlacedRobot, found: Recording) -> list[Notice]:
     for one in left_out:
         most = MOST[units[one.joint]]
         if one.greatest > most:
-            raise BadInput(
+            raise BadMotion(
                 f"it is {span} {asked}; in the rest joint {one.joint!r} was to move by {one.greatest:.3g} "
                 f"{units[one.joint]}",
                 valid=f"all of the motion but {most:g} {units[one.joint]}",

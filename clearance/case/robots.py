@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.case.allow import checked_links
 from clearance.case.resting import positions_asked, resting_positions, with_start
-from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
+from clearance.errors import Contradiction, MissingFile, UnknownLink, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.motion.trajectory_file import ReadTrajectory
@@ -94,7 +94,7 @@ class RobotReader:
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
         if given.xacro_args and not given.xacro:
-            raise BadInput(
+            raise Contradiction(
                 "arguments of xacro, which is not used",
                 where=f"{field}.xacro_args",
                 valid="xacro: true",
@@ -207,14 +207,14 @@ def _refuse_idle_excuses(entry: schema.RobotEntry) -> None:
     if not given.self_clearance:
         for key in ("srdf", "trust_never"):
             if getattr(given, key) and not (key == "srdf" and (states_of(given.joints) or starts)):
-                raise BadInput(
+                raise Contradiction(
                     "it excuses pairs of links, which are not measured",
                     where=f"{field}.{key}",
                     valid="self_clearance: true, or no such field"
                     + (", or a state of it: joints: {state: …}" if key == "srdf" else ""),
                 )
     elif given.srdf is None and given.trust_never:
-        raise BadInput(
+        raise Contradiction(
             "it speaks of the pairs that an SRDF file calls Never",
             where=f"{field}.trust_never",
             valid=f"{field}.srdf: the file",

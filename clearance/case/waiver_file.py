@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadWaiver, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.schema.limits import TwoPatterns
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, validated
@@ -35,7 +35,7 @@ def day_of(given: object) -> date:
     try:
         return date.fromisoformat(given if isinstance(given, str) else "")
     except ValueError:
-        raise BadInput(f"{given!s:.40} is given", valid="a day, as 2027-03-31") from None
+        raise BadWaiver(f"{given!s:.40} is given", valid="a day, as 2027-03-31") from None
 
 
 class _Row(StrictModel):
@@ -71,7 +71,7 @@ def waivers_of(files: InputFiles, path: Path) -> tuple[Waiver, ...]:
     shown = files.shown(path)
     raw = parse_yaml(files.read(path), shown)
     if not isinstance(raw, list):
-        raise BadInput(
+        raise BadWaiver(
             "no list of waivers", where=shown, valid="- {between: [a, b], at_least: 0.002, …}"
         )
     rows = validated(_Rows, {"waivers": raw}, shown).waivers

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from clearance.errors import BadInput, BadSyntax
+from clearance.errors import BadReport, BadSyntax
 from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.judgement import Judgement
@@ -110,7 +110,7 @@ def read_findings(path: str | Path) -> FindingList:
         path = path / FILE_NAME
     data = read_bytes(path, str(path))
     if len(data) > MOST_BYTES:
-        raise BadInput(f"{len(data)} bytes", where=str(path), valid=f"at most {MOST_BYTES}")
+        raise BadReport(f"{len(data)} bytes", where=str(path), valid=f"at most {MOST_BYTES}")
     _require_format(data, str(path))
     return _checked(data, str(path))
 
@@ -123,7 +123,7 @@ def _require_format(data: bytes, shown: str) -> None:
     number = raw.get("format") if isinstance(raw, dict) else None
     if number != FORMAT:
         valid = f"findings.json of format {FORMAT}, which the same check writes anew"
-        raise BadInput(f"format {number!r:.40}", where=shown, valid=valid)
+        raise BadReport(f"format {number!r:.40}", where=shown, valid=valid)
 
 
 def _finite(text: str) -> float:
@@ -143,14 +143,14 @@ def _checked(data: bytes, shown: str) -> FindingList:
         found = TypeAdapter(FindingList).validate_json(data, strict=True)  # text is no number
     except ValidationError as error:
         first = error.errors()[0]
-        raise BadInput(
+        raise BadReport(
             first["msg"],
             where=f"{shown}: {place(tuple(first['loc']))}",
             valid="findings.json as a run writes it",
         ) from None
     n_pairs = sum(len(block.a) * len(block.b) for block in found.measured.unmeasured)
     if n_pairs > MOST_UNMEASURED:
-        raise BadInput(
+        raise BadReport(
             f"{n_pairs:,} pairs that are not measured",
             where=f"{shown}: measured.unmeasured",
             valid=f"at most {MOST_UNMEASURED:,}",

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownRobot, nearest_name
+from clearance.errors import BadChange, UnknownRobot, nearest_name
 from clearance.gains.binding_constraints import bound_by, ends_reached, joints_held, tools_held
 from clearance.gains.delay import TimingResult, least_delay, least_slowing
 from clearance.gains.detours import flat_moment, from_beside
@@ -127,7 +127,7 @@ def gain(case: Case | str | PathLike[str], kind: str = "waypoints", **options: A
         return gained(case, request)
     if not isinstance(case, str | PathLike):
         given = type(case).__name__
-        raise BadInput(f"a {given} is given", valid="a Case, or the path of a case file")
+        raise BadChange(f"a {given} is given", valid="a Case, or the path of a case file")
     return replace(gained(load_case(case), request), case_file=Path(case))
 
 
@@ -138,7 +138,7 @@ def gained(case: Case, request: Request) -> Gain:
         BadInput: as `gain`; clocks that are not tied, where no pair has one time that could be looked at.
     """
     if case.clock.slack:
-        raise BadInput("the clocks of the case are not tied", valid="clock: common")
+        raise BadChange("the clocks of the case are not tied", valid="clock: common")
     _refuse_programs(case, request)
     ways = {"timing": _by_delay, "waypoints": _by_path, "obstacle": _by_shift, "base": _by_shift}
     return ways[request.kind](case, request)
@@ -155,7 +155,7 @@ def _refuse_programs(case: Case, request: Request) -> None:
         if asked is None or not asked.moves or request.kind == "timing":
             continue
         if request.kind != "obstacle" or asked.frames:
-            raise BadInput(
+            raise BadChange(
                 f"robot {placed.robot.name!r} follows a program, and kind {request.kind} changes its joints",
                 valid="kind timing, or obstacle where no frame of the program is on one",
             )
@@ -392,10 +392,10 @@ def _shift(case: Case, request: Request) -> tuple[Shift, str]:
         who = case.robots[_robot(case, request.one_robot)].robot.name
         return base_shift(case, who, box, request.turn), who
     if not case.obstacles:
-        raise BadInput("the case has no obstacle", valid="kind waypoints, base or timing")
+        raise BadChange("the case has no obstacle", valid="kind waypoints, base or timing")
     if request.obstacle is None and len(case.obstacles) != 1:
         names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
-        raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")
+        raise BadChange("which obstacle may be moved is not said", valid=f"one of {names}")
     who = request.obstacle or case.obstacles[0].name
     return obstacle_shift(case, who, box, request.turn), who
 
@@ -408,7 +408,9 @@ def _robot(case: Case, name: str | None) -> int:
     """
     names = [placed.robot.name for placed in case.robots]
     if name is None and len(names) > 1:
-        raise BadInput("which robot may be changed is not said", valid=f"one of {', '.join(names)}")
+        raise BadChange(
+            "which robot may be changed is not said", valid=f"one of {', '.join(names)}"
+        )
     if name is not None and name not in names:
         raise UnknownRobot(f"there is no robot {name!r}", valid=nearest_name(name, names))
     return 0 if name is None else names.index(name)

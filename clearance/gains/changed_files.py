@@ -16,7 +16,7 @@ import numpy as np
 from clearance.case.case_document import ScenePlace, read_schema, scene_request
 from clearance.case.case_file import read_case
 from clearance.case.rewritten_case import Node, rewritten_case, robot_node, robots_of
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.motion.pose_file import PoseRequest, read_samples
 from clearance.formats.motion.pose_writer import written_poses
@@ -57,7 +57,7 @@ def case_files(gain: Gain, folder: Path) -> CaseFiles:
         BadInput: the case was not read from a file, or what its file says cannot be said there.
     """
     if gain.case_file is None:
-        raise BadInput(
+        raise BadChange(
             "the case is from no file that could be changed",
             valid="gain of the path of a case file",
         )
@@ -143,7 +143,7 @@ class _Files:
             return
         content, asked = self.scene_at.content, self._scene_request
         if any(one.severity is Severity.SUSPECT for one in content.notices):
-            raise BadInput(
+            raise BadChange(
                 "its file brings suspect input, of which a scene made from it would say nothing",
                 where=asked.shown,
                 valid="a scene in YAML, as clearance convert makes one",

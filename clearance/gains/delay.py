@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.gains.delay_obstruction import is_told_by, stays_whatever
 from clearance.gains.lower_bounds import INWARD, motion_radii, way_needed
 from clearance.gains.obstruction import Obstruction
@@ -114,7 +114,7 @@ def least_slowing(case: Case, i_robot: int, margin: float) -> TimingResult:
     _require_another(case, i_robot)
     placed = case.robots[i_robot]
     if placed.given_trajectory.times[0] < 0.0:
-        raise BadInput(
+        raise BadChange(
             f"the table of robot {placed.robot.name!r} begins before its time 0, about which it would be slowed",
             valid="a table that begins at 0 or later",
         )
@@ -236,12 +236,12 @@ def _require_another(case: Case, i_robot: int) -> None:
     ]
     others_move = bool(others) or any(one.moves is not None for one in case.obstacles)
     if placed.trajectory is None or placed.trajectory.n_steps < 2 or not others_move:
-        raise BadInput(
+        raise BadChange(
             f"a delay of robot {placed.robot.name!r} changes no clearance",
             valid="a robot that moves, and another actor that moves",
         )
     if placed.timing.after == "loop":
-        raise BadInput(
+        raise BadChange(
             f"robot {placed.robot.name!r} goes through its path again and again",
             valid="a path that ends",
         )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse
 from clearance.world.joint_speeds import ROUNDING as SIX_DIGITS
@@ -91,7 +91,7 @@ def require_within_limits(placed: PlacedRobot) -> None:
     for one in joint_ranges(placed):
         worst = int(np.argmin(one.room))
         if one.what != OWN_SPEED and one.room[worst] < -ROUNDING:
-            raise BadInput(
+            raise BadChange(
                 f"joint {one.joint!r} is {-one.room[worst]:.6g} {one.unit} beyond its {one.what} at "
                 f"{one.times[worst]:.3f} s of its table already",
                 valid="a path within the limits of the joints, or other limits",

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.gains.basis import Basis
 from clearance.gains.between_samples import values_between
 from clearance.gains.grasp import Grasps
@@ -289,7 +289,7 @@ def joint_offsets(
     placed = case.robots[i_robot]
     require_path(placed)
     if placed.timing.after == "loop":
-        raise BadInput(
+        raise BadChange(
             f"robot {placed.robot.name!r} goes through its path again and again",
             valid="a path that ends",
         )
@@ -305,9 +305,9 @@ def require_path(placed: PlacedRobot) -> None:
         BadInput: it has none, or a recording with holes, which no table can say.
     """
     if placed.trajectory is None or placed.trajectory.n_steps < 2:
-        raise BadInput(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
+        raise BadChange(f"robot {placed.robot.name!r} has no path", valid="a robot that moves")
     if placed.trajectory.holes:
-        raise BadInput(
+        raise BadChange(
             f"the recording of robot {placed.robot.name!r} has holes",
             valid="a path that is known everywhere",
         )

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadChange, BadDimension
 from clearance.options import (
     LENGTH,
     NAME,
@@ -197,15 +197,15 @@ class Request:
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
-            raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+            raise BadChange(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
         check_values(self)
         for name, one in options_in(Request).items():
             if getattr(self, name) and one.of and self.kind not in one.of:
                 told = f"{name} says nothing with kind {self.kind}"
-                raise BadInput(told, valid=f"kind {' or '.join(one.of)}")
+                raise BadChange(told, valid=f"kind {' or '.join(one.of)}")
         _require_robots(self)
         if self.tool is not None and not self.keep_tool and self.tool_path != "kept":
-            raise BadInput(
+            raise BadChange(
                 "a tool is named of which nothing is to be kept",
                 valid="kind waypoints with keep_tool, or base with a tool path that is kept",
             )
@@ -235,12 +235,12 @@ def _require_robots(request: Request) -> None:
     """
     names = request.robot
     if len(names) > 1 and (request.kind != "waypoints" or request.keep_tool or request.tool):
-        raise BadInput(
+        raise BadChange(
             f"{len(names)} robots are named, of which one is changed",
             valid="one; several with kind waypoints, without a tool",
         )
     if len({*names}) < len(names):
-        raise BadInput("a robot is named twice", valid="each once")
+        raise BadChange("a robot is named twice", valid="each once")
 
 
 def _require_room(within: Sequence[Range], turn: Turn | None) -> None:
@@ -256,4 +256,4 @@ def _require_room(within: Sequence[Range], turn: Turn | None) -> None:
                 valid="a range that 0 is in",
             )
     if turn is None and not any(low < high for low, high in within):
-        raise BadInput("a box of zero leaves nothing to move", valid="a range that is not 0")
+        raise BadChange("a box of zero leaves nothing to move", valid="a range that is not 0")

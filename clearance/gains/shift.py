@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownObstacle, UnknownRobot, nearest_name
+from clearance.errors import BadChange, UnknownObstacle, UnknownRobot, nearest_name
 from clearance.gains.grasp import Grasps
 from clearance.gains.programme import Box, least_norm
 from clearance.gains.shortfalls import Rows
@@ -148,7 +148,7 @@ def obstacle_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None
         raise UnknownObstacle(f"there is no obstacle {name!r}", valid=nearest_name(name, names))
     i_obstacle = names.index(name)
     if case.obstacles[i_obstacle].mount is not None or name in {c.part for c in case.carries}:
-        raise BadInput(
+        raise BadChange(
             f"obstacle {name!r} is carried, or rides on something",
             valid="what stands in the world, or moves by a table of its own",
         )
@@ -189,7 +189,7 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE, turn: Turn | None = N
         raise UnknownRobot(f"there is no robot {name!r}", valid=nearest_name(name, names))
     i_robot = names.index(name)
     if case.robots[i_robot].mount is not None:
-        raise BadInput(f"robot {name!r} stands on something", valid="one that stands in the world")
+        raise BadChange(f"robot {name!r} stands on something", valid="one that stands in the world")
 
     asked = case.robots[i_robot]
     pivot = None if turn is None else Pivot(turn, asked.world_from_base)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.gains.request import Request
 from clearance.gains.tool_poses import ToolKeep
 from clearance.world.case import Case, PlacedRobot
@@ -23,7 +23,7 @@ def require_in_run(keeps: Sequence[tuple[float, float]], times: np.ndarray) -> N
     """
     for start, end in keeps:
         if end < times[0] or start > times[-1]:
-            raise BadInput(
+            raise BadChange(
                 f"from {start:g} s to {end:g} s is to be kept, which is not in the run",
                 valid=f"times from {times[0]:g} s to {times[-1]:g} s",
             )
@@ -40,7 +40,7 @@ def require_in_path(placed: PlacedRobot, keeps: Sequence[ToolKeep]) -> None:
     start, end = placed.timing.run_times(placed.given_trajectory.times)[[0, -1]]
     for one in keeps:
         if not start <= one.time <= end:
-            raise BadInput(
+            raise BadChange(
                 f"a tool is to be kept at {one.time:g} s, at which its path is not",
                 valid=f"a time from {start:g} to {end:g} s",
             )

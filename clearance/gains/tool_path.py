@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadChange
 from clearance.gains.between_samples import values_between
 from clearance.gains.offsets import columns_of, require_path
 from clearance.gains.programme import Box
@@ -235,7 +235,7 @@ def tool_path_kept(shift: Shift, i_robot: int, name: str | None) -> ToolPathKept
     free = found.box.low < found.box.high
     barred = _same_poses(found.solved(placed.world_from_base)).gradients
     if np.linalg.matrix_rank(np.vstack([barred, np.eye(len(free))[~free]]), 1e-6) == len(free):
-        raise BadInput(
+        raise BadChange(
             f"the joints of robot {placed.robot.name!r} cannot keep the path of {found.tool.name!r} wherever its "
             "base is moved",
             valid="a tool path that is moved, or an arm of six joints or more",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadChange, BadDimension
 from clearance.gains.shortfalls import Rows
 from clearance.gains.turn import ARM
 from clearance.world.tool import Tool, apart
@@ -45,7 +45,7 @@ class ToolKeep:
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.time):
-            raise BadInput(f"a tool is kept at {self.time} s", valid="a time of the run")
+            raise BadChange(f"a tool is kept at {self.time} s", valid="a time of the run")
         if not (self.far >= LEAST and self.turn >= LEAST):
             raise BadDimension(
                 f"a tool may move {self.far * 1e3:g} mm and turn {math.degrees(self.turn):g} deg",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput, NotFinite
+from clearance.errors import BadChange, NotFinite
 from clearance.geometry.pose import pose_from_quaternion
 from clearance.geometry.quaternions import quaternions_of
 from clearance.simulate.answers.approaches import Approach
@@ -42,7 +42,7 @@ class Turn:
 
     def __post_init__(self) -> None:
         if self.axis not in AXES:
-            raise BadInput(
+            raise BadChange(
                 f"a turn about {self.axis!r:.60} is asked for", valid=f"one of {', '.join(AXES)}"
             )
         if self.about is not None:
@@ -50,7 +50,7 @@ class Turn:
             if point.shape != (3,) or not np.isfinite(point).all():
                 raise NotFinite(f"{self.about!r:.60} is no point", valid="x, y and z [m]")
         if not 0.0 < self.most <= np.pi:
-            raise BadInput(
+            raise BadChange(
                 f"a turn of at most {np.degrees(self.most):g} deg is asked for",
                 valid="above 0 and up to 180 deg",
             )

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadProgram
 from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, Links
 from clearance.programs.arm import Arm
 from clearance.programs.enclosure import Enclosed, Intervals, Spread, enclosed
@@ -63,7 +63,7 @@ def corner_of(
             ends = start + samples.times[[0, -1]]
             links = _links(follower.arm, *found)
             return CornerZone(name, float(ends[0]), float(ends[1]), radius, links)
-    raise BadInput(
+    raise BadProgram(
         f"a corner zone of {radius * 1e3:g} mm is too wide to be proven where the arm is",
         where="zone",
         valid="a smaller zone, or another configuration",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.inverse import joints_at, least_motion
 from clearance.programs.tool_path import Stretch
@@ -104,7 +104,7 @@ class Follower:
 def _stuck(pose: np.ndarray, joints: np.ndarray) -> BadInput:
     x, y, z = pose[:3, 3]
     shown = ", ".join(f"{value:.4g}" for value in joints)
-    return BadInput(
+    return BadProgram(
         f"the tool cannot go on at ({x:.4g}, {y:.4g}, {z:.4g}) m, with joints at {shown}",
         valid="a target within reach, and no singularity on the way",
     )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadProgram
 from clearance.programs.arm import Arm
 from clearance.programs.series import half_skew
 from clearance.world.tool import Tool
@@ -112,7 +112,7 @@ def nearest_joints(arm: Arm, wanted: np.ndarray, now: np.ndarray) -> np.ndarray:
     fits = (found.left <= 1e-9) & within.all(axis=1)
     if not fits.any():
         x, y, z = wanted[:3, 3]
-        raise BadInput(
+        raise BadProgram(
             f"no joints within their limits bring the tool to ({x:.4g}, {y:.4g}, {z:.4g}) m",
             valid="a pose within reach",
         )

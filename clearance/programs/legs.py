@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadProgram, UnknownJoint, at, nearest_name
 from clearance.programs.arm import Arm
 from clearance.programs.moves import JointMove, Move, PathMove, Program, Wait
 from clearance.programs.time_law import Piece, trapezoid
@@ -83,7 +83,7 @@ def _stretches(arm: Arm, program: Program, start: np.ndarray) -> list[Stretch | 
             if isinstance(move, PathMove):
                 found.append(own := _stretch(pose, move))
                 if not own.length <= LONGEST:
-                    raise BadInput(f"a way of {own.length:.3g} m", valid=f"{LONGEST:g} m or less")
+                    raise BadProgram(f"a way of {own.length:.3g} m", valid=f"{LONGEST:g} m or less")
                 if not _is_none(own):
                     pose = own.poses(np.array([[1.0, 0.0]]))[0]
                 continue
@@ -117,7 +117,7 @@ def targets_of(arm: Arm, move: JointMove) -> np.ndarray:
     missing = [name for name in names if name not in given]
     if missing:
         told = f"no target of {', '.join(missing)}"
-        raise BadInput(told, where="joints", valid="one for each joint of the arm")
+        raise BadProgram(told, where="joints", valid="one for each joint of the arm")
     return np.array([given[name] for name in names])
 
 
@@ -140,14 +140,14 @@ def _radii(moves: Sequence[Move], stretches: Sequence[Stretch | None]) -> list[f
             other = stretches[i + 1] if i + 1 < len(moves) else None
             if other is None or other.arc is not None or own is None or own.arc is not None:
                 with at(move.where):
-                    raise BadInput(
+                    raise BadProgram(
                         "a corner zone that is not between two lines",
                         where="zone",
                         valid="0, or a lin move before and after it",
                     )
             if min(own.length, other.length) < SHORTEST:
                 with at(move.where):
-                    raise BadInput(
+                    raise BadProgram(
                         "a corner zone beside a line of no length",
                         where="zone",
                         valid="0, or lines that the tool's point goes along",

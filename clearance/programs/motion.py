@@ -13,7 +13,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, UnknownJoint, UnknownLink, at, nearest_name
+from clearance.errors import (
+    BadDimension,
+    BadInput,
+    BadProgram,
+    UnknownJoint,
+    UnknownLink,
+    at,
+    nearest_name,
+)
 from clearance.programs.arm import Arm
 from clearance.programs.corner import PATH_ERROR, corner_of
 from clearance.programs.following import Follower
@@ -84,7 +92,7 @@ def _start_of(robot: Robot, arm: Arm, program: Program) -> np.ndarray:
             raise UnknownJoint(f"unknown joint {name!r}", where="start", valid=valid)
     missing = [joint.name for joint in arm.joints if joint.name not in program.start]
     if missing:
-        raise BadInput(
+        raise BadProgram(
             f"no position of {', '.join(missing)}",
             where="start",
             valid="one for each joint of the arm",
@@ -206,7 +214,7 @@ class _Samples:
         """
         rates = np.abs(samples.velocities[0] - self.velocities[-1][-1]).max()
         if rates > SAME_SPEED:
-            raise BadInput(
+            raise BadProgram(
                 "a joint changes its speed at once where a corner zone begins or ends",
                 where="hold",
                 valid="the same joints held on both sides of a zone, where they are",
@@ -226,7 +234,7 @@ class _Samples:
             column = names.index(name)
             free[column], held[column] = False, value - self.at[column]
         if free.sum() < 6:
-            raise BadInput(
+            raise BadProgram(
                 f"{int(free.sum())} joints are free to follow the tool's path",
                 valid="six or more; an arm of fewer goes by joint moves",
             )
@@ -274,7 +282,7 @@ class _Samples:
                 )
             )
             x, y, z = self.arm.poses(last[row : row + 1])[0, :3, 3]
-            raise BadInput(
+            raise BadProgram(
                 f"joint {self.arm.joints[joint].name!r} is beyond its limit at ({x:.4g}, {y:.4g}, {z:.4g}) m",
                 valid=f"{ranges[joint, 0]:.4g} to {ranges[joint, 1]:.4g}",
             )
@@ -296,7 +304,7 @@ def _unproven(samples: PathSamples, arm: Arm) -> BadInput:
     """Where nothing is proven of the joints between samples."""
     bad = int(np.argmax(samples.deviations.max(axis=1)))
     x, y, z = arm.poses(samples.positions[bad : bad + 1])[0, :3, 3]
-    return BadInput(
+    return BadProgram(
         f"the motion near ({x:.4g}, {y:.4g}, {z:.4g}) m is not proven: a singularity is too near",
         valid="another start configuration, or a joint move there",
     )

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadProgram
 from clearance.geometry.quaternions import quaternions_of
 from clearance.programs.series import (
     ORDER,
@@ -187,9 +187,9 @@ def _circle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> Arc:
     size = float(cross @ cross)
     shortest = min(float(np.linalg.norm(one)) for one in (to_b, to_c, c - b))
     if shortest < 1e-6:
-        raise BadInput("two of the arc's three points coincide", valid="start, via and end apart")
+        raise BadProgram("two of the arc's three points coincide", valid="start, via and end apart")
     if size <= (1e-6 * float(np.linalg.norm(to_b)) * float(np.linalg.norm(to_c))) ** 2:
-        raise BadInput(
+        raise BadProgram(
             "the arc's three points lie on one line", valid="a via point off that line, or lin"
         )
     centre = a + (to_b @ to_b * np.cross(to_c, cross) - to_c @ to_c * np.cross(to_b, cross)) / (
@@ -198,7 +198,9 @@ def _circle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> Arc:
     first = a - centre
     radius = float(np.linalg.norm(first))
     if radius > WIDEST:
-        raise BadInput(f"the arc's radius is {radius:.4g} m", valid=f"{WIDEST:g} m or less, or lin")
+        raise BadProgram(
+            f"the arc's radius is {radius:.4g} m", valid=f"{WIDEST:g} m or less, or lin"
+        )
     second = np.cross(cross / np.sqrt(size), first)
     angle = float(np.arctan2((c - centre) @ second, (c - centre) @ first)) % (2.0 * np.pi)
     return Arc(centre, first, second, angle)
@@ -213,7 +215,7 @@ def rotation_vector(rotation: np.ndarray) -> np.ndarray:
     x, y, z, w = quaternions_of(rotation[None])[0]
     size = float(np.linalg.norm([x, y, z]))
     if w < 1e-6:
-        raise BadInput("the tool turns by half a turn", valid="less, or a move between")
+        raise BadProgram("the tool turns by half a turn", valid="less, or a move between")
     angle = 2.0 * np.arctan2(size, w)
     return np.array([x, y, z]) * (2.0 if size < 1e-12 else angle / size)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, NotFinite, at
+from clearance.errors import BadInput, BadShape, Contradiction, NotFinite, at
 from clearance.geometry.faces import check_convex
 from clearance.geometry.point_cloud import require_surface
 from clearance.geometry.polyhedron import Polyhedron
@@ -132,5 +132,7 @@ def _checked(method: str, tolerance: float | None = None) -> str:
     if method not in METHODS:
         raise BadInput(f"unknown method {method!r}", valid=f"one of {', '.join(METHODS)}")
     if tolerance is not None and method != "paper":
-        raise BadInput(f"method {method!r} has no tolerance", valid="only method 'paper' has one")
+        raise Contradiction(
+            f"method {method!r} has no tolerance", valid="only method 'paper' has one"
+        )
     return method

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
-from clearance.errors import BadInput, BadSyntax, shown
+from clearance.errors import BadSyntax, NoReceipt, shown
 from clearance.receipt.case_data import require_covered
 from clearance.receipt.receipt_file import DAMAGED, REMEDY
 from clearance.run import CheckOptions, Question
@@ -63,9 +63,9 @@ def refuse_uncovered(question: Question) -> None:
         (question.inside, True, "of a run that does not look for bodies inside others"),
     ):
         if given != needed:
-            raise BadInput(f"no receipt {what}", valid=f"{needed}")
+            raise NoReceipt(f"no receipt {what}", valid=f"{needed}")
     if question.motion != "kinematic":
-        raise BadInput(
+        raise NoReceipt(
             f"no receipt of {question.motion} motion: it follows from no input",
             valid="kinematic motion",
         )

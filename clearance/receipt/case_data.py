@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import NoReceipt
 from clearance.receipt.case_errors import errors_of, is_covered, surfaces_of
 from clearance.receipt.proof.joint_paths import arcs_of
 from clearance.receipt.proof.motion_data import NONE, Errors, Joints, Shape, Stretch
@@ -127,7 +127,7 @@ def require_covered(case: Case) -> None:
         BadInput: why they cannot.
     """
     if case.clock.slack != 0.0:
-        raise BadInput(
+        raise NoReceipt(
             "no receipt for cases whose clocks are not tied", where="clock", valid="clock: common"
         )
 
@@ -191,7 +191,7 @@ def _require_plain(motion: Motion) -> None:
         BadInput: accelerations are given.
     """
     if getattr(motion, "accelerations", None) is not None:
-        raise BadInput(
+        raise NoReceipt(
             "no receipt for trajectories with accelerations", valid="positions and velocities"
         )
 
@@ -206,7 +206,7 @@ def _require_one_way(stretch: Stretch) -> None:
         arcs_of(stretch)
     except ValueError as error:
         start = stretch.times[int(error.args[0])]
-        raise BadInput(
+        raise NoReceipt(
             f"no receipt where something turns by half a turn from one step to the next, at {start:g} s",
             valid="a sample between",
         ) from None

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import NoReceipt
 from clearance.receipt.nearest import nearest_directions
 from clearance.receipt.proof.halving import Halves
 from clearance.receipt.proof.items import (
@@ -129,7 +129,7 @@ class Front:
         """
         inside = one_inside(self.stage)
         if inside is not None:
-            raise BadInput(f"no receipt: {_pair_text(self.stage, inside[0])} are {inside[2]}")
+            raise NoReceipt(f"no receipt: {_pair_text(self.stage, inside[0])} are {inside[2]}")
 
 
 def _pair_text(stage: Stage, pair: int) -> str:
@@ -257,7 +257,7 @@ def _cuts(stage: Stage, items: Items, slack: np.ndarray) -> np.ndarray:
     stuck = np.flatnonzero(in_time & (items.depth >= DEEPEST))
     if len(stuck):
         row = int(stuck[0])
-        raise BadInput(
+        raise NoReceipt(
             f"no receipt: {_pair_text(stage, int(items.pair[row]))} cannot be proven separate in interval "
             f"{stage.stretch.first + int(items.start[row])}"
         )

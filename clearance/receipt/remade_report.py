@@ -11,7 +11,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 from clearance.compile.library import processor
-from clearance.errors import BadInput, BadSyntax, MissingFile, shown
+from clearance.errors import BadSyntax, MissingFile, NoReceipt, shown
 from clearance.package_digest import package_digest
 from clearance.receipt.receipt_file import FILE_NAME, REPORT, Receipt
 from clearance.report.output import CONTENT
@@ -116,7 +116,7 @@ def has_comparison(run: Run, folder: Path) -> bool:
     """
     for name, what in differences(run, folder).items():
         if name != PAGE:
-            raise BadInput(
+            raise NoReceipt(
                 f"not the report of this run: {what}",
                 where=str(folder / name),
                 valid="run.save(folder) first",

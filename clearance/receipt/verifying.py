@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, at, shown
+from clearance.errors import BadSyntax, MissingFile, NoReceipt, at, shown
 from clearance.files import LAST
 from clearance.findings.verdict import KEPT, Verdict
 from clearance.receipt.asked import changed_options, question_of
@@ -177,13 +177,13 @@ def _cases(
     if isinstance(case, Case):
         own = case
     elif case is None and not head["case"]:
-        raise BadInput("the receipt is of a case without a file", valid="give the case")
+        raise NoReceipt("the receipt is of a case without a file", valid="give the case")
     else:
         own = load_case(_path(place, head["case"], case, "--case CASE.yaml"))
     moved: list[str | PathLike[str] | None] = [*waivers] or [None] * len(head["waivers"])
     if len(moved) != len(head["waivers"]):
         text = f"{len(moved)} files of waivers, and the run had {len(head['waivers'])}"
-        raise BadInput(text, valid="--waivers FILE for each")
+        raise NoReceipt(text, valid="--waivers FILE for each")
     pairs = zip(head["waivers"], moved, strict=True)
     files = tuple(_path(place, way, one, "--waivers FILE") for way, one in pairs)
     path = None

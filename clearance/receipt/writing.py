@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, NoReceipt
 from clearance.files import write_file
 from clearance.progress import Progress
 from clearance.receipt.asked import asked_of, refuse_uncovered
@@ -74,10 +74,10 @@ def write_receipt(
             `folder`. Unwritable: it cannot be written.
     """
     if kind not in ("full", "sampled"):
-        raise BadInput(f"the kind is {kind!r:.60}", valid="full or sampled")
+        raise NoReceipt(f"the kind is {kind!r:.60}", valid="full or sampled")
     record, place = run.record, Path(folder)
     if run.question is None:
-        raise BadInput("no receipt of a record that answers no question", valid="a run of check()")
+        raise NoReceipt("no receipt of a record that answers no question", valid="a run of check()")
     refuse_uncovered(run.question)
     report, compared = hashes_of(place), has_comparison(run, place)
     proven = _proven(record, kind, progress)

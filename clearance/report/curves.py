@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from clearance.budget.columns import least_between, least_expected, least_proven
-from clearance.errors import BadInput
+from clearance.errors import BadReport
 from clearance.record.record import PairMinimum, Record
 from clearance.record.rows.resumable import IN_MEMORY, MeasuredRows
 
@@ -167,7 +167,7 @@ def curve_in(name: str, place: Path) -> ClearanceCurve | None:
     try:
         return curve_of(name, parquet.read_table(place / _TABLE))
     except (pa.ArrowException, KeyError, OSError, TypeError) as error:
-        raise BadInput(
+        raise BadReport(
             f"no table of steps: {error!s:.100}", where=str(place / _TABLE), valid="a report folder"
         ) from None
 

@@ -11,7 +11,7 @@ from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, Contradiction
 from clearance.options import (
     DAY,
     FILE,
@@ -158,13 +158,13 @@ class QuestionOptions:
         check_values(self)
         if self.body_gaps and self.need not in ("steps", "pairs"):
             told = f"body gaps need the least of every pair, not {self.need!r}"
-            raise BadInput(told, valid="need 'steps' or 'pairs'")
+            raise Contradiction(told, valid="need 'steps' or 'pairs'")
         if self.need != "steps" and self.method != "exact":
             told = f"method {self.method!r} measures every step"
-            raise BadInput(told, valid="need 'steps', or method 'exact'")
+            raise Contradiction(told, valid="need 'steps', or method 'exact'")
         if self.need in ("limit", "minimum") and self.cross_check:
             told = f"cross-check needs every step, not {self.need!r}"
-            raise BadInput(told, valid="need 'steps' or 'pairs'")
+            raise Contradiction(told, valid="need 'steps' or 'pairs'")
 
 
 @dataclass(frozen=True, kw_only=True)

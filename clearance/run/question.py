@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, Contradiction
 from clearance.extras import require
 from clearance.options import Spelling, in_python, spelling
 from clearance.run.options import CheckOptions, QuestionOptions
@@ -94,7 +94,7 @@ def _require_recording(question: Question) -> None:
     there = any(placed.recording is not None for placed in question.case.robots)
     if there != (question.motion == "recorded"):
         given = "has a recording" if there else "has no recording"
-        raise BadInput(
+        raise Contradiction(
             f"motion {question.motion!r} of a case that {given}", valid="both, or neither"
         )
 
@@ -103,7 +103,7 @@ def _require_surfaces(question: Question) -> None:
     """Nothing, if what is asked can be answered of clouds of points, where there are any."""
     clouds = [one.name for one in question.case.obstacles if one.body.is_cloud]
     if clouds and question.method == "paper":
-        raise BadInput(
+        raise Contradiction(
             f"method 'paper' measures faces, and obstacle {clouds[0]!r} is a cloud of points",
             valid="method 'exact'",
         )
@@ -115,7 +115,7 @@ def _require_one_clock(question: Question) -> None:
         return
     for what, given in (("need", "pairs"), ("method", "paper")):
         if getattr(question, what) == given:
-            raise BadInput(
+            raise Contradiction(
                 f"{what} {given!r} asks about one time, and the case's clocks are not tied",
                 valid=f"another {what}, or clock: common",
             )

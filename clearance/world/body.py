@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, BadShape, at
+from clearance.errors import BadDimension, BadInput, BadShape, Contradiction, at
 from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
@@ -90,7 +90,7 @@ class Obstacle:
             object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
             checked_padding(self.padding)
             if not self.stands and not np.array_equal(self.world_from_body, np.eye(4)):
-                raise BadInput(
+                raise Contradiction(
                     "both a pose in the world and what moves it are given",
                     valid="the pose in Mount(on, pose), or the poses in `moves`",
                 )

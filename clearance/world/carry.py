@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from clearance.errors import BadInput, BadTime
+from clearance.errors import BadTime, Contradiction
 from clearance.world.timing import Window
 
 
@@ -39,7 +39,7 @@ class Carry:
         if not math.isfinite(self.window.start):
             raise BadTime(f"part {self.part!r} is carried from no time", valid="from: seconds")
         if self.part == self.by:
-            raise BadInput(f"part {self.part!r} carries itself", valid="by: what carries it")
+            raise Contradiction(f"part {self.part!r} carries itself", valid="by: what carries it")
 
 
 def require_one_carrier(carries: Sequence[Carry]) -> None:
@@ -53,7 +53,7 @@ def require_one_carrier(carries: Sequence[Carry]) -> None:
             if one.part != other.part:
                 continue
             if one.window.start < other.window.end and other.window.start < one.window.end:
-                raise BadInput(
+                raise Contradiction(
                     f"part {one.part!r} is carried by {other.by!r} ({other.window}) and by {one.by!r} "
                     f"({one.window}) at once",
                     where=f"carry[{i}]",

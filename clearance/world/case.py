@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from clearance.errors import (
-    BadInput,
     BadTime,
+    Contradiction,
     NothingToMeasure,
     NoTrajectory,
     UnknownRobot,
@@ -188,7 +188,7 @@ class PlacedRobot:
         with at("world_from_base"):
             object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
             if self.mount is not None and not np.array_equal(self.world_from_base, np.eye(4)):
-                raise BadInput(
+                raise Contradiction(
                     "both a base in the world and a mount are given", valid="one of them"
                 )
         for link, padding in self.padding.items():

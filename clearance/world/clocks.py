@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from clearance.errors import BadInput
+from clearance.errors import Contradiction
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
 from clearance.world.forest import owner_of
@@ -95,7 +95,7 @@ def require_clocks(case: Case) -> None:
     for field, rows in (("limits.rules", case.limits.rules), ("allow", case.allow)):
         for i, row in enumerate(rows):
             if row.window.ends:
-                raise BadInput(
+                raise Contradiction(
                     "a window of time where clocks are not tied",
                     where=f"{field}[{i}]",
                     valid="while_carried, no window, or clock: common",
@@ -104,7 +104,7 @@ def require_clocks(case: Case) -> None:
     for i, carry in enumerate(case.carries):
         owner = owners.setdefault(carry.part, owner_of(case, Mount(carry.by)))
         if owner != owner_of(case, Mount(carry.by)):
-            raise BadInput(
+            raise Contradiction(
                 f"part {carry.part!r} changes hands between actors whose clocks are not tied",
                 where=f"carry[{i}]",
                 valid="clock: common, or one actor that carries it",

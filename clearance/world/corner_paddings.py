@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime
+from clearance.errors import BadProgram, BadTime
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.corner_zone import CornerZone
@@ -62,14 +62,14 @@ def with_corner_paddings(
 
 def _window(placed: PlacedRobot, zone: CornerZone) -> Window:
     if placed.timing.after == "loop":
-        raise BadInput("a program with corner zones repeats (after: loop)", valid="after: hold")
+        raise BadProgram("a program with corner zones repeats (after: loop)", valid="after: hold")
     return Window(*map(float, placed.timing.run_times(np.array([zone.start, zone.end]))))
 
 
 def _require_alone(case: Case, i_robot: int) -> None:
     for other in case.robots:
         if other.mount is not None and owner_of(case, other.mount) == (False, i_robot):
-            raise BadInput(
+            raise BadProgram(
                 f"robot {other.robot.name!r} stands on one whose program has corner zones",
                 valid="a program without zones",
             )
@@ -104,7 +104,7 @@ def _off_on_link(case: Case, i_robot: int, zone: CornerZone, obstacle: Obstacle)
     if owner_of(case, obstacle.mount) != (False, i_robot):
         return 0.0
     if obstacle.moves is not None:
-        raise BadInput(
+        raise BadProgram(
             f"obstacle {obstacle.name!r} moves on a robot whose program has corner zones",
             valid="a program without zones",
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clearance.errors import BadInput, BadShape
+from clearance.errors import BadInput, BadShape, DuplicateName
 from clearance.world.body import Obstacle
 from clearance.world.robot import Robot
 
@@ -33,7 +33,7 @@ def require_distinct_names(robots: Sequence[Robot], obstacles: Sequence[Obstacle
     names |= {link for robot in robots for link in robot.link_names}  # as patterns say them
     for i, obstacle in enumerate(obstacles):
         if obstacle.name in names:
-            raise BadInput(
+            raise DuplicateName(
                 f"an obstacle and a robot or its link are both called {obstacle.name!r}",
                 where=f"obstacles[{i}]",
                 valid="another name for the obstacle",
@@ -44,7 +44,7 @@ def require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
     """Refuses an obstacle with a link's name where a name could be either's."""
     for obstacle in obstacles:
         if obstacle.name in robot.link_names:
-            raise BadInput(
+            raise DuplicateName(
                 f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
                 valid="another name for the obstacle, since links are meant by their names too",
             )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownLink, at, nearest_name
+from clearance.errors import Contradiction, UnknownLink, at, nearest_name
 from clearance.kernels.motion.kinematics import FIXED, NO_COLUMN, NO_PARENT, Links
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
@@ -121,7 +121,7 @@ def resolved_mount(case: Case, mount: Mount) -> Mount:
         below = obstacles[mount.on].mount
         assert below is not None
         if below.on in seen:
-            raise BadInput(
+            raise Contradiction(
                 f"{' on '.join([*seen, below.on])}: a ring",
                 valid="something that stands in the world",
             )
@@ -273,7 +273,7 @@ class _RingGuard:
     def __enter__(self) -> None:
         if self.name in self.under_way:
             ring = [*self.under_way[self.under_way.index(self.name) :], self.name]
-            raise BadInput(
+            raise Contradiction(
                 f"{' on '.join(ring)}: a ring", valid="something that stands in the world"
             )
         self.under_way.append(self.name)

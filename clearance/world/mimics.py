@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadRobot, UnknownJoint, at, nearest_name
 from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 
@@ -107,5 +107,5 @@ def _followed(
         if name not in by_name:
             raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, by_name))
         if name in chain:
-            raise BadInput(f"joints follow each other in a circle: {listed([*chain], 6)}")
+            raise BadRobot(f"joints follow each other in a circle: {listed([*chain], 6)}")
     return by_name[name]

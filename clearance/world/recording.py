@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime, MissingKey
+from clearance.errors import BadMotion, BadTime, MissingKey
 from clearance.world.cubic import positions_along
 from clearance.world.notice import listed
 from clearance.world.timing import Timing
@@ -71,7 +71,7 @@ def recording_of(
     """
     _require_joints(driven, commanded)
     if timing.after == "loop":
-        raise BadInput("what was asked begins again and again", valid="after: hold")
+        raise BadMotion("what was asked begins again and again", valid="after: hold")
     times = _times_of_both(driven, timing.run_times(commanded.times))
     was = dict(zip(driven.joint_names, positions_along(driven, times).T, strict=True))
     own = positions_along(commanded, (times - timing.start) * timing.rate).T

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime, UnknownObstacle, at, nearest_name
+from clearance.errors import BadTime, Contradiction, UnknownObstacle, at, nearest_name
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
 from clearance.world.corner_paddings import corner_windows, with_corner_paddings
@@ -204,7 +204,7 @@ def _of_robot(motion: Motion) -> _Table:
     knots = knots_of(timing.run_times(motion.times), motion.positions, rates)
     not_measured = asked.not_measured if asked is not None else ()
     if not_measured and timing.after == "loop":
-        raise BadInput(
+        raise Contradiction(
             f"the recording of robot {motion.placed.robot.name!r} has holes and repeats (after: loop)",
             valid="after: hold, or gaps: hold or linear",
         )

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import date
 
-from clearance.errors import BadInput
+from clearance.errors import BadWaiver
 from clearance.world.rules import PairPattern, checked_level, matches
 
 
@@ -37,7 +37,7 @@ class Waiver(PairPattern):
         object.__setattr__(self, "at_least", checked_level(self.at_least, "at_least"))
         for name in ("reason", "by"):
             if not getattr(self, name).strip():
-                raise BadInput(f"a waiver with no {name}", valid="why, and who says so")
+                raise BadWaiver(f"a waiver with no {name}", valid="why, and who says so")
 
     def is_of_case(self, name: str) -> bool:
         """True if it is of a case of this name."""

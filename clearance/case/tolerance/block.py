@@ -23,7 +23,7 @@ from clearance.case.tolerance.targets import (
     obstacles_of,
     robots_of,
 )
-from clearance.errors import BadInput, MissingKey, UnknownJoint, at, nearest_name
+from clearance.errors import BadTolerance, MissingKey, UnknownJoint, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.robot.limit_files import parse_controllers, widest
 from clearance.formats.schema.strict_model import StrictModel, validated
@@ -277,7 +277,7 @@ def _joined(
         key = target.owner, target.part
         if key in bounds and key not in errors:
             if bounds[key].trajectory == math.inf:
-                raise BadInput(
+                raise BadTolerance(
                     f"controllers let joint {target.names[0]!r} as far off the path as it goes",
                     valid=f"tracking: {{file: …, {target.part}: 0.01}}",
                 )

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 
 from clearance.errors import (
     BadInput,
+    BadTolerance,
     UnknownJoint,
     UnknownLink,
     UnknownObstacle,
@@ -62,7 +63,7 @@ class Targets:
         """
         words = [key for key in given if key in OF_ALL]
         if len(words) > 1:
-            raise BadInput(f"both {' and '.join(words)} are given", valid="one of them")
+            raise BadTolerance(f"both {' and '.join(words)} are given", valid="one of them")
         for key in (*words, *(key for key in given if key not in words)):
             for target in self._meant(key):
                 yield target, given[key]

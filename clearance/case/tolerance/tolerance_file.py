@@ -17,6 +17,7 @@ from clearance.case.tolerance.targets import joints_of
 from clearance.errors import (
     BadDimension,
     BadInput,
+    BadTolerance,
     UnknownJoint,
     UnknownLink,
     UnknownObstacle,
@@ -53,7 +54,7 @@ def with_tolerance(case: Case, given: Budget | Mapping[str, Any] | str | PathLik
     if isinstance(given, str | PathLike):
         return _with_file(case, Path(given))
     if not isinstance(given, Mapping):
-        raise BadInput(
+        raise BadTolerance(
             f"tolerances are {given!r:.60}", valid="a mapping, the path of a file, or a Budget"
         )
     files = InputFiles(Path.cwd())

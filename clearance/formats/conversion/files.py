@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.errors import BadInput, BadShape, at
+from clearance.errors import BadInput, BadShape, Contradiction, at
 from clearance.formats.conversion.scene import converted_scene
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.known_formats import FORMATS, WANTED, Kind, foreign, formats_in, written_as
@@ -81,7 +81,7 @@ def _refuse_idle(asked: Conversion, kind: Kind) -> None:
         ("--include", bool(asked.includes), is_scene),
     ):
         if is_given and not is_used:
-            raise BadInput(
+            raise Contradiction(
                 f"{option} says nothing about {WANTED[kind]}",
                 where=asked.source.name,
                 valid=f"leave {option} out",

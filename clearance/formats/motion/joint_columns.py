@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownJoint
+from clearance.errors import BadMotion, UnknownJoint
 from clearance.formats.motion.pose_table_file import refuse_off_length_one
 from clearance.formats.table.column_units import VELOCITY, Column
 from clearance.formats.table.csv_table import TIME, UNNAMED, TextTable, line_of_row
@@ -87,7 +87,7 @@ def _require_agreed(found: Trajectory, one: Follower) -> None:
     agrees, unit = (TURN_AGREES, "rad") if turns(joint) else (SLIDE_AGREES, "m")
     if (off > agrees).any():
         worst = int(np.argmax(off))
-        raise BadInput(
+        raise BadMotion(
             f"joint {joint.name!r} follows {master!r}, and is {off[worst]:.3g} {unit} off that at "
             f"{found.times[worst]:g} s",
             valid=f"within {agrees:g} {unit}, or leave {joint.name!r} out: it goes with {master!r}",
@@ -186,7 +186,7 @@ def by_angles(
         angles = yaw_pitch_roll(unit)
         steep = np.flatnonzero(np.abs(angles[:, 1]) > STEEPEST)
         if len(steep):
-            raise BadInput(
+            raise BadMotion(
                 f"{stem!r} is pitched by {np.degrees(angles[steep[0], 1]):.1f} degrees, where yaw and roll are "
                 "not distinct",
                 where=f"line {line_of_row(table, int(steep[0]))}",

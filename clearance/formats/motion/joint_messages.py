@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from clearance.errors import BadInput, BadShape, MissingKey, nearest_name
+from clearance.errors import BadInput, BadMotion, BadShape, MissingKey, nearest_name
 from clearance.formats.message.documents import (
     DEPTH,
     Fields,
@@ -100,13 +100,13 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
     """
     if which is None:
         if len(messages) > 1:
-            raise BadInput(
+            raise BadMotion(
                 f"the file holds {len(messages)} trajectories: {_listed(messages)}",
                 valid="trajectory: {file: …, which: 1} takes the first",
             )
         which = 1
     if which > len(messages):
-        raise BadInput(
+        raise BadMotion(
             f"which is {which}, the file holds {len(messages)}: {_listed(messages)}",
             valid=f"a number from 1 to {len(messages)}",
         )

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from clearance.errors import (
-    BadInput,
+    BadMotion,
     BadShape,
     BadSyntax,
     BadTime,
@@ -93,7 +93,7 @@ def trajectory_of_message(
     """
     given = message.trajectory
     for where, n_points in message.others.items():
-        raise BadInput(
+        raise BadMotion(
             f"{n_points} points of joints with several degrees of freedom",
             where=_place(given, where),
             valid="robots have joints that turn or slide; a base that moves goes as a joint of the URDF",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadTime, NotFinite
+from clearance.errors import BadMotion, BadShape, BadTime, NotFinite
 from clearance.formats.message.times import NANO
 from clearance.formats.motion.recording_gaps import Track, holes_of, tracks_of, unknown_ends
 from clearance.formats.motion.trajectory_file import ReadTrajectory
@@ -74,7 +74,7 @@ def trajectory_of_states(
     joints = _joints(states)
     kept = [name for name in joints if name in turns or not turns]
     if not kept:
-        raise BadInput(
+        raise BadMotion(
             f"none of the joints {listed([*joints], 8)} can be moved",
             valid=f"the robot moves {listed([*turns], 8)}",
         )
@@ -158,7 +158,7 @@ def _known_span(joints: Mapping[str, _Joint], *, ends_hold: bool) -> tuple[int, 
     whole = max(times) - min(times)
     most = whole if ends_hold else MOST_LEFT_OUT * whole
     if end < start or whole - (end - start) > most:
-        raise BadInput(
+        raise BadMotion(
             f"joint {last_to_begin!r} is known from {(start - min(times)) / NANO:g} s on, {first_to_end!r} until "
             f"{(end - min(times)) / NANO:g} s of {whole / NANO:g} s",
             valid="states of all joints from begin to end, or a robot without those joints",

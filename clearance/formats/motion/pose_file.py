@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadMotion, at
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.table.csv_table import Opener
 from clearance.formats.text.notes import note_on_rounded
@@ -37,7 +37,7 @@ class PoseRequest:
             BadInput: it does, though the file says by itself what they are.
         """
         if self.length is not None:
-            raise BadInput(f"'units' is given, and {why}", valid="leave 'units' out of moves")
+            raise BadMotion(f"'units' is given, and {why}", valid="leave 'units' out of moves")
 
 
 @dataclass(frozen=True, eq=False)

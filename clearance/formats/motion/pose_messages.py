@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadTime, MissingKey, at
+from clearance.errors import BadMotion, BadShape, BadTime, MissingKey, at
 from clearance.formats.message.documents import (
     MOST_JSON,
     Fields,
@@ -131,7 +131,7 @@ def _refuse_standing(before: Sequence[_StampedPose], one: _StampedPose) -> None:
         ("in", before[0].frame, one.frame),
     ):
         if was != now:
-            raise BadInput(
+            raise BadMotion(
                 f"poses {what} {was!r} and {now!r} are in one file",
                 valid="those of one frame, in one frame",
             )

@@ -10,7 +10,7 @@ import io
 
 import numpy as np
 
-from clearance.errors import BadInput, BadPose, MissingKey, UnknownKey, at, nearest_name
+from clearance.errors import BadMotion, BadPose, MissingKey, UnknownKey, at, nearest_name
 from clearance.formats.motion.pose_file import (
     PoseRequest,
     PoseSamples,
@@ -81,7 +81,7 @@ def parse_pose_table(data: bytes, shown: str) -> PoseTable:
 def _refuse_units(by_name: dict[str, Column]) -> None:
     for name in _QUATERNION:
         if by_name[name].unit is not None:
-            raise BadInput(
+            raise BadMotion(
                 f"column {by_name[name].header!r} names a unit", valid="a quaternion has none"
             )
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, ClearanceError
+from clearance.errors import BadMotion, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import NANO, whole_times
 from clearance.formats.motion.pose_file import PoseRequest, PoseSamples, read_samples
@@ -132,8 +132,8 @@ def _refuse_other(samples: PoseSamples, content: bytes, shown: str) -> None:
     try:
         back = read_samples(PoseRequest(lambda: io.BytesIO(content), len(content)), shown).samples
     except ClearanceError as error:
-        raise BadInput(f"the poses cannot be written as {shown!r}: {error}") from None
+        raise BadMotion(f"the poses cannot be written as {shown!r}: {error}") from None
     same = back.positions.tobytes() == samples.positions.tobytes()
     same = same and back.quaternions.tobytes() == samples.quaternions.tobytes()
     if not same:
-        raise BadInput(f"the poses would be read otherwise from {shown!r}", valid="another format")
+        raise BadMotion(f"the poses would be read otherwise from {shown!r}", valid="another format")

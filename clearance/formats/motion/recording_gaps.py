@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadMotion
 from clearance.formats.motion.trajectory_file import ReadTrajectory
 from clearance.world.notice import HOLD, NOT_MEASURED
 from clearance.world.trajectory import Hole, Trajectory
@@ -144,7 +144,7 @@ def as_recorded(read: ReadTrajectory, gaps: str | None) -> ReadTrajectory:
         return read
     if gaps == HOLD:
         if given.velocities is not None:
-            raise BadInput(
+            raise BadMotion(
                 "gaps: hold of a table with velocities",
                 valid="gaps: not_measured, or linear for the cubics that it gives",
             )

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, ClearanceError, nearest_name
+from clearance.errors import BadMotion, BadShape, BadSyntax, ClearanceError, nearest_name
 from clearance.extras import importing
 from clearance.formats.message.documents import Fields
 from clearance.formats.message.times import NANO
@@ -109,14 +109,14 @@ def _topic(reader: AnyReader, wanted: str | None) -> tuple[str, str]:
     }
     if wanted is not None:
         if wanted not in kinds:
-            raise BadInput(
+            raise BadMotion(
                 f"the bag has no trajectories or joint states of topic {wanted!r:.60}",
                 valid=nearest_name(wanted, kinds),
             )
         return wanted, kinds[wanted]
     if not kinds:
         others = listed(sorted({one.msgtype for one in reader.connections}), 8)
-        raise BadInput(
+        raise BadMotion(
             f"the bag has no trajectories and no joint states{f', but {others}' if others else ''}",
             valid=f"topics of {', '.join((*_PLANNED[:4], _STATES))}, or the like",
         )
@@ -124,7 +124,7 @@ def _topic(reader: AnyReader, wanted: str | None) -> tuple[str, str]:
         shown = listed(
             [f"{topic} ({kind.rpartition('/')[2]})" for topic, kind in kinds.items()], 12
         )
-        raise BadInput(
+        raise BadMotion(
             f"the bag has several topics: {shown}",
             valid=f"trajectory: {{file: …, topic: {next(iter(kinds))}}} takes the first",
         )

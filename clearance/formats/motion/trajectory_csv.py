@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, nearest_name
+from clearance.errors import BadMotion, BadShape, BadSyntax, MissingKey, nearest_name
 from clearance.formats.motion.joint_columns import (
     by_angles,
     joints_by_angles,
@@ -142,7 +142,7 @@ def _require_times(names: list[str], choice: Choice) -> None:
     if choice.period is None:
         require_time(names, "joint names")
     elif TIME in names:
-        raise BadInput(
+        raise BadMotion(
             f"there is a column {TIME!r}, and a period of {choice.period:g} s", valid="one of them"
         )
 

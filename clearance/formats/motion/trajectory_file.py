@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import NamedTuple
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadMotion, at
 from clearance.formats.known_formats import BAGS, Kind, format_of, function_at
 from clearance.formats.table.csv_table import Opener, as_written, first_row, line_of_row
 from clearance.world.robot import Robot
@@ -53,7 +53,7 @@ class Choice:
         """
         for name in (one.name for one in fields(self)):
             if name not in used and getattr(self, name) is not None:
-                raise BadInput(
+                raise BadMotion(
                     f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
                 )
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, ClearanceError
+from clearance.errors import BadMotion, ClearanceError
 from clearance.formats.known_formats import Kind, function_at, written_as
 from clearance.formats.message.times import split_time, whole_times
 from clearance.formats.motion.trajectory_file import parse_trajectory
@@ -108,14 +108,14 @@ def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded
     try:
         back = parse_trajectory(content, shown)
     except ClearanceError as error:
-        raise BadInput(f"the trajectory cannot be written as {shown!r}: {error}") from None
+        raise BadMotion(f"the trajectory cannot be written as {shown!r}: {error}") from None
     asked = samples_in(trajectory, shown)
     told, read = _columns(asked), _columns(back.written)
     same = back.joint_names == trajectory.joint_names and all(
         _same(told[key], read[key]) for key in told
     )
     if not (same and (is_rounded or np.array_equal(back.written.times, asked.times))):
-        raise BadInput(
+        raise BadMotion(
             f"the names {', '.join(trajectory.joint_names)!r:.80} would be read otherwise from {shown!r}",
             valid="another format",
         )

@@ -14,7 +14,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadRobot
 from clearance.world.robot import Joint, JointKind, Robot
 
 _X, _Y, _Z = np.eye(3)
@@ -89,7 +89,7 @@ def require_placed(robot: Robot, given: Collection[str], field: str) -> None:
             own = {part: robot.reference.get(part, 0.0) for part in names}
             own = {part: value for part, value in own.items() if value != 0.0}
             there = ", ".join(f"{part}: {value!r}" for part, value in own.items())
-            raise BadInput(
+            raise BadRobot(
                 f"{kind} joint {name!r} is given no place",
                 where=field,
                 valid=f"{{{there or f'{names[0]}: 0'}}} where it stays {'as its file has it' if own else 'at 0'}, "

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from clearance.errors import BadDimension, BadInput, MissingKey, UnknownJoint, at, nearest_name
+from clearance.errors import BadDimension, BadRobot, MissingKey, UnknownJoint, at, nearest_name
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.message.documents import Fields, told
 from clearance.formats.message.parameter_values import (
@@ -105,7 +105,7 @@ def _narrowed(joint: Joint, limits: Mapping[str, FileLimits]) -> Joint:
         return joint
     lower, upper = max(joint.lower, given.lower), min(joint.upper, given.upper)
     if lower > upper:
-        raise BadInput(
+        raise BadRobot(
             f"{given.lower:g} to {given.upper:g} lies outside the robot's {joint.lower:g} to {joint.upper:g}",
             where=f"joint_limits.{joint.name}",
         )
@@ -231,7 +231,7 @@ def parse_joint_limits(data: bytes) -> dict[str, FileLimits]:
     if not found:
         raise MissingKey("'joint_limits' is missing", valid="MoveIt's file of that name")
     if len(found) > 1:
-        raise BadInput(f"there are {len(found)} mappings 'joint_limits'", valid="one")
+        raise BadRobot(f"there are {len(found)} mappings 'joint_limits'", valid="one")
     limits = {}
     for name, given in mapping(found[0]).items():
         with at(f"joint_limits.{name:.60}"):
@@ -263,7 +263,7 @@ def _limits(given: Fields) -> FileLimits:
             values[key] = number(given, key)
     lower, upper = values.get("min_position", -math.inf), values.get("max_position", math.inf)
     if lower > upper:
-        raise BadInput(f"min_position {lower:g} is above max_position {upper:g}")
+        raise BadRobot(f"min_position {lower:g} is above max_position {upper:g}")
     for key in ("max_velocity", "max_acceleration"):
         if values.get(key, 1.0) <= 0.0:
             raise BadDimension(f"{key} is {values[key]:g}", valid="above 0")
@@ -320,7 +320,7 @@ def _tolerances(body: Fields) -> dict[str, PathTolerance]:
     """Of each joint that the controller names."""
     joints = body.get("joints", [])
     if not isinstance(joints, list) or not all(isinstance(joint, str) for joint in joints):
-        raise BadInput(f"{told(joints)} is given", where="joints", valid="a list of names")
+        raise BadRobot(f"{told(joints)} is given", where="joints", valid="a list of names")
     found = {checked_name(joint): PathTolerance() for joint in joints}
     with at("constraints"):
         for name, given in mapping(body.get("constraints", Fields())).items():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from clearance.errors import BadInput
+from clearance.errors import BadRobot
 from clearance.formats.files.input_files import resolved
 from clearance.formats.mesh.request import UpAxis
 
@@ -63,7 +63,7 @@ def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[s
     """
     for name in given:
         if not name or ":=" in name or name != name.strip():
-            raise BadInput(f"{name!r:.60} is given", valid="names of the file's xacro:arg elements")
+            raise BadRobot(f"{name!r:.60} is given", valid="names of the file's xacro:arg elements")
     return tuple((name, _as_text(value)) for name, value in given.items())
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from clearance.errors import (
-    BadInput,
+    BadRobot,
     BadShape,
     BadSyntax,
     DuplicateName,
@@ -73,7 +73,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
         unknown = _unknown_links(rows, robot)
         known = [row for row in rows if unknown.isdisjoint(row.links)]
         if rows and not known:
-            raise BadInput(
+            raise BadRobot(
                 f"none of its {len(rows)} rows speaks of links of robot {robot.name!r}: "
                 f"it is the SRDF of {root.get('name') or 'another robot'!r}",
                 valid=nearest_name(sorted(unknown)[0], robot.link_names),
@@ -306,13 +306,13 @@ def _take(positions: dict[str, float], state: GroupState, robot: Robot) -> None:
         if name in moving and len(values) == 1
     }
     if not own:
-        raise BadInput(
+        raise BadRobot(
             f"state {state.full_name!r} speaks of no joint that robot {robot.name!r} can move",
             valid=nearest_name(next(iter(state.positions), ""), moving),
         )
     for name, position in own.items():
         if positions.setdefault(name, position) != position:
-            raise BadInput(
+            raise BadRobot(
                 f"joint {name!r} is at {positions[name]:g} in a state before "
                 f"and at {position:g} in {state.full_name!r}",
                 valid="states of other groups",

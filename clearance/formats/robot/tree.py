@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from clearance.errors import BadInput, UnknownLink, nearest_name
+from clearance.errors import BadRobot, UnknownLink, nearest_name
 from clearance.world.robot import Joint
 
 
@@ -21,11 +21,11 @@ def links_from_root(
             link with two parents, or a circle.
     """
     if not names:
-        raise BadInput("the robot has no links", valid="at least one <link> is needed")
+        raise BadRobot("the robot has no links", valid="at least one <link> is needed")
     above = _joint_above(names, joints)
     roots = [name for name in names if name not in above]
     if len(roots) > 1:
-        raise BadInput(
+        raise BadRobot(
             f"links {', '.join(repr(root) for root in roots[:5])} have no parent",
             valid="one root is needed: join the others by joints",
         )
@@ -36,7 +36,7 @@ def links_from_root(
     if len(ordered) < len(names):
         found = frozenset(ordered)
         lost = [name for name in names if name not in found]
-        raise BadInput(
+        raise BadRobot(
             f"links {', '.join(repr(name) for name in lost[:5])} hang in a circle of joints",
             valid="a tree is needed",
         )
@@ -55,7 +55,7 @@ def _joint_above(names: Sequence[str], joints: Sequence[Joint]) -> dict[str, Joi
                     valid=nearest_name(link, names),
                 )
         if joint.child in above:
-            raise BadInput(
+            raise BadRobot(
                 f"link {joint.child!r} is the child of joints "
                 f"{above[joint.child].name!r} and {joint.name!r}",
                 valid="one parent for each link",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from clearance.errors import BadInput
+from clearance.errors import BadScene
 from clearance.formats.known_formats import Kind, format_of, function_at
 from clearance.formats.scene.request import SceneContent, SceneRequest
 from clearance.formats.schema.obstacle import Scene
@@ -24,7 +24,7 @@ def read_scene(asked: SceneRequest) -> SceneContent:
     known = format_of(Kind.SCENE, asked.path.name)
     assert known is not None  # as any file is YAML where nothing says otherwise
     if asked.includes and known.name != "SDF":
-        raise BadInput(
+        raise BadScene(
             f"includes are given, and {asked.shown} is no SDF file", valid="no includes in the case"
         )
     content: SceneContent = function_at(known.read)(asked)

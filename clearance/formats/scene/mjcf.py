@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadScene, at
 from clearance.formats.mesh.off_file import off_text
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import mjcf_document
@@ -37,7 +37,7 @@ def read_mjcf_scene(asked: SceneRequest) -> SceneContent:
         poses = _body_poses(model)
         kept = [geom for geom in model.geoms if geom.collides]
         if not kept:
-            raise BadInput("none of its geoms collides", valid="geoms with contype or conaffinity")
+            raise BadScene("none of its geoms collides", valid="geoms with contype or conaffinity")
         obstacles = [
             {"name": _name(model, geom), **_row(geom, poses[geom.body], shapes, asked)}
             for geom in kept

@@ -13,7 +13,7 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, model_validator
 
-from clearance.errors import BadInput, MissingKey, nearest_name
+from clearance.errors import BadInput, Contradiction, MissingKey, nearest_name
 from clearance.formats.schema.joints import Joints
 from clearance.formats.schema.limits import AllowedPair, Limits
 from clearance.formats.schema.obstacle import Scene
@@ -166,7 +166,7 @@ class Case(StrictModel):
     def _one_of_robot_and_robots(cls, data: Any) -> Any:
         if isinstance(data, dict) and set(data) <= set(cls.keys()):
             if "robot" in data and "robots" in data:
-                raise BadInput("both robot and robots are given", valid="one of them")
+                raise Contradiction("both robot and robots are given", valid="one of them")
             if "robot" not in data and "robots" not in data:
                 raise MissingKey("'robot' is missing", valid="robot, or robots for several")
             for key in ("robot", "robots"):
@@ -179,13 +179,13 @@ class Case(StrictModel):
         entries = self.entries()
         if self.trajectory is not None:
             if len(entries) > 1:
-                raise BadInput(
+                raise Contradiction(
                     f"a trajectory beside {len(entries)} robots",
                     where="trajectory",
                     valid="trajectory in each robot",
                 )
             if entries[0].robot.trajectory is not None:
-                raise BadInput(
+                raise Contradiction(
                     f"a trajectory is given here and in {entries[0].field}",
                     where="trajectory",
                     valid="one of them",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadDimension, BadInput, Contradiction
 from clearance.formats.known_formats import CAD
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.strict_model import Level, Name, StrictModel, Triple, with_shapes
@@ -148,7 +148,7 @@ class Obstacle(_Shaped):
     @model_validator(mode="after")
     def _one_place(self) -> Obstacle:
         if self.moves is not None and self.on is None and "pose" in self.model_fields_set:
-            raise BadInput(
+            raise Contradiction(
                 "both pose and moves are given",
                 valid="the table of `moves` has its poses in the world; or `on: what it moves on`, at `pose`",
             )

@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from clearance.errors import BadInput
+from clearance.errors import Contradiction
 from clearance.formats.schema.strict_model import Name, StrictModel, Triple
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
@@ -32,7 +32,7 @@ class Pose(StrictModel):
     @model_validator(mode="after")
     def _is_rotation(self) -> Pose:
         if self.quat_xyzw is not None and self.rpy is not None:
-            raise BadInput("both quat_xyzw and rpy are given", valid="give one of them")
+            raise Contradiction("both quat_xyzw and rpy are given", valid="give one of them")
         self.matrix()
         return self
 

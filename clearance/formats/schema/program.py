@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from clearance.errors import BadInput, MissingKey, nearest_name
+from clearance.errors import BadProgram, MissingKey, nearest_name
 from clearance.formats.schema.pose import Pose
 from clearance.formats.schema.strict_model import Name, StrictModel, Triple
 
@@ -69,7 +69,7 @@ class JointMove(StrictModel):
     @model_validator(mode="after")
     def _one_target(self) -> JointMove:
         if (self.joints is None) == (self.to is None):
-            raise BadInput(
+            raise BadProgram(
                 "joints and to are given" if self.to else "no target is given",
                 valid="joints, or to",
             )
@@ -117,7 +117,7 @@ class Move(StrictModel):
         given = [name for name in self.keys() if getattr(self, name) is not None]
         if len(given) != 1:
             told = f"{' and '.join(given)} are given" if given else "nothing is given"
-            raise BadInput(told, valid=f"one of {', '.join(self.keys())}")
+            raise BadProgram(told, valid=f"one of {', '.join(self.keys())}")
         return self
 
 
@@ -137,7 +137,7 @@ class Program(StrictModel):
         known = (*self.frames, WORLD, BASE)
         for name in (WORLD, BASE):
             if name in self.frames:
-                raise BadInput(
+                raise BadProgram(
                     "a frame of this name is there always",
                     where=f"frames.{name}",
                     valid="another name",
@@ -145,7 +145,7 @@ class Program(StrictModel):
         for i, move in enumerate(self.moves):
             for key, place in _places(move):
                 if place.frame not in known:
-                    raise BadInput(
+                    raise BadProgram(
                         f"unknown frame {place.frame!r}",
                         where=f"moves[{i}].{key}.frame",
                         valid=nearest_name(place.frame, known),

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from clearance.errors import BadInput
+from clearance.errors import Contradiction
 from clearance.formats.motion.trajectory_file import Choice
 from clearance.formats.schema.program import Program
 from clearance.formats.schema.program_file import ProgramFile
@@ -108,10 +108,10 @@ class TrajectoryFile(TimedFile):
         if not isinstance(data, dict) or "program" not in data:
             return data
         if "file" in data:
-            raise BadInput("both file and program are given", valid="one of them")
+            raise Contradiction("both file and program are given", valid="one of them")
         others = sorted(data.keys() - {"program", "start", "rate", "after", "start_state"})
         if others:
-            raise BadInput(f"{others[0]} is of a file, not of a program", valid="no such key")
+            raise Contradiction(f"{others[0]} is of a file, not of a program", valid="no such key")
         program = data["program"]
         if isinstance(program, dict):
             model = ProgramFile if "file" in program else Program

@@ -20,7 +20,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from clearance.errors import BadDimension, BadInput, nearest_name
+from clearance.errors import BadDimension, BadTolerance, nearest_name
 from clearance.formats.schema.strict_model import Name, StrictModel
 from clearance.world.budget import COVERAGE
 
@@ -78,7 +78,7 @@ def _up_to(most: float) -> FieldInfo:
 
 def _known_preset(name: str) -> str:
     if name not in preset_names():
-        raise BadInput(f"unknown preset {name!r}", valid=nearest_name(name, preset_names()))
+        raise BadTolerance(f"unknown preset {name!r}", valid=nearest_name(name, preset_names()))
     return name
 
 
@@ -95,7 +95,7 @@ class NumberRow(StrictModel):
     @classmethod
     def _says_something(cls, data: Any) -> Any:
         if data == {}:
-            raise BadInput("nothing is given", valid=f"one of {', '.join(cls.keys())}")
+            raise BadTolerance("nothing is given", valid=f"one of {', '.join(cls.keys())}")
         return data
 
 
@@ -132,10 +132,10 @@ class _NamedRows(StrictModel):
     def _known_keys(cls, data: Any) -> Any:
         if not isinstance(data, dict) or not data:
             given = f"{data!r:.60} is given" if data else "nothing is given"
-            raise BadInput(given, valid="a mapping is needed")
+            raise BadTolerance(given, valid="a mapping is needed")
         for key in cls.FILLED:
             if key in data and data[key] is None:
-                raise BadInput("nothing is given", where=key, valid="a value, or no such key")
+                raise BadTolerance("nothing is given", where=key, valid="a value, or no such key")
         return data
 
 
@@ -167,7 +167,7 @@ class Tracking(_NamedRows):
         if not isinstance(data, str):
             return handler(data)
         if data != CONTROLLERS:
-            raise BadInput(f"{data!r:.60} is given", valid=nearest_name(data, [CONTROLLERS]))
+            raise BadTolerance(f"{data!r:.60} is given", valid=nearest_name(data, [CONTROLLERS]))
         made = cls.model_construct()
         made._of_case = True
         return made
@@ -209,7 +209,7 @@ class Tolerance(StrictModel):
     @model_validator(mode="after")
     def _says_something(self) -> Tolerance:
         if not any(getattr(self, key) for key in ERRORS):
-            raise BadInput("no error is given", valid=f"one of {', '.join(ERRORS)}")
+            raise BadTolerance("no error is given", valid=f"one of {', '.join(ERRORS)}")
         return self
 
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, NotFinite
+from clearance.errors import NotFinite, NotSimulated
 from clearance.extras import importing
 from clearance.simulate.physics.model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
@@ -165,7 +165,7 @@ class _World:
         """Puts the obstacles in as fixed bodies with all their concavities."""
         for i_obstacle, obstacle in enumerate(obstacles):
             if obstacle.body.is_cloud:
-                raise BadInput(
+                raise NotSimulated(
                     f"obstacle {obstacle.name!r} is a cloud of points, which no simulated body can bump into",
                     where="contact_response",
                     valid="false, or kinematic motion; a cloud is measured all the same",
@@ -266,7 +266,7 @@ def _load(engine: Any, urdf: Path, placed: PlacedRobot) -> int:
     try:
         return engine.loadURDF(str(urdf), basePosition=xyz, baseOrientation=quat, useFixedBase=True)
     except engine.error as error:
-        raise BadInput(
+        raise NotSimulated(
             f"the physics engine cannot load the robot {placed.robot.name!r} ({error})",
             where=placed.urdf_path,
             valid="use kinematic motion",

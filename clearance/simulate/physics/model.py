@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 from itertools import pairwise
 from pathlib import Path
 
-from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.errors import BadSyntax, MissingFile, NotSimulated
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.case import PlacedRobot
 
@@ -48,7 +48,7 @@ def _refuse_compound_joints(placed: PlacedRobot) -> None:
     for joint in placed.robot.joints:
         if joint.part_of is not None:
             kind, name = joint.part_of
-            raise BadInput(
+            raise NotSimulated(
                 f"motion with the {kind} joint {name!r} cannot be simulated",
                 where=placed.urdf_path,
                 valid="a chain of joints of one axis in its place",

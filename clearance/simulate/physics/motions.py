@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import NotSimulated
 from clearance.simulate.physics.bullet import GRAVITY, SETTLE_TIME, simulated_motion
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
@@ -43,13 +43,13 @@ def _require_standing_world(case: Case) -> None:
     carried = {carry.part for carry in case.carries}
     moving = [o.name for o in case.obstacles if not o.stands or o.name in carried]
     if len(case.robots) > 1:
-        raise BadInput(
+        raise NotSimulated(
             f"{len(case.robots)} robots: in simulated motion robots do not push one another",
             where="contact_response",
             valid="contact_response: false, or one robot",
         )
     if moving:
-        raise BadInput(
+        raise NotSimulated(
             f"{', '.join(moving)} would not push back in simulated motion: only obstacles that stand do",
             where="contact_response",
             valid="contact_response: false, or obstacles that stand",
@@ -59,7 +59,7 @@ def _require_standing_world(case: Case) -> None:
 def _require_no_loops(case: Case) -> None:
     for placed in case.robots:
         if placed.trajectory is not None and placed.timing.after == "loop":
-            raise BadInput(
+            raise NotSimulated(
                 f"robot {placed.robot.name!r}: after: loop in simulated motion, which knows one round",
                 valid="after: hold or absent, or kinematic motion",
             )

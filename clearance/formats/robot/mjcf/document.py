@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, at
+from clearance.errors import BadRobot, BadSyntax, MissingKey, NotFinite, at
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.text.xml_document import plain_root
 
@@ -101,7 +101,7 @@ class _Inclusion:
         shown = self.files.shown(path)
         key = os.path.abspath(path)
         if key in self.seen:
-            raise BadInput(f"{shown!r} is included twice", valid="each file once in a model")
+            raise BadRobot(f"{shown!r} is included twice", valid="each file once in a model")
         self.seen.add(key)
         data = self.files.read(path)
         self.n_bytes += len(data)
@@ -136,7 +136,7 @@ def _require_readable(root: Element) -> None:
         found = next(root.iter(tag), None)
         if found is not None:
             name = found.get("name") or found.get("prefix") or ""
-            raise BadInput(
+            raise BadRobot(
                 f"<{tag}> {name!r:.60} is not read: it makes {what}",
                 valid="a model in which all bodies are written out",
             )
@@ -144,7 +144,7 @@ def _require_readable(root: Element) -> None:
     n_elements = sum(1 for _ in root.iter())
     n_made = sum(_copies(element) for element in root.iter("geom", "body", "joint", "freejoint"))
     if n_elements > MOST_ELEMENTS or n_made > MOST_MADE:
-        raise BadInput(
+        raise BadRobot(
             f"it makes {n_made} bodies, joints and geoms of {n_elements} elements",
             valid=f"{MOST_MADE} or fewer, of {MOST_ELEMENTS}",
         )
@@ -175,7 +175,7 @@ def _copies(element: Element) -> int:
         try:
             n *= max(1, int(above.get("count") or 1))
         except ValueError:
-            raise BadInput(
+            raise BadRobot(
                 f"<replicate> has count={above.get('count')!r:.20}", valid="a whole number"
             ) from None
         if n > MOST_MADE:

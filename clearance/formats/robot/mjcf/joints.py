@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadRobot, at
 from clearance.formats.robot.compound_joints import COMPOUND, chained
 from clearance.formats.robot.mjcf.mujoco_adapter import MjcfBody, MjcfFollower, MjcfJoint, MjcfModel
 from clearance.geometry.pose import pose_from_quaternion
@@ -75,7 +75,7 @@ def _chain(joint: MjcfJoint, parent: str, child: str, before: np.ndarray) -> Ite
     with np.errstate(all="ignore"):  # what overflows is refused
         axis = joint.axis / np.linalg.norm(joint.axis)
     if not np.isfinite(axis).all():
-        raise BadInput(f"its axis is {joint.axis.tolist()}", valid="a direction")
+        raise BadRobot(f"its axis is {joint.axis.tolist()}", valid="a direction")
     lower, upper = joint.limits or (-np.inf, np.inf)
     yield Joint(
         name=joint.name,

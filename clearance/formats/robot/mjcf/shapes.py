@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 
 import numpy as np
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance.errors import BadRobot, BadSyntax, MissingFile, at
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import MjcfDocument
 from clearance.formats.robot.mjcf.mujoco_adapter import MjcfGeom, MjcfMesh, MjcfModel, MjcfSpec
@@ -47,7 +47,7 @@ def primitive(geom: MjcfGeom) -> tuple[str, dict[str, float | list[float]]]:
         return "sphere", {"radius": a}
     if geom.kind in ("capsule", "cylinder"):
         return geom.kind, {"radius": a, "length": 2.0 * b}
-    raise BadInput(
+    raise BadRobot(
         f"geom {geom.name!r}: a {geom.kind} is not read: {_UNREAD.get(geom.kind, 'it is unknown')}",
         valid="box, sphere, capsule, cylinder, ellipsoid or mesh",
     )

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, MissingKey, NotFinite, at
+from clearance.errors import BadRobot, BadShape, MissingKey, NotFinite, at
 from clearance.formats.plausibility import odd_angles
 from clearance.formats.robot.request import Geometry
 from clearance.formats.robot.robot_element import robot_element
@@ -236,7 +236,7 @@ def _check_geometry(element: Element, where: str) -> None:
     shapes = [str(child.tag) for child in element]
     if len(shapes) != 1 or shapes[0] not in _SHAPES:
         given = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
-        raise BadInput(f"{given} is given", where=where, valid=f"one of {', '.join(_SHAPES)}")
+        raise BadRobot(f"{given} is given", where=where, valid=f"one of {', '.join(_SHAPES)}")
 
 
 def _check_ends(element: Element, where: str) -> None:

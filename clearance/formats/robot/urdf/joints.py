@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, at
+from clearance.errors import BadDimension, BadRobot, at
 from clearance.formats.robot.compound_joints import chained, notes_on_parts
 from clearance.formats.robot.urdf.elements import number, numbers, pose_of
 from clearance.tolerance import REACH
@@ -54,9 +54,9 @@ def _joints(element: Element) -> list[Joint]:
     if kind not in _COMPOUND:
         return [_joint(element)]
     if element.find("mimic") is not None:
-        raise BadInput(f"a {kind} joint has a <mimic>", valid="<mimic> of a joint of one axis")
+        raise BadRobot(f"a {kind} joint has a <mimic>", valid="<mimic> of a joint of one axis")
     if kind == "planar" and _axis(element.find("axis"), JointKind.PRISMATIC).tolist() != [0, 0, 1]:
-        raise BadInput(
+        raise BadRobot(
             "a planar joint whose axis is not z, the plane's x and y are not said",
             valid='<axis xyz="0 0 1"/>, the plane turned by <origin rpy="…">',
         )
@@ -66,7 +66,7 @@ def _joints(element: Element) -> list[Joint]:
 
 def _joint(element: Element) -> Joint:
     if element.get("type") not in _KINDS:
-        raise BadInput(
+        raise BadRobot(
             f"type {element.get('type')!r} is not supported", valid=f"one of {', '.join(_KINDS)}"
         )
     kind = JointKind(element.get("type"))
@@ -93,7 +93,7 @@ def _axis(element: Element | None, kind: JointKind) -> np.ndarray:
     axis = np.array(along_x if element is None else numbers(element, "xyz", along_x))
     greatest = np.abs(axis).max()
     if greatest == 0:
-        raise BadInput("axis is 0 0 0", valid="a direction is needed")
+        raise BadRobot("axis is 0 0 0", valid="a direction is needed")
     axis = axis / greatest
     return axis / np.linalg.norm(axis)
 
@@ -106,7 +106,7 @@ def _limits(element: Element | None, kind: JointKind) -> tuple[float, float]:
         return -np.inf, np.inf
     lower, upper = number(element, "lower", 0.0), number(element, "upper", 0.0)
     if lower > upper:
-        raise BadInput(f"lower limit {lower:g} is above upper limit {upper:g}")
+        raise BadRobot(f"lower limit {lower:g} is above upper limit {upper:g}")
     return lower, upper
 
 

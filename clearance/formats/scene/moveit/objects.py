@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, BadShape, at, nearest_name
+from clearance.errors import BadDimension, BadScene, BadShape, at, nearest_name
 from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
 from clearance.formats.files.mesh_paths import mesh_path
 from clearance.formats.mesh.octree_file import file_of_message, octree_of
@@ -42,16 +42,16 @@ def object_rows(given: Message, frame: np.ndarray, meshes: SceneMeshes, poses: P
     name = text(given, "id")
     with at(repr(name)):
         if given.get("operation") not in _ADD:
-            raise BadInput(
+            raise BadScene(
                 f"{given['operation']!r:.40} is given", where="operation", valid="ADD (0)"
             )
         if items(given, "planes"):
-            raise BadInput("a plane, which has no end, is not read", where="planes", valid="a box")
+            raise BadScene("a plane, which has no end, is not read", where="planes", valid="a box")
         from_object = frame @ poses.read(message(given, "pose"))
         shapes = [*_placed(given, "primitives", "primitive_poses", meshes, poses)]
         shapes += _placed(given, "meshes", "mesh_poses", meshes, poses)
         if not shapes:
-            raise BadInput("it has no shape", valid="primitives or meshes")
+            raise BadScene("it has no shape", valid="primitives or meshes")
     return named_rows(name, [(row, from_object @ local) for row, local in shapes])
 
 
@@ -87,7 +87,7 @@ def _primitive(given: Message) -> Row:
     if isinstance(kind, int) and kind in KINDS:
         kind = KINDS[kind]
     if not isinstance(kind, str):
-        raise BadInput(f"{kind!r:.40} is given", where="type", valid="box, sphere or cylinder")
+        raise BadScene(f"{kind!r:.40} is given", where="type", valid="box, sphere or cylinder")
     dimensions = [number(value, "dimensions") for value in items(given, "dimensions")]
     return primitive(kind.lower(), dimensions)
 
@@ -129,8 +129,8 @@ def primitive(kind: str, dimensions: Sequence[float]) -> Row:
     """
     if kind not in _N_DIMENSIONS:
         if kind in ("cone", "prism", "plane"):
-            raise BadInput(f"a {kind} is not read", valid="a mesh of the same shape, or a box")
-        raise BadInput(f"{kind!r:.40} is no kind of shape", valid=nearest_name(kind, _N_DIMENSIONS))
+            raise BadScene(f"a {kind} is not read", valid="a mesh of the same shape, or a box")
+        raise BadScene(f"{kind!r:.40} is no kind of shape", valid=nearest_name(kind, _N_DIMENSIONS))
     needed = _N_DIMENSIONS[kind]
     if len(dimensions) != needed:
         raise BadShape(f"{len(dimensions)} dimensions of a {kind}", valid=f"{needed} are needed")
@@ -165,7 +165,7 @@ class SceneMeshes:
         self._n_left -= n
         if self._n_left < 0:
             most = f"{MOST_VALUES} vertices and triangles, or {MOST_VALUES // 100} shapes"
-            raise BadInput(f"more than {most}", valid="fewer")
+            raise BadScene(f"more than {most}", valid="fewer")
 
     def inline(self, vertices: list[list[float]], triangles: list[list[int]]) -> Row:
         """A mesh written out in the scene, which is kept as a file beside it that is not on disk.
@@ -192,7 +192,7 @@ class SceneMeshes:
         """
         data = items(given, "data")
         if not all(type(byte) is int and -128 <= byte <= 255 for byte in data):
-            raise BadInput("a byte is no whole number of -128 to 255", where="data", valid="bytes")
+            raise BadScene("a byte is no whole number of -128 to 255", where="data", valid="bytes")
         content = file_of_message(
             bytes(byte & 255 for byte in data),
             text(given, "id"),

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, BadShape, at
+from clearance.errors import BadDimension, BadScene, BadShape, at
 from clearance.formats.message.values import Message, Poses, items, message, messages, number, text
 from clearance.formats.scene.moveit.objects import Row, SceneMeshes, object_rows
 from clearance.formats.scene.request import HeldPart, SceneContent, SceneRequest, pose_row
@@ -95,7 +95,7 @@ class _Frames:
         self._plain.add(name)
         named = sorted(self._plain - {""})
         if len(named) > 1:
-            raise BadInput(
+            raise BadScene(
                 f"frames {named[0]!r} and {named[1]!r} are used, and nothing says where one is in the other",
                 valid="one frame, or fixed_frame_transforms",
             )
@@ -137,7 +137,7 @@ def _attached(
 def _touch_links(given: Message) -> list[str]:
     links = items(given, "touch_links")
     if not all(isinstance(link, str) for link in links):
-        raise BadInput("a name is no text", where="touch_links", valid="names of links")
+        raise BadScene("a name is no text", where="touch_links", valid="names of links")
     return links
 
 
@@ -145,7 +145,7 @@ def _held(held: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[R
     """The obstacles of what a link holds, in the link's frame."""
     frame = text(message(held, "header"), "frame_id", link).lstrip("/")
     if frame != link:
-        raise BadInput(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
+        raise BadScene(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
     return object_rows(held, np.eye(4), meshes, poses)
 
 
@@ -253,7 +253,7 @@ def allowed_pairs(matrix: Message) -> list[tuple[str, str]]:
     with at("allowed_collision_matrix"):
         names = _names(matrix, "entry_names")
         if len(names) > MOST_NAMES:
-            raise BadInput(f"{len(names)} entry_names are given", valid=f"{MOST_NAMES} or fewer")
+            raise BadScene(f"{len(names)} entry_names are given", valid=f"{MOST_NAMES} or fewer")
         rows = [_row(row, len(names)) for row in items(matrix, "entry_values")]
         require_own_names("entry_name", names)
         if len(rows) != len(names):
@@ -284,7 +284,7 @@ def _defaults(matrix: Message) -> list[str]:
 def _names(matrix: Message, key: str) -> list[str]:
     names = items(matrix, key)
     if not all(isinstance(name, str) for name in names):
-        raise BadInput("a name is no text", where=key, valid="names")
+        raise BadScene("a name is no text", where=key, valid="names")
     return names
 
 
@@ -295,5 +295,5 @@ def _row(given: object, n: int) -> list[bool]:
             f"{given!r:.60} is given", where="entry_values", valid=f"{n} of true or false"
         )
     if not all(value in (0, 1) for value in row):
-        raise BadInput(f"{given!r:.60} is given", where="entry_values", valid="true or false")
+        raise BadScene(f"{given!r:.60} is given", where="entry_values", valid="true or false")
     return [bool(value) for value in row]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite
+from clearance.errors import BadScene, BadShape, BadSyntax, MissingKey, NotFinite
 from clearance.formats.text.xml_document import plain_root, with_entities
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.geometry.quaternions import of_unit_length
@@ -87,7 +87,7 @@ def pose_of(element: Element) -> np.ndarray:
         return np.eye(4)
     kind = pose.get("rotation_format") or "euler_rpy"
     if kind not in ("euler_rpy", "quat_xyzw"):
-        raise BadInput(f"rotation_format={kind!r:.60}", valid="euler_rpy or quat_xyzw")
+        raise BadScene(f"rotation_format={kind!r:.60}", valid="euler_rpy or quat_xyzw")
     values = _numbers(pose.text, (6,) if kind == "euler_rpy" else (7,), "pose")
     if kind == "quat_xyzw":
         return pose_from_quaternion(values[:3], of_unit_length(np.array([values[3:]]))[0][0])
@@ -143,6 +143,6 @@ def _numbers(text: str, counts: tuple[int, ...], tag: str) -> tuple[float, ...]:
 def _require_version(given: str) -> None:
     parts = given.split(".")
     if not all(part.isascii() and part.isdigit() and len(part) < 6 for part in parts):
-        raise BadInput(f"version={given!r:.60}", where="sdf", valid="a version such as 1.9")
+        raise BadScene(f"version={given!r:.60}", where="sdf", valid="a version such as 1.9")
     if tuple(map(int, parts)) > NEWEST and tuple(map(int, parts))[:2] != NEWEST:
-        raise BadInput(f"version {given} is given", where="sdf", valid="1.11 or older is read")
+        raise BadScene(f"version {given} is given", where="sdf", valid="1.11 or older is read")

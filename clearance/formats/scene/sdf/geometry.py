@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, at, nearest_name
+from clearance.errors import BadDimension, BadScene, at, nearest_name
 from clearance.formats.robot.shape_kinds import PLANE_DEPTH, PLANE_SIDE
 from clearance.formats.scene.sdf.document import numbers_of, text_of
 from clearance.formats.text.numbers import is_zero
@@ -64,15 +64,15 @@ def geometry_of(collision: Element) -> Geometry | None:
     shapes = [] if geometry is None else [str(child.tag) for child in geometry]
     if geometry is None or len(shapes) != 1:
         given = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
-        raise BadInput(f"{given} is given", where="geometry", valid=_valid())
+        raise BadScene(f"{given} is given", where="geometry", valid=_valid())
     (kind,) = shapes
     if kind == "empty":
         return None
     with at(f"<{kind}>"):
         if kind in _UNREAD:
-            raise BadInput(f"it is not read: {_UNREAD[kind]}", valid=_valid())
+            raise BadScene(f"it is not read: {_UNREAD[kind]}", valid=_valid())
         if kind not in _READERS:
-            raise BadInput("it is not read", valid=nearest_name(kind, _READERS))
+            raise BadScene("it is not read", valid=nearest_name(kind, _READERS))
         return _READERS[kind](geometry[0])
 
 
@@ -111,7 +111,7 @@ def _plane(element: Element) -> Geometry:
 
 def _mesh(element: Element) -> Geometry:
     if element.find("submesh") is not None:
-        raise BadInput(
+        raise BadScene(
             "a <submesh> is asked for, and files are read whole", valid="a file of it alone"
         )
     uri = text_of(element, "uri")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadInput, UnknownKey, at, nearest_name
+from clearance.errors import BadInput, BadScene, UnknownKey, at, nearest_name
 from clearance.formats.files.found_files import MODEL, OPTIONAL, FoundFiles, note_lookup
 from clearance.formats.files.mesh_paths import model_path
 from clearance.formats.scene.request import SKIP, SceneRequest
@@ -54,7 +54,7 @@ class IncludeReader:
             self._roots[path] = sdf_element(self._asked.files.read(path))
         self._n_elements += sum(1 for _ in self._roots[path].iter())
         if self._n_elements > MOST_ELEMENTS:
-            raise BadInput(f"more than {MOST_ELEMENTS} elements in all", valid="fewer includes")
+            raise BadScene(f"more than {MOST_ELEMENTS} elements in all", valid="fewer includes")
         return self._roots[path]
 
     def include(self, element: Element, folder: Path, chain: tuple[str, ...]) -> IncludedModel:
@@ -86,7 +86,7 @@ class IncludeReader:
         shown = self._asked.files.shown(path)
         self.found.add(asked[0], found, shown)
         if shown in chain:
-            raise BadInput(f"{shown} includes itself", valid="no ring of files")
+            raise BadScene(f"{shown} includes itself", valid="no ring of files")
         with at(shown):
             return IncludedModel(_only_model(self.root(path)), path.parent, shown)
 
@@ -154,5 +154,5 @@ def _only_model(root: Element) -> Element | None:
     models = root.findall("model")
     if root.find("world") is not None or len(models) > 1:
         what = "a world" if root.find("world") is not None else f"{len(models)} models"
-        raise BadInput(f"{what} is included", valid="a file with one model")
+        raise BadScene(f"{what} is included", valid="a file with one model")
     return models[0] if models else None

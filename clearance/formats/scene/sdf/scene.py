@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from clearance.errors import BadInput, at
+from clearance.errors import BadScene, at
 from clearance.formats.files.found_files import MESH, FoundFiles, note_lookup
 from clearance.formats.files.mesh_paths import mesh_path
 from clearance.formats.plausibility import angle_notices, odd_angles
@@ -61,7 +61,7 @@ def _places(root: Element) -> Iterator[tuple[str, Element]]:
     """The world, or the file itself with its models, and what each calls its own frame."""
     worlds = root.findall("world")
     if len(worlds) > 1:
-        raise BadInput(f"{len(worlds)} worlds are given", valid="a file with one world")
+        raise BadScene(f"{len(worlds)} worlds are given", valid="a file with one world")
     yield from (("world", world) for world in worlds)
     yield "__root__", root
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, at, nearest_name
+from clearance.errors import BadScene, at, nearest_name
 from clearance.formats.scene.sdf.document import base_of, name_of, pose_of, text_of
 from clearance.formats.scene.sdf.geometry import geometry_of
 from clearance.geometry.pose import inverse
@@ -105,7 +105,7 @@ class Scope:
                 with at(f"include {(child.findtext('uri') or '').strip()!r:.80}"):
                     yield from self._included(child, frames)
             elif child.tag == "population":
-                raise BadInput(
+                raise BadScene(
                     "<population> places models at random", valid="models at their poses"
                 )
 
@@ -113,7 +113,7 @@ class Scope:
         self, model: Element, name: str, place: _Place, frames: NamedFrames, *, merged: bool = False
     ) -> tuple[str, str, np.ndarray, list[SdfShape]]:
         if self.depth >= DEEPEST:
-            raise BadInput(f"models lie {DEEPEST} deep in each other", valid="fewer")
+            raise BadScene(f"models lie {DEEPEST} deep in each other", valid="fewer")
         inner, shapes = replace(self, depth=self.depth + 1).read(model, "__model__")
         pose = place.pose
         if place.frame:
@@ -150,7 +150,7 @@ class Scope:
                 name = f"{name_of(link)}/{name_of(collision)}"
             self.n_shapes[0] += 1
             if self.n_shapes[0] > MOST_SHAPES:
-                raise BadInput(f"more than {MOST_SHAPES} collisions", valid="fewer")
+                raise BadScene(f"more than {MOST_SHAPES} collisions", valid="fewer")
             if shape is not None:
                 yield SdfShape(name, pose @ shape.pose, shape.row, self.folder)
 
@@ -218,7 +218,7 @@ class NamedFrames:
         way: dict[str, np.ndarray] = {}
         while name not in self._found:
             if name in way:
-                raise BadInput(f"frame {name!r:.60} is relative to itself", valid="no ring")
+                raise BadScene(f"frame {name!r:.60} is relative to itself", valid="no ring")
             base, way[name] = self._step(name)
             name = base
         pose = self._found[name]
@@ -236,7 +236,7 @@ class NamedFrames:
         for model in self._merged:
             if name in self._inner[model]._given:
                 return model, self._inner[model].pose(name)
-        raise BadInput(f"there is no frame {name!r:.60}", valid=nearest_name(name, self._given))
+        raise BadScene(f"there is no frame {name!r:.60}", valid=nearest_name(name, self._given))
 
 
 SAME = 1e-4
@@ -257,14 +257,14 @@ def require_state_as_placed(world: Element, frames: NamedFrames) -> None:
                     with at(f"link {link.get('name')!r}"):
                         _require_same(link, f"{name_of(model)}::{name_of(link)}", frames)
         if state.find("insertions") is not None:
-            raise BadInput("<insertions> add models", where="state", valid="models in the world")
+            raise BadScene("<insertions> add models", where="state", valid="models in the world")
 
 
 def _require_same(element: Element, name: str, frames: NamedFrames) -> None:
     if element.find("pose") is None:
         return
     if not np.abs(pose_of(element) - frames.pose(name)).max() <= SAME:
-        raise BadInput(
+        raise BadScene(
             "it was saved elsewhere than it is placed",
             valid="its saved pose in <model>, or no <state>",
         )

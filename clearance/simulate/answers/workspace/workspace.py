@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, Unavailable
+from clearance.errors import BadDimension, BadInput, Contradiction, Unavailable
 from clearance.extras import install
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
@@ -89,7 +89,7 @@ def _independent_pairs(
     every = combinations(range(len(robots)), 2)
     pairs = [(a, b) for a, b in every if (id(robots[a]), id(robots[b])) not in joined]
     if not pairs:
-        raise BadInput(
+        raise Contradiction(
             f"each of {', '.join(robot.name for robot in robots)} stands on the other",
             valid="two robots of which neither stands on the other",
         )
