@@ -80,7 +80,7 @@ def _read(
     row = format_of(Kind.PROGRAM, shown, data)
     if row is None:
         valid = f"one of {', '.join(suffixes_read(Kind.PROGRAM))}"
-        raise BadInput(f"{shown!r} has no suffix of a robot program", valid=valid)
+        raise BadProgram(f"{shown!r} has no suffix of a robot program", valid=valid)
     others = [resolved(one, folder) for one in asked.beside]
     beside = {files.shown(one): files.read(one) for one in others}
     read = function_at(row.read)(ProgramRequest(data, shown, asked, beside))
