@@ -24,6 +24,7 @@ from clearance.report.annotations import annotation_lines
 from clearance.report.comparison import comparison_page
 from clearance.report.junit_cases import write_run_junit
 from clearance.report.markdown import markdown
+from clearance.report.moveit_moments import moments_text
 from clearance.report.summary import json_text
 from clearance.report.terminal import print_answer
 from clearance.run import Run
@@ -61,9 +62,11 @@ def page(text: str) -> str:
     return "\n".join(filter(None, lines)) + "\n"
 
 
-def summary(one) -> str:
+def summary(one, *topics: str) -> str:
+    """A summary whole, or some topics of it."""
     told = run_of(one).summary
-    return json_text(told | {"versions": sorted(told["versions"])})
+    told |= {"versions": sorted(told["versions"])}
+    return json_text({topic: told[topic] for topic in topics} if topics else told)
 
 
 def junit(one) -> str:
@@ -79,6 +82,7 @@ def compared_page() -> str:
 
 def without_versions(text: str) -> str:
     """A text without what other libraries and other ways of measuring change."""
+    text = re.sub(r'"tally": \{[^}]*\}', '"tally": {}', text)
     return re.sub(
         r"^(clearance .*, python .*|clearance \d.*|Counted: .*)$", "versions", text, flags=re.M
     )
@@ -89,11 +93,19 @@ ANSWERS: dict[str, Callable[[], str]] = {
     "swing.page.txt": lambda: page(page_of(SWING)),
     "short.summary.json": lambda: summary(record(n_steps=24)),
     "swing.junit.xml": lambda: junit(SWING),
+    "swing.moments.yaml": lambda: moments_text(model_of(SWING)),
     "swing.md": lambda: markdown(model_of(SWING)),
     "open.terminal.txt": lambda: terminal(OPEN),
     "open.page.txt": lambda: page(page_of(OPEN)),
+    "open.tolerances.json": lambda: summary(OPEN, "verdict", "exit_code", "tolerances"),
+    "open.junit.xml": lambda: junit(OPEN),
+    "open.annotations.txt": lambda: "\n".join(annotation_lines(model_of(OPEN), HERE)),
     "cell.terminal.txt": lambda: terminal(cell_run()),
     "cell.page.txt": lambda: page(page_of(cell_run())),
+    "cell.actors.json": lambda: summary(
+        cell_run(), "actors", "carries", "clock", "paddings", "rules"
+    ),
+    "cell.junit.xml": lambda: junit(cell_run()),
     "suspect.annotations.txt": lambda: "\n".join(annotation_lines(model_of(SUSPECT), HERE)),
     "two_robots.notebook.txt": lambda: page(run_of(record(n_robots=2))._repr_html_()),
     "comparison.page.txt": compared_page,

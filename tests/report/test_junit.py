@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
+from datetime import date
 from xml.etree import ElementTree
 
+import pytest
+
 from clearance.record.record import ProfileAnswer
-from clearance.world.case import Limits
+from clearance.report import junit
+from clearance.run import Question, answer
+from clearance.world.case import Limits, Omission
 from clearance.world.notice import Notice, Severity
-from tests.report.made import run_of, write_junit
-from tests.report.records import record
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
+from tests.report.junit_schema import valid_suite
+from tests.report.made import run_of, verdict_of, write_junit
+from tests.report.records import disagreeing, record
 
 
 def suite_of(tmp_path, **changes) -> ElementTree.Element:
@@ -23,20 +31,6 @@ def failed(suite: ElementTree.Element) -> set[str]:
     return {
         case.get("name") for case in suite.findall("testcase") if case.find("failure") is not None
     }
-
-
-def test_a_violated_pair_fails_and_the_others_pass(tmp_path):
-    suite = suite_of(tmp_path)
-    assert failed(suite) == {"verdict", "gripper - post"}
-    assert suite.get("name") == "swing & <dip>"
-    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("12", "2", "2")
-    skipped = [case.get("message") for case in suite.findall("testcase/skipped")]
-    assert skipped[0] == "excluded: bolted" and "samples only" in skipped[1]
-
-
-def test_the_fail_limit_decides(tmp_path):
-    wide = suite_of(tmp_path, limits=Limits(fail=0.1, warn=0.2))
-    assert failed(wide) == {"verdict", "gripper - post", "fore - post"}
 
 
 def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
@@ -75,3 +69,66 @@ def test_names_that_xml_has_no_room_for_are_escaped(tmp_path):
     suite = ElementTree.parse(tmp_path / "junit.xml").getroot().find("testsuite")
     names = {case.get("name") for case in suite.findall("testcase")}
     assert "arm\\uffff\\x1b[31m - post\\ud800" in names
+
+
+GATES = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004), "gate_c": (0.8, 0.015)}
+TWICE = Notice(Severity.WARNING, "geometry", "antenna")
+ODD = Notice(Severity.SUSPECT, "units", "<![CDATA[&\x00\ud800]]>" + "x" * 5000)
+
+RECORDS = {
+    "swing": record(),
+    "clear": record(limits=Limits()),
+    "disputed": record(cross_check=disagreeing()),
+    "one notice twice": record(notices=(TWICE, TWICE, TWICE)),
+    "odd letters": record(notices=(ODD,)),
+    "a pair left out": record(unmeasured=(Omission("gripper", "post", "a"), Omission("gripper", "post", "b"))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_record_keeps_to_the_schema(name, tmp_path):
+    write_junit(RECORDS[name], tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    assert (suite.get("failures") == "0") == verdict_of(RECORDS[name]).passed
+    first = (tmp_path / "junit.xml").read_bytes()
+    write_junit(RECORDS[name], tmp_path / "junit.xml")
+    assert first == (tmp_path / "junit.xml").read_bytes()
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+@pytest.mark.parametrize("waive", ["none", "a", "all", "stale"])
+def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
+    patterns = {"none": [], "a": ["gate_a"], "all": ["gate_*"], "stale": ["gate_*", "gate_c"]}[
+        waive
+    ]
+    waivers = tuple(
+        Waiver(("box", gate), at_least=0.002, reason="it gives way", by="N. N.", until=date(2027, 1, 1))
+        for gate in patterns
+    )  # fmt: skip
+    case = dataclasses.replace(load_gates(tmp_path, GATES), waivers=waivers)
+    run = answer(Question(case, need=need, today=date(2026, 11, 1)))
+    write_junit(run, tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    failed = {case.get("name") for case in suite if case.find("failure") is not None}
+    assert ("verdict" in failed) == (not run.passed) and bool(failed) == (not run.passed)
+    skipped = {case.get("name"): case.find("skipped").get("message")
+               for case in suite if case.find("skipped") is not None}  # fmt: skip
+    waived = {f"box - {f.body_b}" for f in run.findings if f.waived is not None}
+    assert waived == {name for name, told in skipped.items() if "it gives way" in told}
+    if waive == "all":
+        assert run.passed and len(waived) == 2
+
+
+def test_a_file_has_room_for_what_fails_before_all_else(tmp_path, monkeypatch):
+    one = record()
+    whole = tmp_path / "whole.xml"
+    write_junit(one, whole)
+    monkeypatch.setattr(junit, "MOST_BYTES", 1500)
+    write_junit(one, tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    told = {each.get("name"): each.get("value") for each in suite.find("properties")}
+    n_whole = len(valid_suite(whole).findall("testcase"))
+    n_left_out = n_whole - len(suite.findall("testcase"))
+    assert n_left_out > 0 and told["cases_left_out"] == str(n_left_out)
+    assert suite.get("failures") == valid_suite(whole).get("failures")
+    assert (tmp_path / "junit.xml").stat().st_size < 1500 + 1000

@@ -39,21 +39,6 @@ def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
     assert told["n_left_out"] == 0 and told["verdict"] == "contact"
 
 
-def test_numbers_come_back_bit_for_bit_to_us_and_to_what_ros_reads_with():
-    run = record()
-    first = read(moments_text(run))
-    assert first == pytest.importorskip("yaml").safe_load(moments_text(run))
-    one = first["moments"][0]
-    state = one["robot_states"][0]["joint_state"]
-    assert state["name"] == ["pan", "lift", "slide"]
-    assert state["position"] == run.motions[0].positions[one["step"]].tolist()
-    points = [[point[axis] for axis in "xyz"] for point in one["nearest_points"]]
-    assert points == [list(run.worst.point_link), list(run.worst.point_obstacle)]
-    time = one["time_from_start"]
-    assert time["sec"] + time["nanosec"] / 1e9 == pytest.approx(run.worst.time, abs=1e-9)
-    assert 0 <= time["nanosec"] < 10**9
-
-
 def test_a_clear_run_has_its_worst_moment_alone():
     clear = cl.check(
         cell(

@@ -75,17 +75,6 @@ def test_nothing_is_fetched(page):
     )
 
 
-def test_the_matrix_leads_to_the_step_of_each_pair(page):
-    cells = re.findall(
-        r'<td class="cell (\w+)" data-step="(\d+)"[^>]*title="([^:]+):', own_text(page)
-    )
-    assert {(name, int(step)) for _, step, name in cells} == {
-        (f"{p.link} - {p.obstacle}".replace("<", "&lt;").replace(">", "&gt;"), p.step)
-        for p in run_of(record()).pair_minima
-    }
-    assert [shade for shade, *_ in cells].count("contact") == 1
-
-
 def test_a_long_list_of_events_is_cut_and_says_so():
     events = summary_of(record())["events"][:1] * (MOST_ROWS + 7)
     content = content_of(record(), events=events, not_listed={"events": 3})

@@ -3,18 +3,29 @@ robot."""
 
 from __future__ import annotations
 
+import dataclasses
+from datetime import date
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.findings.comparison import compared
 from clearance.record.wording import mm
+from clearance.report.comparison import write_comparison
 from clearance.report.still import overview, still_of
+from clearance.run import Question, answer
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
+from tests.findings.test_verdict import made
 from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
+from tests.report.budgets import with_budget
 from tests.report.made import replay_of, run_of, write
 from tests.report.records import record
 
@@ -231,8 +242,9 @@ def crowded(tmp_path_factory) -> Page:
         yield page
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("width", [420, 800, 1400, 2000])
+@pytest.mark.parametrize(
+    ("width", "theme"), [(420, "dark"), (800, "light"), (1400, "dark"), (2000, "light")]
+)
 def test_nothing_is_clipped_and_wide_tables_scroll_in_their_own_box(crowded, width, theme):
     page = crowded
     page.call(
@@ -306,3 +318,66 @@ def hand_among_boxes() -> Case:
     return Case(
         "a hand of 43 links among 60 things", (placed,), obstacles, sign_off=SignOff("J. Doe", "B")
     )
+
+
+NAMES = "window.clearance.chart.told.curves.flatMap((one) => one.name || [])"
+
+
+def test_the_band_and_the_bar(tmp_path):
+    write(with_budget(made(Limits(warn=0.02)), 0.0025), tmp_path / "out")
+    with chromium() as page:
+        for width in (420, 1400):
+            page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance", width=width)
+            page.settle()
+            assert page.errors == [] and page.run("document.documentElement.scrollWidth") == width
+            for _ in range(2):  # as drawn, and as drawn again
+                names = page.run(NAMES)
+                assert names == ["proven with tolerances", "expected, an estimate"]
+                assert page.run("document.querySelectorAll('.chart .filled').length") == 1
+                assert page.run("window.clearance.chart.range[0]") < -2.0
+                page.run("document.getElementById('zoom-limits').click()")
+                page.settle()
+            assert page.box(".budget-bar")["width"] > 0.8 * min(width, 1240)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    place = tmp_path_factory.mktemp("reports")
+    before = cl.check(load_gates(place, {"gate_a": (-0.5, 0.003), "gate_<b>": (0.5, 0.004)}))
+    before.save(place / "before")
+    case = load_gates(place, {"gate_a": (-0.5, 0.0025), "gate_<b>": (0.5, 0.1), "c": (0.8, 0.001)})
+    reason = "the gate gives way by more than what the robot takes of it, " * 5
+    until = date(2027, 3, 31)
+    waiver = Waiver(("box", "gate_a"), at_least=0.002, reason=reason, by="N. N.", until=until)
+    case = dataclasses.replace(case, waivers=(waiver,))
+    now = answer(Question(case, today=date(2026, 11, 1)))
+    comparison = compared(before.finding_list, now.finding_list)
+    now.save(place / "now", comparison)
+    write_comparison(comparison, place / "before", place / "now", place / "both")
+    return place
+
+
+WIDTHS = (420, 2000)
+
+
+def test_both_pages_fit_every_width_and_a_finding_moves_the_replay(folder):
+    with chromium() as page:
+        for width in WIDTHS:
+            page.open(
+                f"file://{folder}/both/comparison.html", "document.readyState === 'complete'", width
+            )
+            assert page.run("document.documentElement.scrollWidth") <= width
+            assert page.run("document.querySelectorAll('svg .curve').length") == 2
+            assert page.run("document.querySelectorAll('.findings tbody tr').length") == 3
+        assert not page.errors and all(url.startswith(("file:", "data:")) for url in page.requests)
+        for width in WIDTHS:
+            page.open(f"file://{folder}/now/report.html", "window.clearance", width)
+            assert page.run("document.documentElement.scrollWidth") <= width
+        told = page.run("document.querySelector('table.findings').textContent")
+        assert "not comparable" in told and "worse, was 3.000 mm" in told and "N. N." in told
+        assert "gate_<b>" in page.run("document.body.textContent")
+        row = "[...document.querySelectorAll('table.findings tbody tr')][1]"
+        page.run(f"{row}.click()")
+        step = page.run(f"Number({row}.dataset.step)")
+        assert f"step {step}" in page.run("document.getElementById('readout').textContent")
+        assert not page.errors

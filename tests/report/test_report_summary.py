@@ -9,23 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import clearance as cl
+from clearance.errors import BadInput, MissingFile
 from clearance.report.summary import json_text
 from clearance.report.topics.provenance import public_path
 from clearance.world.robot import Joint, JointKind
-from tests.made_cases import with_copies
+from tests.made_cases import at, with_copies
+from tests.report.cells import sliding
 from tests.report.made import summary_of, write
 from tests.report.records import record
-
-
-def test_the_worst_step_is_the_least_row_of_the_table():
-    run = record()
-    worst = summary_of(run)["worst"]
-    row = min(run.steps.to_pylist(), key=lambda row: row["clearance"])
-    assert worst["step"] == row["step"]
-    assert worst["point_link"] == [row["link_x"], row["link_y"], row["link_z"]]
-    positions = run.motions[0].positions[row["step"]].tolist()
-    assert [joint["position"] for joint in worst["joints"]] == positions
-    assert [joint["name"] for joint in worst["joints"]] == ["pan", "lift", "slide"]
 
 
 def test_joints_without_limits_are_null_and_not_infinity(tmp_path):
@@ -82,3 +74,53 @@ def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():
     case = dataclasses.replace(made.case, obstacles=(doubled, *made.case.obstacles[1:]))
     told = summary_of(dataclasses.replace(made, case=case))["obstacles"]
     assert [body["two_sided"] for body in told] == [True] + [False] * (len(told) - 1)
+
+
+CASE = "scenes/box_box/case.yaml"
+
+
+@pytest.fixture(scope="module")
+def run():
+    return cl.check(CASE, limits=cl.Limits(0.03, 0.05))
+
+
+def test_a_case_file_can_be_checked_by_its_path(run):
+    again = cl.check(Path(CASE), limits=cl.Limits(0.03, 0.05))
+    loaded = cl.check(cl.load_case(CASE), limits=cl.Limits(0.03, 0.05))
+    assert run.steps.equals(again.steps) and run.steps.equals(loaded.steps)
+    with pytest.raises(MissingFile):
+        cl.check("nowhere.yaml")
+    with pytest.raises(BadInput, match="a int is given"):
+        cl.check(3)
+
+
+def test_a_run_is_told_in_a_line(run):
+    told = repr(run)
+    assert "\n" not in told and len(told) < 200
+    assert told.startswith(f"<Run {run.record.case.name}: {run.verdict.text()}, ")
+    assert run.worst["link"] in told and run.worst["obstacle"] in told
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_the_worst_moment_names_its_bodies_in_both_ways_whatever_moves(certify):
+    """Two cubes of 0.1 m pass each other, 0.11 m apart in height; at both samples they are 0.9 m aside too."""
+    one = sliding("left", [(0, 0), (1, 1)])
+    other = sliding("right", [(0, 1), (1, 0)], base=at(z=0.71))
+    apart = cl.check(cl.Case("passing", (one, other), ()), certify=certify)
+    for row in (apart.worst, apart.worst_sample):
+        assert (row["link"], row["obstacle"]) == ("left/tool", "right/tool")
+        for side, name in (("body_a", "link"), ("body_b", "obstacle")):
+            stem = side.removeprefix("body_")
+            assert row[side] == row[name]
+            assert [row[f"{stem}_{x}"] for x in "xyz"] == [row[f"{name}_{x}"] for x in "xyz"]
+    assert apart.worst.get("between", False) == certify
+    assert apart.worst["clearance"] == pytest.approx(0.11 if certify else np.hypot(0.9, 0.11))
+
+
+def test_summary_and_events_are_those_of_the_report(run, tmp_path):
+    folder = run.save(tmp_path / "out")
+    assert folder == tmp_path / "out"
+    written = json.loads((folder / "summary.json").read_text())
+    assert json.loads(json.dumps(run.summary)) == written
+    assert [event.what for event in run.events] == [event["what"] for event in written["events"]]
+    assert run.events

@@ -1,6 +1,8 @@
 """The picture of the worst moment: pixels held against rays, the camera, what hides what, and the same bytes."""
 
 import io
+import json
+import struct
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +10,7 @@ import pytest
 from PIL import Image
 
 from clearance.report import picture, raster
+from clearance.report.glb import glb_of
 from clearance.report.picture import HEIGHT, WIDTH, drawn, png_of, seen_edges
 from clearance.report.raster import Screen, drawn_segments, surface
 from clearance.report.still import COLOURS, Camera, at_gap, overview, rgb, still_of
@@ -132,3 +135,55 @@ def test_names_of_any_letters_are_words_not_formulas(monkeypatch):
     run = record()
     odd = replace(run, case=replace(run.case, name="$x^{2$ 机器人 " + "long " * 90))
     assert png_of(odd, replay_of(odd), run_of(odd).verdict).startswith(b"\x89PNG")
+
+
+RUN = record()
+REPLAY = replay_of(RUN)
+DATA = glb_of(RUN, REPLAY)
+
+
+def document() -> dict:
+    (length,) = struct.unpack("<I", DATA[12:16])
+    return json.loads(DATA[20 : 20 + length])
+
+
+def test_it_is_the_same_each_time_and_as_long_as_it_says():
+    assert glb_of(RUN, replay_of(RUN)) == DATA
+    magic, version, length = struct.unpack("<4sII", DATA[:12])
+    assert (magic, version, length) == (b"glTF", 2, len(DATA)) and length % 4 == 0
+
+
+def test_nodes_are_the_bodies_and_the_line():
+    nodes = document()["nodes"]
+    names = [nodes[i]["name"] for i in nodes[0]["children"]]
+    assert names[:-1] == [body.name for body in REPLAY.bodies] and names[-1] == "witness line"
+    extras = next(node for node in nodes if node["name"] == "witness line")["extras"]
+    assert extras["clearance"] == RUN.worst.clearance
+    assert extras["points"] == [list(RUN.worst.point_link), list(RUN.worst.point_obstacle)]
+    assert extras["status"] == "contact" and extras["bodies"] == [
+        RUN.worst.link,
+        RUN.worst.obstacle,
+    ]
+
+
+def test_trimesh_finds_names_places_and_colours():
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.load(io.BytesIO(DATA), file_type="glb")
+    still = still_of(REPLAY)
+    y_up = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    for body in still.bodies:
+        pose, name = scene.graph[body.name]
+        assert np.abs(pose - y_up @ body.pose).max() < 1e-6
+        assert len(scene.geometry[name].faces) == len(still.shapes[body.i_shape][1])
+        assert scene.geometry[name].visual.material.baseColorFactor[3] == round(255 * body.opacity)
+    for side, end in zip(("first", "second"), still.line, strict=True):
+        pose, _ = scene.graph[f"witness line: {side} point"]
+        assert np.abs(pose[:3, 3] - y_up[:3, :3] @ end).max() < 1e-6
+
+
+def test_a_shape_that_two_bodies_have_is_written_once():
+    held = document()
+    assert len(held["accessors"]) == len(held["bufferViews"]) <= 2 * len(REPLAY.shapes) + 4
+    assert held["buffers"][0]["byteLength"] == sum(
+        view["byteLength"] for view in held["bufferViews"]
+    )
