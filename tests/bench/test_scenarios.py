@@ -16,6 +16,8 @@ NAMES = sorted(path.stem for path in BENCH.glob("*.py") if "\nSMALLEST = " in pa
 LONG = {"first_run"}
 """It times whole commands, which other tests run."""
 
+PROGRAMS = ("enclosure", "peers", "zones", "table")
+
 Rows = list[dict[str, str]]
 
 
@@ -64,3 +66,14 @@ def test_needs_are_held_against_steps(rows):
     ratios = {row["what"]: float(row["ratio_to_steps"]) for row in rows["needs"]}
     assert ratios["steps"] == 1.0
     assert {"pairs", "limit", "minimum", "certificate to 0.1 mm", "steps, 2 threads"} <= set(ratios)
+
+
+def test_programs_keep_what_they_promise(rows):
+    of = {part: [row for row in rows["programs"] if row["part"] == part] for part in PROGRAMS}
+    assert {row["arm"] for row in of["enclosure"]} == {"heron6", "iiwa"}
+    assert all(row["outside"] == "0" and float(row["ratio_max"]) < 3.0 for row in of["enclosure"])
+    assert {row["library"] for row in of["peers"]} >= {"yourdfpy"}
+    assert max(float(row[key]) for row in of["peers"] for key in ("way_m", "turn_rad")) < 1e-9
+    assert all(row["nearer"] == "0" for row in of["zones"])
+    proven, worst = ([float(row[key]) for row in of["table"]] for key in ("proven_mm", "worst_mm"))
+    assert max(proven) <= min(worst) < max(proven) + 0.2
