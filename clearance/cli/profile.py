@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -9,6 +10,9 @@ import click
 from clearance.cli.options import OutputPath, SortParamType
 from clearance.options import LENGTH
 from clearance.run.options import MOTIONS
+
+MOST_BEYOND = 8
+"""Stretches beyond the limit that are printed."""
 
 _OF_COMPARISON = ("comparison.svg", "comparison.png", "comparison.json")
 
@@ -30,18 +34,24 @@ def profile() -> None:
 def compare(
     a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
 ) -> None:
-    """How far the outlines in files A and B differ, with a proven error, in their unit.
+    """How far the outlines in files A and B differ, with a proven error: Hausdorff distance.
+
+    Lengths are in mm where a file is a swept profile or --limit-mm is given, else in the unit of the files.
 
     Each is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf). Exit code: 0,
     1 beyond the limit or not proven to be within it, 2 bad input.
     """
     if limit is not None and limit_mm is not None:
         raise click.UsageError("--limit and --limit-mm are both given")
-    if _compare(a, b, out, field, limit_mm if limit is None else limit):
+    in_mm = limit_mm is not None
+    if not _compare(a, b, out, field, limit_mm if in_mm else limit, in_mm):
         click.get_current_context().exit(1)
 
 
-def _compare(a: str, b: str, out: Path | None, field: bool, limit: float | None) -> bool:
+def _compare(
+    a: str, b: str, out: Path | None, field: bool, limit: float | None, in_mm: bool
+) -> bool:
+    """Whether the outlines keep the limit, if any; after the comparison is printed and written."""
     from clearance.files import refuse_inputs
     from clearance.planar.entries import checked_number
     from clearance.profiles.compare import compare as compared
@@ -51,49 +61,52 @@ def _compare(a: str, b: str, out: Path | None, field: bool, limit: float | None)
         refuse_inputs([out, *(out / name for name in _OF_COMPARISON)], [a, b])
     limit = None if limit is None else checked_number(limit, "--limit", least=0.0)
     found = compared(read_outline(a), read_outline(b), limit=limit)
-    for direction, directed in found.found.directed.items():
-        click.echo(_line(direction, directed))
-    whole = found.found
-    click.echo(f"hausdorff {whole.distance:.12g} ± {whole.error_bound:.1e} ({whole.direction})")
-    _tell_comparison(found)
+    for line in _comparison_lines(found, *_unit(found, in_mm)):
+        click.echo(line)
     if out is not None:
         _write(found, out, field)
-    if limit is None:
-        return False
-    click.echo(f"limit {limit:g}: {_verdict(found)}")
-    return not found.within_limit
+    return found.within_limit
 
 
-def _verdict(found) -> str:
-    if found.verdict != "undecided":
-        return found.verdict
+def _unit(found, in_mm: bool) -> tuple[str, float]:
+    """The unit in which lengths are printed, and how many of it the outlines' unit is."""
+    is_metres = in_mm or found.a.profile is not None or found.b.profile is not None
+    return (" mm", 1000.0) if is_metres else (" (unit of the files)", 1.0)
+
+
+def _comparison_lines(found, unit: str, scale: float) -> Iterator[str]:
     whole = found.found
-    return f"undecided (proven: {whole.lower:.12g} to {whole.upper:.12g}), which counts as beyond"
-
-
-def _line(direction: str, directed) -> str:
-    (ax, ay), (bx, by) = directed.point_a, directed.point_b
-    return (
-        f"{direction} {directed.distance:.12g} ± {directed.error_bound:.1e} {directed.kind} "
-        f"a({ax:.9g}, {ay:.9g}) b({bx:.9g}, {by:.9g})"
+    decision = "" if found.limit is None else f"{found.verdict} {scale * found.limit:.6g}{unit}: "
+    yield (
+        f"{decision}the outlines differ by {scale * whole.distance:.6g}{unit}, "
+        f"error at most {scale * whole.error_bound:.1e}"
     )
-
-
-def _tell_comparison(found) -> None:
-    for name, one in (("a_to_b", found.forth), ("b_to_a", found.back)):
-        shares = ", ".join(f"{p} % {one.percentile(p):.6g}" for p in (50, 95, 99))
-        click.echo(f"deviation {name}: mean {one.mean:.6g}, {shares}")
+    if found.verdict == "undecided":
+        low, high = scale * whole.lower, scale * whole.upper
+        yield f"  proven is {low:.12g} to {high:.12g}, which counts as beyond"
+    metres, square = (" m", " m2") if scale != 1.0 else ("", "")
+    sides = ("A", "B", found.forth), ("B", "A", found.back)
+    for (side, other, spread), one in zip(sides, whole.directed.values(), strict=True):
+        (ax, ay), (bx, by) = one.point_a, one.point_b
+        ends = (ax, ay, bx, by) if side == "A" else (bx, by, ax, ay)
+        places = "({:.6g}, {:.6g}) to ({:.6g}, {:.6g})".format(*ends) + metres
+        maker = found.makers.get(side.lower())
+        by_whom = "" if maker is None else f"; made by {maker[0]}, step {maker[1]}"
+        yield f"  {side} from {other}  at most {scale * one.distance:.6g}, {places}{by_whom}"
+        shares = ", ".join(f"{p} % {scale * spread.percentile(p):.4g}" for p in (50, 95, 99))
+        yield f"            mean {scale * spread.mean:.4g}, {shares}"
     if found.gained is not None:
-        click.echo(f"area gained {found.gained:.6g}, lost {found.lost:.6g}")
-    for side, (link, step) in found.makers.items():
-        click.echo(f"worst point of {side} made by {link}, step {step}")
-    for one in found.beyond[:8]:
-        click.echo(
-            f"beyond on {one.outline}: {one.length:.6g} long, up to {one.distance:.6g} "
-            f"at ({one.point[0]:.6g}, {one.point[1]:.6g})"
+        yield f"  area      {found.lost:.6g}{square} only in A, {found.gained:.6g}{square} only in B"
+    for side, drawn in (("A", found.a), ("B", found.b)):
+        if drawn.profile is not None:
+            yield f"  sweep {side}   exceeds what is swept by at most {scale * drawn.profile.bound:.4g}{unit}"
+    for one in found.beyond[:MOST_BEYOND]:
+        yield (
+            f"  beyond    on {one.outline.upper()}: {scale * one.length:.6g} long, up to "
+            f"{scale * one.distance:.6g}, at ({one.point[0]:.6g}, {one.point[1]:.6g}){metres}"
         )
-    if len(found.beyond) > 8:
-        click.echo(f"and {len(found.beyond) - 8} more stretches")
+    if len(found.beyond) > MOST_BEYOND:
+        yield f"  beyond    on {len(found.beyond) - MOST_BEYOND} more stretches"
 
 
 def _write(found, out: Path, field: bool) -> None:
@@ -203,16 +216,20 @@ def fit(
 def _tell_fit(found) -> None:
     what = "distance" if found.mode == "nearest" else "gap"
     for name, value in found.dimensions.items():
-        up, down = found.sensitivity[name]
-        click.echo(f"{name} {value:.12g}  ({what} changes {up:+.4g} a unit up, {down:+.4g} down)")
+        unit, scale = found.unit_of(name)
+        up, down = (1000.0 / scale * rate for rate in found.sensitivity[name])
+        click.echo(
+            f"{name} {scale * value:.7g} {unit} "
+            f"({what} changes by {up:+.4g} mm a {unit} up, {down:+.4g} down)"
+        )
     if found.shift.any() or found.turn:
         x, y = found.shift
         click.echo(f"placed by ({x:.9g}, {y:.9g}) m, {found.turn:.9g} rad")
     whole = found.distance
     (ax, ay), (bx, by) = whole.point_a, whole.point_b
     click.echo(
-        f"hausdorff {whole.distance:.12g} ± {whole.error_bound:.1e} "
-        f"at ({ax:.6g}, {ay:.6g}) and ({bx:.6g}, {by:.6g})"
+        f"outline and sketch differ by {1000 * whole.distance:.6g} mm, "
+        f"error at most {1000 * whole.error_bound:.1e}, ({ax:.6g}, {ay:.6g}) to ({bx:.6g}, {by:.6g})"
     )
     if found.clearance is not None:
         what = "contains the outline" if found.mode == "outside" else "stays clear of the outline"

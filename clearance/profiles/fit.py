@@ -72,19 +72,17 @@ class Fit:
     n_starts: int
     curve: Curve = field(repr=False)
 
+    def unit_of(self, name: str) -> tuple[str, float]:
+        """The unit in which a dimension is printed, and how many of it 1 m or 1 rad is."""
+        drawn = self.sketch.constraints.get(name)
+        return ("rad", 1.0) if drawn is not None and drawn.kind == "angle" else ("mm", 1000.0)
+
     @property
     def title(self) -> str:
         """One line for a picture: the mode and the dimensions in mm where they are lengths."""
-        kinds = {
-            name: self.sketch.constraints[name].kind
-            for name in self.dimensions
-            if name in self.sketch.constraints
-        }
+        shown = ((name, value, *self.unit_of(name)) for name, value in self.dimensions.items())
         parts = ", ".join(
-            f"{name} {value:.4g} rad"
-            if kinds.get(name) == "angle"
-            else f"{name} {1000 * value:.2f} mm"
-            for name, value in self.dimensions.items()
+            f"{name} {scale * value:.6g} {unit}" for name, value, unit, scale in shown
         )
         return f"{self.mode}: {parts}"
 

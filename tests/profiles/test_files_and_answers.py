@@ -121,7 +121,28 @@ def test_the_commands_from_sweep_to_picture(tmp_path):
         "comparison.svg",
     }
     out = run(command, ["profile", "compare", str(swept), str(swept), "--limit-mm", "0.001"])
-    assert out.exit_code == 0 and "within" in out.output
+    assert out.exit_code == 0 and out.output.startswith("within 0.001 mm: ")
+
+
+def test_a_comparison_says_its_decision_first_and_lengths_with_their_unit(tmp_path):
+    """The longest way between two squares, of which one is 3 mm off to the right and 4 mm up, is 5 mm."""
+    one, two = tmp_path / "one.yaml", tmp_path / "two.yaml"
+    one.write_text(
+        "curves: [{polyline: {points: [[0, 0], [1, 0], [1, 1], [0, 1]], closed: true}}]\n"
+    )
+    two.write_text(
+        "curves: [{polyline: {points: [[0.003, 0.004], [1.003, 0.004], [1.003, 1.004], [0.003, 1.004]], "
+        "closed: true}}]\n"
+    )
+    asked = ["profile", "compare", str(one), str(two)]
+    beyond = CliRunner().invoke(command, [*asked, "--limit-mm", "4.9"])
+    assert beyond.exit_code == 1
+    assert beyond.output.startswith("beyond 4.9 mm: the outlines differ by 5 mm, error at most ")
+    within = CliRunner().invoke(command, [*asked, "--limit", "0.0051"])
+    assert within.exit_code == 0
+    assert within.output.startswith(
+        "within 0.0051 (unit of the files): the outlines differ by 0.005 "
+    )
 
 
 @pytest.mark.parametrize(

@@ -44,8 +44,9 @@ LIBRARY_ORDER = (
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Adds the generated pages to the navigation."""
-    config.nav.append({"Python reference": list(_reference_pages())})
-    config.nav.append({"Design notes": [{_title(page): page} for page in _design_notes()]})
+    pages = {title: part for section in config.nav for title, part in section.items()}
+    pages["Reference"].append({"Python": list(_reference_pages())})
+    pages["Contribute"].append({"Design notes": [{_title(page): page} for page in _design_notes()]})
     return config
 
 
