@@ -167,6 +167,10 @@ class BadReport(BadInput):
     """A report that is damaged or of another version."""
 
 
+class BadPack(BadInput):
+    """A zip that `clearance pack` has not written, or a case that cannot be packed."""
+
+
 class NoReceipt(BadInput):
     """A run for which no receipt can be written or verified."""
 

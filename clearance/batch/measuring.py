@@ -11,6 +11,7 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import FileStamp, seen
@@ -19,8 +20,9 @@ from clearance.batch.keys import DAY, key_of, program, value_digest, variable_ma
 from clearance.batch.manifest_file import TrajectoryOptions
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.shared_waivers import as_shared
-from clearance.case.case_file import CellFile, load_case, load_cell, with_trajectory_file
+from clearance.case.case_file import CellFile, load_cell, read_case, with_trajectory_file
 from clearance.errors import ClearanceError, Incomplete
+from clearance.formats.files.input_files import InputFiles
 from clearance.formats.files.mesh_paths import variables_of
 from clearance.formats.robot.urdf.xacro_file import variables_asked
 from clearance.run import Resources, answer
@@ -171,7 +173,8 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     """
     given = item.trajectory
     if given is None:
-        case = load_case(item.file)
+        file = Path(item.file)
+        case = read_case(file, InputFiles(file.parent))
         return ReadItem(case, case.sources)
     cell, since = _cell(item.file, batch)
     reading = TrajectoryOptions.model_validate(json.loads(given.reading))

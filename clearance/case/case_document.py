@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from clearance.errors import Contradiction, at
+from clearance.errors import BadPack, Contradiction, at
 from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.known_formats import Kind, refuse_foreign
 from clearance.formats.scene.formats import read_scene, with_own_words
@@ -43,6 +43,9 @@ def read_schema(
         BadInput: with the file and the field.
     """
     data = files.read(path)
+    if data.startswith(b"PK\3\4"):
+        valid = "clearance check takes what clearance pack wrote; for all else unzip it"
+        raise BadPack("a zip is given", where=path.name, valid=valid)
     refuse_foreign(data, path.name, Kind.CASE)
     raw = parse_yaml(data, path.name)
     scene_at = ScenePlace(f"{path.name}: scene", path.parent)

@@ -24,12 +24,13 @@ from clearance.case.allow import (
 )
 from clearance.case.case_document import ScenePlace, read_schema
 from clearance.case.motion_notes import note_on_joints_at_zero, notes_on_motion
+from clearance.case.packed import require_entry, unpacked
 from clearance.case.reserved import reserved_spaces
 from clearance.case.robots import RobotReader, in_motion
 from clearance.case.scene_rows import with_attached_parts, with_scene_rows
 from clearance.case.tolerance.block import budget_of
 from clearance.errors import Contradiction, at
-from clearance.formats.files.input_files import InputFiles
+from clearance.formats.files.input_files import InputFiles, resolved
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.plausibility import (
     angle_notices,
@@ -58,13 +59,17 @@ def load_case(path: str | PathLike[str]) -> Case:
     """The case in a YAML file, with robots, scene and trajectories read and checked.
 
     Args:
-        path: the case file; the paths in it are relative to its folder.
+        path: the case file, or the zip that it was packed into; the paths in it are relative to its folder.
 
     Raises:
         BadInput: what was wrong, in which file and field, and what would be valid.
     """
     path = Path(path)
-    return read_case(path, InputFiles(path.parent))
+    with unpacked(path) as packed:
+        if packed is None:
+            return read_case(path, InputFiles(path.parent))
+        file = require_entry(packed, "case")
+        return packed.checked(read_case(file, InputFiles(file.parent)))
 
 
 def read_case(path: Path, files: InputFiles) -> Case:
@@ -301,7 +306,7 @@ def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiv
 
     for i, name in enumerate(given.waivers):
         with at(f"waivers[{i}]"):
-            yield from waivers_of(files, path.parent / name)
+            yield from waivers_of(files, resolved(name, path.parent))
 
 
 def _sign_off(given: schema.Report | None) -> SignOff | None:

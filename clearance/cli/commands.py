@@ -15,6 +15,7 @@ from clearance.cli.convert import convert
 from clearance.cli.demo import demo
 from clearance.cli.gain import gain
 from clearance.cli.new import new
+from clearance.cli.pack import pack
 from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
 from clearance.cli.srdf import srdf
@@ -51,6 +52,7 @@ for command in (
     demo,
     gain,
     new,
+    pack,
     pre_commit,
     profile,
     schema,

@@ -39,6 +39,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     gain.json. Exit code: 0 if every rule is proven to hold then, 1 if not, 2 for bad input.
     """
     from clearance.case.case_file import load_case
+    from clearance.case.packed import refuse_zip
     from clearance.files import refuse_inputs, require_folder_place
     from clearance.gains.changed_files import CASE, OWN
     from clearance.gains.folder import FIGURES, PAGE, refuse_taken
@@ -52,6 +53,7 @@ def gain(case: Path, kind: str, out: Path | None, force: bool, **options: Any) -
     require_folder_place(out)
     read = load_case(case)
     if out is not None:
+        refuse_zip(case)
         folders = _folders(read, out, asked.get("robot", ())) if kind == "all" else [out]
         for folder in folders:
             refuse_taken(folder, (*OWN, FIGURES, PAGE), force=force)

@@ -8,20 +8,23 @@ import click
 
 
 @click.command()
-@click.argument("folder", metavar="DIR|STORE", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="DIR|ZIP|STORE", type=click.Path(path_type=Path))
 @click.argument("case", metavar="[CASE]", required=False)
 def view(folder: Path, case: str | None) -> None:
     """Shows the replay of a report folder in the browser: robot, scene and connecting line.
 
-    DIR is what `clearance check --out DIR` has written. With STORE, which `clearance batch` has
+    DIR is what `clearance check --out DIR` has written, or the zip that `clearance pack` made of
+    it. With STORE, which `clearance batch` has
     written, and the name of a CASE in it, that case's full report is written, and where it is.
     """
     if case is not None:
         _write_case(folder, case)
         return
+    from clearance.case.packed import require_entry, unpacked
     from clearance.view import show
 
-    show(folder)
+    with unpacked(folder) as packed:
+        show(folder if packed is None else require_entry(packed, "report"))
 
 
 def _write_case(place: Path, name: str) -> None:

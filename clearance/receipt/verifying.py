@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from clearance.case.packed import require_entry, unpacked
 from clearance.errors import BadSyntax, MissingFile, NoReceipt, at, shown
 from clearance.files import LAST
 from clearance.findings.verdict import KEPT, Verdict
@@ -41,7 +42,7 @@ from clearance.receipt.verification import (
 from clearance.receipt.writing import claims_of
 from clearance.record.status import Status
 from clearance.run import CheckOptions, Run, answer
-from clearance.world.case import Case
+from clearance.world.case import Case, Source
 
 PASSING = {Status.CLEAR: "warn", Status.NEAR: "fail"}
 """The verdicts that say a limit is kept, each with the name of that limit."""
@@ -61,18 +62,28 @@ def verify(
     with the new one.
 
     Args:
-        folder: a report with `receipt.bin`.
+        folder: a report with `receipt.bin`, or the zip that it was packed into.
         case: the case or its file, if it has moved since the receipt was written.
         tolerance, waivers: files that the run had beside its case, if they have moved.
 
     Raises:
         BadInput: there is no receipt, it is damaged, or an input or a file of the report has changed.
     """
-    place = Path(folder)
+    with unpacked(Path(folder)) as packed:
+        place = Path(folder) if packed is None else require_entry(packed, "report")
+        return _verified(place, case, tolerance, waivers)
+
+
+def _verified(
+    place: Path,
+    case: Case | str | PathLike[str] | None,
+    tolerance: str | PathLike[str] | None,
+    waivers: Paths,
+) -> Verification:
     receipt = read_receipt(place / FILE_NAME)
     require_report(place, receipt)
-    own, given = _cases(place, receipt, case, tolerance, waivers)
-    _require_inputs(given, receipt)
+    own, given = cases_of(place, receipt, case, tolerance, waivers)
+    require_inputs(given, receipt)
     with at(str(place / FILE_NAME)):
         question = question_of(given, receipt.head["asked"])
     data = case_data(replace(given, tolerance=None) if receipt.head["nominal"] else given)
@@ -86,6 +97,21 @@ def verify(
     source = "" if isinstance(case, Case) else str(case or receipt.head["case"])
     found = replace(found, asked=asked, verdict=run.verdict.text(), source=source)
     return _compared_with_report(found, run, data, receipt, place)
+
+
+def inputs_of(folder: Path) -> tuple[Path | None, tuple[Source, ...]]:
+    """The case file of a report with a receipt, and all that its run was made from; none of a report without one.
+
+    Raises:
+        BadInput: the receipt is damaged, or an input or a file of the report has changed.
+    """
+    if not (folder / FILE_NAME).exists():
+        return None, ()
+    receipt = read_receipt(folder / FILE_NAME)
+    require_report(folder, receipt)
+    _, given = cases_of(folder, receipt, None, None, ())
+    require_inputs(given, receipt)
+    return folder / receipt.head["case"], given.sources
 
 
 def _compared_with_report(
@@ -163,7 +189,7 @@ def _other_verdict(verdict: Verdict, place: Path) -> str:
     return f"{LAST} says {shown(repr(reported))[:60]}, a fresh run says {verdict.status}"
 
 
-def _cases(
+def cases_of(
     place: Path,
     receipt: Receipt,
     case: Case | str | PathLike[str] | None,
@@ -205,7 +231,7 @@ def _path(place: Path, way: str, given: str | PathLike[str] | None, valid: str) 
     return path
 
 
-def _require_inputs(case: Case, receipt: Receipt) -> None:
+def require_inputs(case: Case, receipt: Receipt) -> None:
     """Nothing, if the files that the case is read from are those of the run, as they were.
 
     Raises:

@@ -184,3 +184,36 @@ def test_who_does_not_get_a_receipt_keeps_the_answer(
     told = capsys.readouterr()
     assert told.out.startswith("CLEAR  box_box") and said in told.err
     assert (out / "summary.json").is_file() and not (out / "receipt.bin").exists()
+
+
+@pytest.mark.slow
+def test_a_packed_report_is_verified_and_shown_where_nothing_of_the_cell_is(
+    home, tmp_path, monkeypatch, capsys
+):
+    tolerances = home / "tol.yaml"
+    tolerances.write_text("joints: {all: 0.0001}\n")
+    case, report, packed = home / "scenes" / "box_box" / "case.yaml", home / "r", tmp_path / "r.zip"
+    cell = tmp_path / "cell.zip"
+    for arguments in (
+        ["pack", str(case), str(cell)],
+        ["check", str(cell), "--tolerance", str(tolerances), "--out", str(report), "--receipt"],
+        ["pack", str(report), str(packed)],
+    ):
+        assert run(arguments) == ExitCode.CLEAR
+    assert "clearance verify" in capsys.readouterr().out
+    shutil.rmtree(home)
+    cell.unlink()
+    assert run(["verify", str(packed)]) == ExitCode.CLEAR
+    assert "every byte of the report matches a fresh run" in capsys.readouterr().out
+    seen = []
+    monkeypatch.setattr("clearance.view.show", lambda place: seen.extend(place.iterdir()))
+    assert run(["view", str(packed)]) == ExitCode.CLEAR
+    assert {"report.html", "replay.npz"} <= {path.name for path in seen}
+
+
+def test_a_report_without_its_inputs_is_not_packed(home, capsys):
+    path = home / "scenes" / "box_box" / "trajectory.csv"
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert run(["pack", str(home / "out"), str(home / "r.zip")]) == ExitCode.BAD_INPUT
+    assert "trajectory.csv: it has changed" in capsys.readouterr().err
+    assert not (home / "r.zip").exists()

@@ -16,6 +16,7 @@ from pathlib import Path
 from clearance.errors import ClearanceError
 from clearance.formats.files.input_files import InputFiles
 from clearance.formats.files.mesh_paths import MeshPath, mesh_path, model_path, package_folder
+from clearance.formats.files.place import here
 from clearance.world.case import LOOKUP, Source
 from clearance.world.notice import Notice, Severity
 
@@ -96,7 +97,7 @@ def note_lookup(
     found: Path | None,
 ) -> None:
     """Keeps among the files of a case what a name led to; None for nothing. A plain path needs no search."""
-    moved = Path(given).is_absolute() and found is not None and found != Path(given)
+    moved = Path(given).is_absolute() and found is not None and found != here(given)
     if kind not in (PACKAGE, OPTIONAL) and "://" not in given and not moved:
         return
     dirs = [os.path.abspath(one) for one in package_dirs]

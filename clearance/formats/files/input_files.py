@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
+from clearance.formats.files.place import current_place, here, top
 
 if TYPE_CHECKING:
     from clearance.world.case import Source
@@ -208,7 +209,7 @@ def relative_path(path: Path, folder: Path) -> str:
         shared = Path(os.path.commonpath([path, folder]))
     except ValueError:  # two drives
         return path.name
-    if shared == Path(shared.anchor) and folder != shared:
+    if shared in (Path(shared.anchor), Path(top())) and folder != shared:
         return path.name
     return Path(os.path.relpath(path, folder)).as_posix()
 
@@ -228,7 +229,7 @@ def resolved(given: str, folder: Path) -> Path:
         Unavailable: `pybullet_data:` without that package.
     """
     if not given.startswith(PYBULLET_DATA):
-        return Path(os.path.normpath(folder / given))  # also from a folder that is not there yet
+        return here(os.path.normpath(folder / given))  # also from a folder that is not there yet
     brought = _pybullet_data_folder()
     if brought is None:
         raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
@@ -237,6 +238,9 @@ def resolved(given: str, folder: Path) -> Path:
 
 def _pybullet_data_folder() -> Path | None:
     """Where pybullet keeps its models, found without importing pybullet (which takes 0.1 s)."""
+    place = current_place()
+    if place is not None:
+        return place.packages / "pybullet_data"
     found = importlib.util.find_spec("pybullet_data")
     if found is None or found.origin is None:
         return None

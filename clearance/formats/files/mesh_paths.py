@@ -14,10 +14,11 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from clearance.errors import BadSyntax, MissingFile
+from clearance.formats.files.place import environment, here
 
 _PACKAGE_SCHEMES = ("package", "model")
 
-_VARIABLES = {
+VARIABLES = {
     "ROS_PACKAGE_PATH": "",
     "AMENT_PREFIX_PATH": "share",
     "GZ_SIM_RESOURCE_PATH": "",
@@ -68,7 +69,7 @@ def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> Me
     if separator and scheme != "file":
         raise BadSyntax(f"{given!r} is given", valid="package://, file:// or a path is needed")
     if not separator:
-        places = [(urdf_folder / given.replace("\\", "/"), "")]
+        places = [(here(urdf_folder / given.replace("\\", "/")), "")]
     else:
         places = [*_file_places(given, urdf_folder, package_dirs)]
     for place, variable in places:
@@ -93,7 +94,7 @@ def _file_places(
     """
     path = _file_path(given)
     if path.startswith("/"):
-        yield Path(path), ""
+        yield here(path), ""
     near = [(one, "") for one in (folder, *package_dirs)]
     for place, variable in (*near, *_from_variables()):
         yield place / path.lstrip("/"), variable
@@ -148,7 +149,7 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
         raise BadSyntax(
             f"{given!r} is given", valid="model://, file:// or a path; nothing is fetched"
         )
-    places = [(folder / given, "")]
+    places = [(here(folder / given), "")]
     if separator:
         places = [*_file_places(given, folder, package_dirs)]
     for place, variable in places:
@@ -225,10 +226,10 @@ def _package_folders(
     near = [(folder, "") for folder in (urdf_folder, *above.parents)]
     for folder, variable in (*((one, "") for one in package_dirs), *near, *_from_variables()):
         yield folder / package, variable
-        if _is_package(folder, package):
+        if is_package(folder, package):
             yield folder, variable
         if folder in package_dirs:
-            yield from ((below, "") for below in _below(folder) if _is_package(below, package))
+            yield from ((below, "") for below in _below(folder) if is_package(below, package))
 
 
 def _below(folder: Path) -> Iterator[Path]:
@@ -252,7 +253,7 @@ def _folders_in(folder: Path) -> list[Path]:
         return []
 
 
-def _is_package(folder: Path, package: str) -> bool:
+def is_package(folder: Path, package: str) -> bool:
     """True for a folder of that name, and for one whose manifest has it."""
     if Path(os.path.abspath(folder)).name == package:
         return True
@@ -266,25 +267,29 @@ def _is_package(folder: Path, package: str) -> bool:
 
 def _from_variables() -> Iterator[tuple[Path, str]]:
     """The folders with packages that the environment names, and the variable of each."""
-    for name, below in _VARIABLES.items():
-        for part in os.environ.get(name, "").split(os.pathsep):
+    for name, below in VARIABLES.items():
+        for part in environment().get(name, "").split(os.pathsep):
             if part:
                 yield Path(part, below), name
 
 
-def variables_of(paths: Iterable[str]) -> list[str]:
-    """The variables that name a folder which one of some files, by absolute path, lies in."""
+def variables_of(paths: Iterable[str]) -> dict[str, list[str]]:
+    """The variables that name a folder in which one of some files lies, with these parts of them; all absolute."""
     named = [(Path(os.path.abspath(folder)), name) for folder, name in _from_variables()]
     files = [Path(path) for path in paths] if named else []
-    below = [name for folder, name in named if any(file.is_relative_to(folder) for file in files)]
-    return list(dict.fromkeys(below))
+    found: dict[str, list[str]] = {}
+    for folder, name in named:
+        if any(file.is_relative_to(folder) for file in files):
+            part = folder.parent if VARIABLES[name] else folder
+            found.setdefault(name, []).append(str(part))
+    return found
 
 
 def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:
     n_above = len(Path(os.path.abspath(urdf_folder)).parents)
     dirs = ", ".join(repr(path.name or str(path)) for path in package_dirs) or "none are given"
-    ros = [f"${name} ({os.environ.get(name) or 'not set'})" for name in list(_VARIABLES)[:2]]
-    others = [f"${name}" for name in list(_VARIABLES)[2:] if os.environ.get(name)]
+    ros = [f"${name} ({environment().get(name) or 'not set'})" for name in list(VARIABLES)[:2]]
+    others = [f"${name}" for name in list(VARIABLES)[2:] if environment().get(name)]
     return (
         f"in robot.package_dirs ({dirs}), in the file's folder and the {n_above} above it, "
         f"in {' and '.join([*ros, *others])}"

@@ -14,7 +14,7 @@ ASKED = robot(link(collision('<mesh filename="package://arms/meshes/part.stl"/>'
 
 @pytest.fixture(autouse=True)
 def no_ros(monkeypatch):
-    for name in mesh_paths._VARIABLES:
+    for name in mesh_paths.VARIABLES:
         monkeypatch.delenv(name, raising=False)
 
 

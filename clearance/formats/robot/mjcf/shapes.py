@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from clearance.errors import BadRobot, BadSyntax, MissingFile, at
+from clearance.formats.files.place import here
 from clearance.formats.mesh_store import MeshStore
 from clearance.formats.robot.mjcf.document import MjcfDocument
 from clearance.formats.robot.mjcf.mujoco_adapter import MjcfGeom, MjcfMesh, MjcfModel, MjcfSpec
@@ -113,7 +114,7 @@ class MjcfShapes:
             given = PurePosixPath(given).name
         below = (self.spec.meshdir or "").replace("\\", "/")
         for folder in (self.folder / below, *self.package_dirs):
-            path = folder / given
+            path = here(folder / given)
             if _is_file(path):
                 self._note_outside(path)
                 return path

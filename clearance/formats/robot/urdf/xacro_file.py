@@ -21,6 +21,8 @@ from clearance.errors import BadSyntax, MissingFile, Unavailable, UnknownKey, ne
 from clearance.extras import install, is_installed
 from clearance.formats.files.found_files import PACKAGE, note_lookup, notes_on_variables
 from clearance.formats.files.input_files import InputFiles, regular_file
+from clearance.formats.files.mesh_paths import VARIABLES
+from clearance.formats.files.place import environment
 from clearance.formats.robot.request import RobotRequest
 from clearance.world.case import Source
 from clearance.world.notice import listed
@@ -93,7 +95,11 @@ def _run(request: RobotRequest, shown: str) -> dict[str, Any]:
     command = [sys.executable, "-P", str(_PROCESS)]
     try:
         done = subprocess.run(
-            command, input=json.dumps(asked).encode(), capture_output=True, timeout=LONGEST
+            command,
+            input=json.dumps(asked).encode(),
+            capture_output=True,
+            timeout=LONGEST,
+            env={**os.environ, **dict.fromkeys(VARIABLES, ""), **environment()},
         )
         answer: dict[str, Any] = json.loads(done.stdout)
     except (subprocess.SubprocessError, OSError, ValueError) as error:
