@@ -1,4 +1,4 @@
-"""Leaving with an error depends on no thread and on no other process: every bad input, ten times."""
+"""Leaving with an error depends on no other process: every bad input, ten times."""
 
 from __future__ import annotations
 
@@ -6,17 +6,10 @@ import json
 import os
 import subprocess
 import sys
-import threading
 from pathlib import Path
 
 import pytest
 
-from clearance.formats.files.input_files import InputFiles
-from clearance.formats.motion.trajectory_file import (
-    TrajectoryRequest,
-    parse_trajectory,
-    read_trajectory,
-)
 from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
 
 TIMES = 10
@@ -27,7 +20,7 @@ import clearance.cli.check, clearance.cli.commands, clearance.files
 import clearance.compile.calls, clearance.case.case_file
 import clearance.formats.message.times, clearance.formats.robot.urdf.robot
 import clearance.query.pair_query, clearance.files, clearance.report.output, clearance.run
-import encodings.utf_8_sig, lxml.etree, markupsafe, pyarrow.csv, ruamel.yaml
+import encodings.utf_8_sig, lxml.etree, markupsafe, ruamel.yaml
 from clearance import cli
 from clearance.case import case_file
 ends = {}
@@ -79,31 +72,3 @@ def test_every_bad_input_ends_ten_times_in_the_same_way(tmp_path: Path) -> None:
         ((code, out, err),) = found
         assert (code, out, err.count("\n")) == (2, "", 1), fault
         assert err.startswith("error: ") and BAD[fault][3] in err
-
-
-def test_only_the_thread_that_asks_reads_a_trajectory_through_python(tmp_path: Path) -> None:
-    """pyarrow's own threads may be inside a Python file when the interpreter ends, and end it badly."""
-    path = tmp_path / "path.csv"
-    path.write_text("time,rail\n" + "".join(f"{i},{i / 1e6}\n" for i in range(200_000)))
-    readers = set()
-
-    class Watched:
-        def __init__(self, file: object) -> None:
-            self._file = file
-
-        def __getattr__(self, name: str) -> object:
-            readers.add(threading.get_ident())
-            return getattr(self._file, name)
-
-        def __enter__(self) -> Watched:
-            return self
-
-        def __exit__(self, *problem: object) -> None:
-            self._file.close()
-
-    opened, n_bytes = InputFiles(tmp_path).unread(path)
-    request = TrajectoryRequest(lambda: Watched(opened()), n_bytes)
-    watched = read_trajectory(request, "path.csv").trajectory
-    assert watched.n_steps == 200_000
-    assert readers == {threading.get_ident()}
-    assert (parse_trajectory(path.read_bytes(), "path.csv").positions == watched.positions).all()

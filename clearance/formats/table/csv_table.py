@@ -1,6 +1,6 @@
 """CSV tables of numbers: a header with a `time` column [s] and others, by name, in any order.
 
-The table is parsed by pyarrow in one pass, block by block, so that memory holds its numbers and never
+The table is parsed by numpy in one pass, block by block, so that memory holds its numbers and never
 its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
 for: what the columns are (`trajectory_csv`, `pose_table_file`).
 """
@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import re
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, BinaryIO, NamedTuple
+from itertools import chain, islice
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -25,11 +25,7 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
 )
-from clearance.formats.files.input_files import SHORT
 from clearance.world.names import checked_name
-
-if TYPE_CHECKING:
-    import pyarrow as pa
 
 TIME = "time"
 
@@ -39,6 +35,8 @@ EMPTY = ""
 Opener = Callable[[], BinaryIO]
 """Opens a file for reading from its start."""
 
+BLOCK = 16_384
+"""Rows that are parsed at a time."""
 
 UNNAMED = "(column "
 """How the name of a column without one begins; its place follows."""
@@ -58,7 +56,7 @@ class TextTable(NamedTuple):
 
     def float_of(self, cell: str) -> float | None:
         """The number in a cell, or None."""
-        if "_" in cell or (self.decimal != "." and "." in cell):
+        if "_" in cell or not cell.isascii() or (self.decimal != "." and "." in cell):
             return None
         try:
             return float(cell.replace(self.decimal, "."))
@@ -194,11 +192,11 @@ def columns_of(
     most = n_bytes // (len(names) + len(wanted)) + 2
     found = [np.empty((most, len(part))) for part in parts]
     n_rows = 0
-    for batch in _batches(table, names, wanted):
-        rows = slice(n_rows, n_rows + batch.num_rows)
+    for block in _blocks(table, names, wanted):
+        rows = slice(n_rows, n_rows + len(block))
         for columns, part in zip(found, parts, strict=True):
             for i, name in enumerate(part):
-                columns[rows, i] = batch.column(wanted.index(name)).to_numpy()
+                columns[rows, i] = block[str(names.index(name))]
         n_rows = rows.stop
     if not n_rows:
         raise _no_rows()
@@ -211,51 +209,25 @@ def columns_of(
     return found
 
 
-def _batches(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[pa.RecordBatch]:
-    """All rows, a few megabytes at a time; the columns that are wanted, whatever the others hold."""
-    import pyarrow as pa
-    from pyarrow import csv as arrow_csv
-
-    keys = [str(i) for i in range(len(names))]
-    of_wanted = [keys[names.index(name)] for name in wanted]
-    types = arrow_csv.ConvertOptions(
-        column_types=dict.fromkeys(of_wanted, pa.float64()),
-        include_columns=of_wanted,
-        null_values=[],
-        strings_can_be_null=False,
-        decimal_point=table.decimal,
-    )
-    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(table))
-    parsing = arrow_csv.ParseOptions(delimiter=table.delimiter)
+def _blocks(table: TextTable, names: list[str], wanted: list[str]) -> Iterator[np.ndarray]:
+    """All rows, so many at a time; columns are fields, called by their places. Those wanted are numbers."""
+    kinds = [(str(i), "f8" if name in wanted else "U1") for i, name in enumerate(names)]
+    swap = str.maketrans(",.", ".,")
     try:
-        with table.opened() as file, _native(file) as stream:
-            if stream.size() <= SHORT:  # threads cost more than they help
-                reading.use_threads = False
-                whole = arrow_csv.read_csv(stream, reading, parsing, types)
-                yield from whole.combine_chunks().to_batches()
-                return
-            yield from arrow_csv.open_csv(stream, reading, parsing, types)
-    except pa.ArrowException as error:
+        with table.opened() as file:
+            text = io.TextIOWrapper(file, "utf-8-sig", "surrogateescape", newline="")
+            lines = (line for line in islice(text, _n_above(table), None) if line.strip("\r\n"))
+            if table.decimal == ",":
+                lines = (line.translate(swap) for line in lines)
+            for first in lines:
+                block = chain([first], islice(lines, BLOCK - 1))
+                yield np.loadtxt(
+                    block, kinds, comments=None, delimiter=table.delimiter, quotechar='"', ndmin=1
+                )
+    except ValueError as error:
         raise _fault_in_rows(table, names, wanted) or BadSyntax(
             f"not a table of numbers: {error}"
         ) from None
-
-
-def _native(file: BinaryIO) -> pa.NativeFile:
-    """The same file, read without Python: pyarrow reads ahead in threads of its own.
-
-    One that is still inside a Python file when the interpreter ends takes the whole process with it
-    ("terminate called without an active exception").
-    """
-    import pyarrow as pa
-
-    name = getattr(file, "name", None)
-    if isinstance(name, str | bytes):
-        return pa.OSFile(os.fsdecode(name), "rb")
-    content = file.read()
-    held = pa.allocate_buffer(len(content))
-    np.frombuffer(held, dtype=np.uint8)[:] = np.frombuffer(content, dtype=np.uint8)
-    return pa.BufferReader(held)
 
 
 def _no_rows() -> ClearanceError:
@@ -348,7 +320,7 @@ def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
     return rows
 
 
-def _header_line(table: TextTable) -> int:
+def _n_above(table: TextTable) -> int:
     """Number of lines up to and with the header."""
     return 0 if table.names is not None else next(_rows(table))[0]
 
